@@ -1,0 +1,37 @@
+// Named columns of numbers with units: what results are stored in and what analyses read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace remote_touch {
+
+// length * width numbers, row after row; width 3 for a vector. Integers may carry names (an enumeration).
+struct Column {
+  std::string name;
+  std::string units;  // SI symbol, "1" for a pure number
+  std::string long_name;
+  std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+  int width = 1;
+  std::vector<std::string> value_names;
+
+  std::size_t length() const {
+    return std::visit([this](const auto& v) { return v.size() / static_cast<std::size_t>(width); }, values);
+  }
+};
+
+// Columns of equal length, one of which may be plotted against another.
+struct Table {
+  std::string name;  // a file-safe word
+  std::string title;
+  std::vector<Column> columns;
+
+  // Adds a column of numbers.
+  void add(std::string column, std::string units, std::string long_name, std::vector<double> values) {
+    columns.push_back({std::move(column), std::move(units), std::move(long_name), std::move(values), 1, {}});
+  }
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// HDF5 files, written whole or not at all. The only place that knows the HDF5 library.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/column.h"
+
+namespace remote_touch {
+
+using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+
+// Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
+// part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.
+class Hdf5Writer {
+ public:
+  Hdf5Writer();
+  ~Hdf5Writer();
+  Hdf5Writer(const Hdf5Writer&) = delete;
+  Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+
+  void group(const std::string& path);  // its parent exists
+  // Attributes of a group or dataset that exists; "/" is the root.
+  void attribute(const std::string& object, const std::string& name, const std::string& value);
+  void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
+  void attribute(const std::string& object, const std::string& name, std::int32_t value);
+  void attributes(const std::string& object, const TextAttributes& list);
+  // Writes the columns as datasets of a group, with units and long_name. The column called scale becomes the
+  // dimension scale of the rows of all others; empty: none.
+  void columns(const std::string& group, const std::vector<Column>& columns, const std::string& scale);
+  // Throws InputError naming the file when it cannot be written.
+  void save(const std::filesystem::path& target);
+
+ private:
+  void dataset(const std::string& path, const Column& column);
+  std::int64_t file_;
+};
+
+struct Hdf5Content {
+  TextAttributes attributes;                             // text attributes of the root
+  std::vector<std::pair<std::string, Column>> datasets;  // path and values, in the order of the paths
+};
+
+// Reads every dataset of one or two dimensions. Throws InputError when the file is missing or not HDF5.
+Hdf5Content read_hdf5(const std::filesystem::path& file);
+
+}  // namespace remote_touch

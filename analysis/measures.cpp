@@ -1,0 +1,93 @@
+#include "analysis/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/contact_point.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Share of the ticks for which the condition on the tick's number holds.
+template <class Condition>
+double share(const Trace& trace, Condition&& holds) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) count += holds(i) ? 1 : 0;
+  return trace.length() == 0 ? 0 : static_cast<double>(count) / static_cast<double>(trace.length());
+}
+
+constexpr Measure kMeasures[] = {
+    {"popped_through", "1", "1 when the proxy's centre ended below the true surface", popped_through},
+    {"largest_penetration", "m", "how far the centre was at most behind the true surface",
+     largest_penetration_m},
+    {"largest_force_jump", "N", "largest change of the force at a frame update", largest_force_jump_N},
+    {"largest_force", "N", "largest force", largest_force_N},
+    {"mean_steps", "1", "proxy steps per tick", mean_steps},
+    {"largest_steps", "1", "most proxy steps in a tick", largest_steps},
+    {"unconverged_share", "1", "share of ticks that ended without convergence (4.8)", unconverged_share},
+    {"non_finite_share", "1", "share of ticks with a number that is not finite", non_finite_share},
+};
+
+}  // namespace
+
+std::span<const Measure> measures() {
+  return kMeasures;
+}
+
+double popped_through(const Trace& trace) {
+  return trace.length() > 0 && trace.signed_distance_m.back() < 0 ? 1 : 0;
+}
+
+double largest_penetration_m(const Trace& trace) {
+  double deepest = 0;
+  for (const double distance : trace.signed_distance_m) deepest = std::max(deepest, -distance);  // NaN loses
+  return deepest;
+}
+
+double largest_force_jump_N(const Trace& trace) {
+  double largest = 0;
+  for (std::size_t i = 1; i < trace.length(); ++i) {
+    if (!trace.frame_update(i) || trace.force(i).isZero(0) || trace.force(i - 1).isZero(0)) continue;
+    largest = std::max(largest, (trace.force(i) - trace.force(i - 1)).norm());
+  }
+  return largest;
+}
+
+double share_without_force(const Trace& trace, double contact_radius_m) {
+  std::size_t pressed = 0, silent = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (!pressing(trace, i, contact_radius_m)) continue;
+    ++pressed;
+    silent += trace.force(i).isZero(0) ? 1 : 0;
+  }
+  return pressed == 0 ? 0 : static_cast<double>(silent) / static_cast<double>(pressed);
+}
+
+double mean_steps(const Trace& trace) {
+  double sum = 0;
+  for (const int steps : trace.proxy_steps) sum += steps;
+  return trace.length() == 0 ? 0 : sum / static_cast<double>(trace.length());
+}
+
+double largest_steps(const Trace& trace) {
+  return trace.length() == 0 ? 0 : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());
+}
+
+double unconverged_share(const Trace& trace) {
+  return share(trace, [&](std::size_t i) { return trace.converged[i] == 0; });
+}
+
+double non_finite_share(const Trace& trace) {
+  return share(trace, [&](std::size_t i) {
+    return !trace.proxy(i).allFinite() || !trace.force(i).allFinite() || !trace.normal_at(i).allFinite();
+  });
+}
+
+double largest_force_N(const Trace& trace) {
+  double largest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) largest = std::max(largest, trace.force(i).norm());
+  return largest;
+}
+
+}  // namespace remote_touch

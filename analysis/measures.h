@@ -1,0 +1,39 @@
+// Traces to scalars: the numbers that tell how a run went.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "analysis/trace.h"
+
+namespace remote_touch {
+
+// 1 when the proxy's centre ended below the true surface, else 0.
+double popped_through(const Trace& trace);
+// How far the centre was at most behind the true surface, m; 0 when never. Ticks without a known truth do not
+// count.
+double largest_penetration_m(const Trace& trace);
+// Largest change of the force between two ticks where a new frame came in while force was rendered on both
+// sides, N.
+double largest_force_jump_N(const Trace& trace);
+// Share of the ticks with the HIP held back by the surface that had no force: dropouts.
+double share_without_force(const Trace& trace, double contact_radius_m);
+// Proxy steps per tick.
+double mean_steps(const Trace& trace);
+double largest_steps(const Trace& trace);
+// Share of the ticks that ended without convergence (4.8).
+double unconverged_share(const Trace& trace);
+// Share of ticks with a number that is not finite in position, force or normal.
+double non_finite_share(const Trace& trace);
+double largest_force_N(const Trace& trace);
+
+// The measures that need nothing but a trace, by name: for summaries and for sweeps.
+struct Measure {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double (*of)(const Trace&);
+};
+std::span<const Measure> measures();
+
+}  // namespace remote_touch

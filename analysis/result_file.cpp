@@ -1,0 +1,94 @@
+#include "analysis/result_file.h"
+
+#include <limits>
+
+#include "analysis/digest.h"
+
+namespace remote_touch {
+
+std::string write_trace(const std::filesystem::path& file, const Trace& trace,
+                        const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
+  const std::vector<Column> columns = trace.columns();
+  const std::string sum = digest(columns);
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", kTraceSchema);
+  hdf5.attributes("/", provenance);
+  hdf5.attribute("/", "digest", sum);
+  hdf5.attribute("/", "default", "trace");  // NeXus: what a viewer opens first
+  hdf5.group("/trace");
+  hdf5.columns("/trace", columns, "time");
+  hdf5.attributes("/trace", {{"NX_class", "NXdata"}, {"signal", "proxy_position"}, {"axes", "time"}});
+  if (!step_duration_s.empty()) {
+    hdf5.group("/timing");
+    hdf5.columns("/timing", {{"step_duration", "s", "wall clock of one tick", step_duration_s, 1, {}}}, "");
+  }
+  hdf5.save(file);
+  return sum;
+}
+
+namespace {
+
+std::string style_name(CurveStyle style) {
+  switch (style) {
+    case CurveStyle::line:
+      break;
+    case CurveStyle::dots:
+      return "dots";
+    case CurveStyle::steps:
+      return "steps";
+    case CurveStyle::dashed:
+      return "dashed";
+    case CurveStyle::circle:
+      return "circle";
+    case CurveStyle::bars:
+      return "bars";
+  }
+  return "line";
+}
+
+void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) {
+  const double automatic = std::numeric_limits<double>::quiet_NaN();
+  const auto x = panel.x_range.value_or(std::pair(automatic, automatic));
+  const auto y = panel.y_range.value_or(std::pair(automatic, automatic));
+  hdf5.group(path);
+  hdf5.attributes(path, {{"title", panel.title}, {"x_label", panel.x_label}, {"y_label", panel.y_label}});
+  hdf5.attribute(path, "equal_aspect", panel.equal_aspect ? 1 : 0);
+  hdf5.attribute(path, "x_range", std::vector{x.first, x.second});
+  hdf5.attribute(path, "y_range", std::vector{y.first, y.second});
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    const Curve& curve = panel.curves[i];
+    const std::string place = path + "/curve" + std::to_string(i);
+    hdf5.group(place);
+    hdf5.attributes(place, {{"table", curve.table},
+                            {"x", curve.x},
+                            {"y", curve.y},
+                            {"style", style_name(curve.style)},
+                            {"label", curve.label}});
+    hdf5.attribute(place, "radius", std::vector<double>{curve.radius});
+  }
+}
+
+}  // namespace
+
+std::string write_figure(const std::filesystem::path& file, const Figure& figure,
+                         const TextAttributes& provenance) {
+  const std::string sum = digest(figure.tables);
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", kFigureSchema);
+  hdf5.attributes("/", {{"figure", figure.name}, {"title", figure.title}, {"caption", figure.caption}});
+  hdf5.attributes("/", provenance);
+  hdf5.attribute("/", "digest", sum);
+  hdf5.group("/tables");
+  for (const Table& table : figure.tables) {
+    hdf5.group("/tables/" + table.name);
+    hdf5.attribute("/tables/" + table.name, "title", table.title);
+    hdf5.columns("/tables/" + table.name, table.columns, "");
+  }
+  hdf5.group("/panels");
+  for (std::size_t i = 0; i < figure.panels.size(); ++i)
+    write_panel(hdf5, "/panels/" + std::to_string(i), figure.panels[i]);
+  hdf5.save(file);
+  return sum;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,25 @@
+// The layout of this project's results in HDF5: traces and figures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "analysis/figure.h"
+#include "analysis/hdf5_file.h"
+#include "analysis/trace.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kTraceSchema = "remote-touch-trace/1";
+inline constexpr const char* kFigureSchema = "remote-touch-figure/1";
+
+// provenance: config, command, version and so on, as root attributes. Adds schema and digest.
+// step_duration_s: wall clock of each tick, stored outside the digest as /timing; empty: not stored. Returns
+// the digest.
+std::string write_trace(const std::filesystem::path& file, const Trace& trace,
+                        const TextAttributes& provenance, const std::vector<double>& step_duration_s);
+
+std::string write_figure(const std::filesystem::path& file, const Figure& figure,
+                         const TextAttributes& provenance);
+
+}  // namespace remote_touch

@@ -1,0 +1,68 @@
+#include "analysis/trace.h"
+
+namespace remote_touch {
+
+namespace {
+void push(std::vector<double>& column, const Vec3& v) {
+  column.insert(column.end(), {v.x(), v.y(), v.z()});
+}
+}  // namespace
+
+void Trace::reserve(std::size_t ticks) {
+  for (auto* column : {&time_s, &surface_velocity_m_per_s, &nearest_m, &signed_distance_m})
+    column->reserve(ticks);
+  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal}) column->reserve(3 * ticks);
+  for (auto* column : {&state, &proxy_steps, &converged, &contact_count, &frame_index, &status})
+    column->reserve(ticks);
+}
+
+void Trace::append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance) {
+  time_s.push_back(time);
+  push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
+      push(normal, out.normal_W);
+  state.push_back(static_cast<std::int32_t>(out.state));
+  proxy_steps.push_back(out.steps);
+  converged.push_back(out.converged ? 1 : 0);
+  contact_count.push_back(out.contact_count);
+  frame_index.push_back(out.frame_index);
+  status.push_back(static_cast<std::int32_t>(out.status));
+  surface_velocity_m_per_s.push_back(out.surface_velocity_m_per_s);
+  nearest_m.push_back(out.nearest_m);
+  signed_distance_m.push_back(signed_distance);
+}
+
+std::vector<Column> Trace::columns() const {
+  return {
+      {"time", "s", "simulated time", time_s, 1, {}},
+      {"hip_position", "m", "haptic interface point, world frame", hip_m, 3, {}},
+      {"proxy_position", "m", "centre of the proxy, world frame", proxy_m, 3, {}},
+      {"force", "N", "force on the hand, world frame", force_N, 3, {}},
+      {"state", "1", "state of the proxy", state, 1, {"free", "contact", "entrenched"}},
+      {"normal", "1", "estimated surface normal, unit vector", normal, 3, {}},
+      {"surface_velocity",
+       "m/s",
+       "estimated point cloud velocity along the normal",
+       surface_velocity_m_per_s,
+       1,
+       {}},
+      {"proxy_steps", "1", "proxy steps made in the tick", proxy_steps, 1, {}},
+      {"converged", "1", "the proxy converged in the tick", converged, 1, {"no", "yes"}},
+      {"contact_count", "1", "points within r2 of the proxy", contact_count, 1, {}},
+      {"nearest_distance", "m", "distance of the proxy's centre to the nearest region", nearest_m, 1, {}},
+      {"frame_index", "1", "newest frame in use, -1 before the first", frame_index, 1, {}},
+      {"signed_distance",
+       "m",
+       "distance of the proxy's centre to the true surface",
+       signed_distance_m,
+       1,
+       {}},
+      {"status",
+       "1",
+       "why the output is not an ordinary one",
+       status,
+       1,
+       {"ok", "stale_frame_dropped", "degenerate_normal", "no_frame", "device_not_finite"}},
+  };
+}
+
+}  // namespace remote_touch

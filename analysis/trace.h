@@ -1,0 +1,39 @@
+// What a run leaves behind: one row for each haptic tick.
+#pragma once
+
+#include <vector>
+
+#include "analysis/column.h"
+#include "core/frame.h"
+#include "core/renderer.h"
+
+namespace remote_touch {
+
+struct Trace {
+  std::vector<double> time_s;
+  std::vector<double> hip_m, proxy_m, force_N, normal;  // three numbers a row
+  std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
+  std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m;
+
+  std::size_t length() const { return time_s.size(); }
+  void reserve(std::size_t ticks);
+  void append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance);
+
+  Vec3 hip(std::size_t i) const { return row(hip_m, i); }
+  Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
+  Vec3 force(std::size_t i) const { return row(force_N, i); }
+  Vec3 normal_at(std::size_t i) const { return row(normal, i); }
+  ContactState state_at(std::size_t i) const { return static_cast<ContactState>(state[i]); }
+  // A new frame came in with tick i.
+  bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
+
+  // Copies, with units, in the order they are stored and hashed.
+  std::vector<Column> columns() const;
+
+ private:
+  static Vec3 row(const std::vector<double>& v, std::size_t i) {
+    return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+  }
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,58 @@
+#include "analysis/whole_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "core/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// 0 or the errno of what failed.
+int write_and_flush(int file, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(file, data, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    data += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+}  // namespace
+
+void write_whole_file(const std::filesystem::path& target, const void* data, std::size_t size) {
+  const auto refuse = [&](int error) {
+    throw InputError(target.string(), std::string("cannot be written (") + std::strerror(error) +
+                                          "); allowed a writable place with room for " +
+                                          std::to_string(size) + " bytes");
+  };
+  if (std::filesystem::exists(target) && !std::filesystem::is_regular_file(target)) {
+    // A device or pipe cannot be renamed over; a folder is a mistake.
+    if (std::filesystem::is_directory(target)) refuse(EISDIR);
+    const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) refuse(errno);
+    const int error = write_and_flush(file, static_cast<const char*>(data), size);
+    ::close(file);
+    if (error != 0) refuse(error);
+    return;
+  }
+  const std::filesystem::path temporary = target.string() + ".partial-" + std::to_string(::getpid());
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) refuse(errno);
+  int error = write_and_flush(file, static_cast<const char*>(data), size);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    refuse(error);
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// The one exception for bad input: a file, a parameter or a flag that cannot be used. The message is a single
+// line "subject: what is wrong, what is allowed"; the command line prints it and exits with 2.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace remote_touch {
+
+class InputError : public std::runtime_error {
+ public:
+  // subject: the file or the parameter path, as the user would write it.
+  InputError(const std::string& subject, const std::string& problem)
+      : std::runtime_error(subject + ": " + problem) {}
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,87 @@
+// Finding the points near a position. Every search returns the same set: all points with |x - centre| <=
+// radius, compared as squares in double. They differ in which points they look at.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/gathered_points.h"
+#include "core/point_cloud.h"
+
+namespace remote_touch {
+
+class NeighbourSearch {
+ public:
+  virtual ~NeighbourSearch() = default;
+  // Adds the points of the ball to out, which has room for size() points. Does not call finish(). One reader
+  // at a time: an implementation may keep what it made for the next call.
+  virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
+  virtual std::size_t size() const = 0;
+  // Largest r_f in the cloud: a region reaches that far beyond its point.
+  virtual double largest_fixture_radius() const { return 0; }
+  virtual bool has_fixture_radius() const { return false; }
+  virtual bool has_stiffness() const { return false; }
+};
+
+// A search over a stored cloud.
+class CloudSearch : public NeighbourSearch {
+ public:
+  explicit CloudSearch(PointCloud cloud);
+  std::size_t size() const override { return cloud_.size(); }
+  double largest_fixture_radius() const override { return largest_fixture_radius_; }
+  bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
+  bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
+  const PointCloud& cloud() const { return cloud_; }
+
+ protected:
+  PointRun run(std::size_t first, std::size_t count) const;
+  PointCloud cloud_;
+
+ private:
+  double largest_fixture_radius_ = 0;
+};
+
+// Looks at every point: the oracle for the others, and the best choice for a few hundred points.
+class BruteForceSearch final : public CloudSearch {
+ public:
+  using CloudSearch::CloudSearch;
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+};
+
+// Looks at the window of the image that the ball projects into, 4.2.2. Needs no preparation per frame.
+// pre: cloud.image is set and true.
+class ImageWindowSearch final : public CloudSearch {
+ public:
+  explicit ImageWindowSearch(PointCloud cloud);
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+
+ private:
+  RigidTransform X_CW_;
+};
+
+// Looks at the cells of a uniform grid that the ball's bounding box meets. Points are stored cell after cell,
+// so cells that follow each other along z are one run.
+class UniformGridSearch final : public CloudSearch {
+ public:
+  // cell_m is coarsened until there are at most about four cells a point. Throws std::invalid_argument if <=
+  // 0.
+  UniformGridSearch(PointCloud cloud, double cell_m);
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+
+ private:
+  int cell_along(int axis, double coordinate) const;
+  void choose_cells(double cell_m);
+  void sort_points_by_cell();
+
+  Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
+  double cells_per_m_ = 1;
+  int cells_[3] = {1, 1, 1};
+  std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
+  std::vector<std::uint32_t> original_index_;  // of each stored position
+};
+
+// The image window for an organised cloud, brute force for a small one, the grid otherwise.
+std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m = 0.004);
+
+}  // namespace remote_touch

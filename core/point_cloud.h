@@ -1,0 +1,42 @@
+// A point cloud in columns, and the image layout that an organised cloud keeps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/vector.h"
+
+namespace remote_touch {
+
+// Pinhole intrinsics in pixels; no distortion.
+struct CameraIntrinsics {
+  int width = 0;
+  int height = 0;
+  double fx = 0, fy = 0;
+  double cx = 0, cy = 0;
+};
+
+// Tells that point v * width + u lies on the viewing ray of pixel (u, v), up to pixel_slack pixels.
+struct ImageLayout {
+  CameraIntrinsics camera;
+  RigidTransform X_WC = RigidTransform::Identity();
+  double pixel_slack = 0;
+};
+
+// Columns of equal length. Positions are metres in the world frame; a missing measurement is NaN in all three
+// coordinates, so that it fails every distance test. Optional columns are empty or as long as the positions.
+struct PointCloud {
+  std::vector<double> x, y, z;
+  std::vector<double> fixture_radius_m;   // r_f of (5.2); empty: 0, which is chapter 4
+  std::vector<double> stiffness_N_per_m;  // k_s of (5.3); empty: the renderer's own stiffness
+  std::vector<std::uint32_t> colour;      // 0xRRGGBB; empty: no colour
+  std::optional<ImageLayout> image;       // set when the points are the pixels of one image
+
+  std::size_t size() const { return x.size(); }
+  Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void append(const Vec3& p) { x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()); }
+};
+
+}  // namespace remote_touch

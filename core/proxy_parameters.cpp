@@ -1,0 +1,46 @@
+#include "core/proxy_parameters.h"
+
+#include <sstream>
+
+namespace remote_touch {
+
+Parameters parameters(ProxyParameters& p) {
+  return {
+      {"r1_m", &p.r1_m, 1e-6, 1, "a point nearer than this entrenches the proxy, Fig 4.2"},
+      {"r2_m", &p.r2_m, 1e-6, 1,
+       "a point nearer than this touches it; the contact radius r_c is (r1 + r2) / 2"},
+      {"r3_m", &p.r3_m, 1e-6, 1, "points nearer than this form the normal (4.1)"},
+      {"theta_deg", &p.theta_deg, 0, 90, "angle below which a contact counts as converged (4.8)"},
+      {"gamma", &p.gamma, 1e-3, 1, "share of the way that a contact step takes near the goal (4.11)"},
+      {"xi", &p.xi, 1e-3, 0.999, "contact step far from the goal, in units of r1 (4.12)"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s of the virtual coupling (4.16)"},
+      {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper k_d of the virtual coupling (4.16)"},
+      {"steps_per_tick", &p.steps_per_tick, 1, 100000, "largest number of proxy steps in a haptic tick"},
+      {"velocity_estimate", &p.velocity_estimate, 0, 1,
+       "carry the proxy with the cloud at updates (4.3), (4.13)"},
+      {"longest_prediction_s", &p.longest_prediction_s, 0, 10,
+       "frames further apart than this are treated as this far apart in (4.3)"},
+      {"step_rule", choice(p.step_rule, {"variable", "fixed"}), 0, 0,
+       "step sizes of 4.2.4, or fixed small steps as in the predecessor [1]"},
+      {"fixed_step_m", &p.fixed_step_m, 1e-7, 0.01, "step length of the fixed rule"},
+      {"free_root", choice(p.free_root, {"ahead", "smallest_magnitude"}), 0, 0,
+       "root of (4.9): of points ahead only, or of smallest magnitude as printed"},
+      {"velocity_force", choice(p.velocity_force, {"minus", "plus", "none"}), 0, 0,
+       "sign of the velocity term of (4.15); plus is printed and doubles the jump it should remove"},
+      {"damping_sign", choice(p.damping_sign, {"plus", "minus"}), 0, 0,
+       "sign of the damping term inside the bracket of (4.16); minus is printed and feeds energy in"},
+      {"force_gate", choice(p.force_gate, {"latest_contact", "contact_now"}), 0, 0,
+       "send (4.16) from the latest contact, or only when the tick ends in contact as printed"},
+  };
+}
+
+std::string conflict(const ProxyParameters& p) {
+  std::ostringstream text;
+  if (!(p.r1_m < p.r2_m))
+    text << "r1_m = " << p.r1_m << ": allowed below r2_m = " << p.r2_m;
+  else if (!(p.r2_m < p.r3_m))
+    text << "r2_m = " << p.r2_m << ": allowed below r3_m = " << p.r3_m;
+  return text.str();
+}
+
+}  // namespace remote_touch

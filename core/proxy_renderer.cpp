@@ -1,0 +1,140 @@
+#include "core/proxy_renderer.h"
+
+#include <limits>
+
+#include "core/proxy_step.h"
+
+namespace remote_touch {
+
+ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
+    : p_(parameters),
+      kernels_(kernels),
+      near_(parameters.r3_m, kernels),
+      velocity_(parameters.longest_prediction_s),
+      coupling_(parameters, haptic_rate_hz) {}
+
+void ProxyRenderer::on_frame(const Frame& frame) {
+  if (frame_index_ >= 0 && !(frame.captured_s > frame_captured_s_)) {
+    stale_frame_ = true;
+    return;
+  }
+  near_.set_points(frame.points);
+  frame_index_ = frame.index;
+  frame_captured_s_ = frame.captured_s;
+  frame_arrived_s_ = frame.arrives_s;
+  if (!p_.velocity_estimate) return;
+  const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
+  proxy_W_ += correction;
+  contact_proxy_W_ += correction;
+}
+
+RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
+  const Vec3& hip_W = device.position_W;
+  RenderOutput out;
+  out.proxy_W = proxy_W_, out.normal_W = normal_W_;
+  out.frame_index = frame_index_;
+  if (!hip_W.allFinite()) {  // hold still and let go: a force from a lost position would be a guess
+    coupling_.release();
+    out.status = RenderStatus::device_not_finite;
+    return out;
+  }
+  if (!placed_) proxy_W_ = hip_W, placed_ = true;
+  if (frame_index_ >= 0) {
+    out.steps = move(hip_W);
+    report(hip_W, out);
+    out.force_N = render_force(hip_W, time_s, out);
+    if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
+  } else {
+    out.proxy_W = proxy_W_ = hip_W;
+    out.nearest_m = std::numeric_limits<double>::infinity();
+    out.converged = true;
+    out.status = RenderStatus::no_frame;
+  }
+  stale_frame_ = false;
+  return out;
+}
+
+// State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it.
+ProxyRenderer::Look ProxyRenderer::look() {
+  Look here;
+  here.points = near_.around(proxy_W_).view();
+  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid()};
+  here.survey = kernels_.survey(here.points, proxy_W_.data(), regions);
+  here.state = classify(here.survey.nearest, p_);
+  return here;
+}
+
+// The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
+// bit for bit: every further step would do the same.
+int ProxyRenderer::move(const Vec3& hip_W) {
+  bool touched = false;
+  for (int k = 1; k <= p_.steps_per_tick; ++k) {
+    const Vec3 u = hip_W - proxy_W_;
+    const Look here = look();
+    normal_W_ = unit_normal(here.survey, normal_W_);
+    if (here.state == ContactState::contact) {
+      in_contact_ = true;
+      contact_proxy_W_ = proxy_W_;
+      contact_stiffness_N_per_m_ = stiffness(here.survey);
+    }
+    touched |= here.state != ContactState::free;
+
+    const Vec3 s = next_step(here, u);
+    velocity_.on_step(s);  // (4.13)
+    const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
+    if (here.state == ContactState::free && moved == hip_W)
+      in_contact_ = false;  // nothing holds the proxy back
+    const bool settled = moved == proxy_W_;
+    proxy_W_ = moved;
+    if (settled || k == p_.steps_per_tick) {
+      if (!touched) in_contact_ = false;
+      return k;
+    }
+  }
+  return 0;
+}
+
+Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
+  switch (here.state) {
+    case ContactState::free:
+      return free_step(near_, proxy_W_, u, p_);
+    case ContactState::entrenched:
+      return entrenched_step(here.points, kernels_, proxy_W_, normal_W_, u, p_);
+    case ContactState::contact:
+      break;
+  }
+  return contact_step(normal_W_, u, p_);
+}
+
+// The output describes the position that the tick ends in; the state of the method is not touched.
+void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
+  const Look here = look();
+  out.proxy_W = proxy_W_;
+  out.state = here.state;
+  out.normal_W = unit_normal(here.survey, normal_W_);
+  out.surface_velocity_m_per_s = velocity_.m_per_s();
+  out.nearest_m = here.survey.nearest;
+  out.contact_count = static_cast<int>(here.survey.touching);
+  out.converged = has_converged(here.state, out.normal_W, hip_W - proxy_W_, p_);
+  if (here.state == ContactState::entrenched && out.normal_W.isZero(0))
+    out.status = RenderStatus::degenerate_normal;
+}
+
+Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderOutput& out) {
+  const bool send =
+      p_.force_gate == ForceGate::latest_contact ? in_contact_ : out.state == ContactState::contact;
+  if (!send) {
+    coupling_.release();
+    return Vec3::Zero();
+  }
+  const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
+  return coupling_.force(hip_W - p_W, time_s - frame_arrived_s_, velocity_.vector(),
+                         contact_stiffness_N_per_m_);
+}
+
+// (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.
+double ProxyRenderer::stiffness(const Survey& survey) const {
+  return survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : p_.stiffness_N_per_m;
+}
+
+}  // namespace remote_touch

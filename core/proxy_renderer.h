@@ -1,0 +1,51 @@
+// 3-DOF rendering of streaming point clouds with a spherical proxy: chapter 4, and with fixture radii in the
+// cloud chapter 5. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
+#pragma once
+
+#include "core/neighbourhood.h"
+#include "core/proxy_parameters.h"
+#include "core/renderer.h"
+#include "core/surface_velocity.h"
+#include "core/virtual_coupling.h"
+
+namespace remote_touch {
+
+class ProxyRenderer final : public Renderer {
+ public:
+  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  struct Look {  // what the proxy sees from where it is
+    Survey survey;
+    ContactState state;
+    PointsView points;
+  };
+  Look look();
+  int move(const Vec3& hip_W);
+  Vec3 next_step(const Look& here, const Vec3& u);
+  Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
+  void report(const Vec3& hip_W, RenderOutput& out);
+  double stiffness(const Survey& survey) const;
+
+  const ProxyParameters p_;
+  const Kernels& kernels_;
+  Neighbourhood near_;
+  SurfaceVelocity velocity_;
+  VirtualCoupling coupling_;
+
+  Vec3 proxy_W_ = Vec3::Zero();
+  Vec3 normal_W_ = Vec3::Zero();
+  bool placed_ = false;                  // the proxy starts at the first HIP
+  bool in_contact_ = false;              // until the proxy is free and unhindered again
+  Vec3 contact_proxy_W_ = Vec3::Zero();  // the latest proxy position in contact state
+  double contact_stiffness_N_per_m_ = 0;
+  double frame_captured_s_ = 0, frame_arrived_s_ = 0;
+  int frame_index_ = -1;
+  bool stale_frame_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,101 @@
+#include "core/proxy_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+// A weighted sum of unit vectors shorter than this has no direction: what remains is rounding.
+constexpr double kNoDirection = 1e-10;
+
+// sin(theta)^2 by series, for std::sin may differ in the last bit between machines; exact to 1e-16 below 1
+// rad and monotonic up to 90 degrees.
+double sine_squared(double degrees) {
+  const double a = 2 * degrees * (3.14159265358979323846 / 180), a2 = a * a;  // sin^2 t = (1 - cos 2t) / 2
+  double term = 1, sum = 0;
+  for (int k = 1; k <= 14; ++k) {
+    term *= a2 / ((2 * k - 1) * (2 * k));
+    sum += k % 2 == 1 ? term : -term;
+  }
+  return 0.5 * sum;
+}
+
+// The printed reading of (4.9): among all points, ahead or behind, the root of smallest magnitude, and the
+// smallest step of those.
+double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& u, double radius,
+                         double limit) {
+  double step = limit;
+  for (std::size_t i = 0; i < points.padded_count; ++i) {
+    const Vec3 e = Vec3(points.x[i], points.y[i], points.z[i]) - p_W;
+    const double along = e.dot(u), r = radius + (points.radius ? points.radius[i] : 0);
+    const double rest = r * r - (e - along * u).squaredNorm();
+    if (!(rest >= 0)) continue;
+    const double near = along - std::sqrt(rest), far = along + std::sqrt(rest);
+    step = std::min(step, std::abs(near) <= std::abs(far) ? near : far);
+  }
+  return step;
+}
+
+// (4.11), (4.12): share gamma of the way when closer than r1, else xi r1. The fixed rule of [1] takes small
+// steps.
+double step_length(double distance, const ProxyParameters& p) {
+  if (p.step_rule == StepRule::fixed) return std::min(p.fixed_step_m, distance);
+  return distance < p.r1_m ? p.gamma * distance : p.xi * p.r1_m;
+}
+
+Vec3 along(const Vec3& direction, double length, double norm) {
+  return norm > 0 ? Vec3(direction * (length / norm)) : Vec3::Zero();
+}
+
+}  // namespace
+
+ContactState classify(double nearest_m, const ProxyParameters& p) {
+  if (nearest_m < p.r1_m) return ContactState::entrenched;
+  return nearest_m <= p.r2_m ? ContactState::contact : ContactState::free;
+}
+
+Vec3 unit_normal(const Survey& survey, const Vec3& previous) {
+  const Vec3 sum(survey.normal_sum[0], survey.normal_sum[1], survey.normal_sum[2]);
+  const double length = sum.norm();
+  return length > kNoDirection ? Vec3(sum / length) : previous;
+}
+
+Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p) {
+  const double distance = u.norm();
+  if (!(distance > 0)) return Vec3::Zero();
+  if (p.step_rule == StepRule::fixed) return along(u, step_length(distance, p), distance);
+  const Vec3 direction = u / distance;
+  const double step =
+      p.free_root == FreeRoot::ahead
+          ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
+          : printed_free_root(near.around(p_W).view(), p_W, direction, p.contact_radius_m(), distance);
+  // Unhindered, the step is u itself: P then meets the HIP bit for bit.
+  return step >= distance ? u : Vec3(step * direction);
+}
+
+Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
+                     const Vec3& u, const ProxyParameters& p) {
+  Vec3 out = normal;
+  if (out.isZero(0)) out = along(-u, 1, u.norm());
+  if (out.isZero(0)) return Vec3::Zero();
+  if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
+  return kernels.way_out(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
+}
+
+Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
+  const double height = u.dot(normal);
+  const Vec3 goal = height < 0 ? Vec3(u - height * normal) : u;
+  const double distance = goal.norm();
+  return along(goal, step_length(distance, p), distance);
+}
+
+bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
+  if (state == ContactState::free) return u.isZero(0);
+  if (state == ContactState::entrenched || !(u.dot(normal) < 0)) return false;
+  const Vec3 tangential = u - u.dot(normal) * normal;
+  return tangential.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,46 @@
+// The seam of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
+#pragma once
+
+#include "core/frame.h"
+#include "core/vector.h"
+
+namespace remote_touch {
+
+enum class ContactState { free = 0, contact = 1, entrenched = 2 };
+
+// Why an output is not an ordinary one. The most serious reason wins.
+enum class RenderStatus {
+  ok = 0,
+  stale_frame_dropped = 1,
+  degenerate_normal = 2,
+  no_frame = 3,
+  device_not_finite = 4
+};
+
+// Metres, newtons, world frame. force_N acts on the hand that holds the device.
+struct RenderOutput {
+  Vec3 proxy_W = Vec3::Zero();
+  Vec3 force_N = Vec3::Zero();
+  ContactState state = ContactState::free;  // of proxy_W
+  Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
+  double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)
+  double nearest_m = 0;                 // distance of proxy_W to the nearest region, r_n of (5.5)
+  int steps = 0;                        // proxy steps made in this tick
+  bool converged = false;               // (4.8)
+  int contact_count = 0;                // points within r2
+  int frame_index = -1;                 // newest frame in use, -1 before the first
+  RenderStatus status = RenderStatus::ok;
+};
+
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  // A new cloud. May allocate. A frame captured no later than the newest one is dropped, and the next output
+  // says so.
+  virtual void on_frame(const Frame& frame) = 0;
+  // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: trouble is a
+  // status.
+  virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
+};
+
+}  // namespace remote_touch

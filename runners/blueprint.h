@@ -1,0 +1,53 @@
+// What a catalog entry makes: settings that can be read, listed and checked, and then built into the thing
+// itself.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/kernels.h"
+#include "core/noise.h"
+#include "core/parameter.h"
+#include "core/renderer.h"
+#include "runners/trajectory.h"
+#include "scenarios/scenario.h"
+
+namespace remote_touch {
+
+template <class Seam, class... Arguments>
+class Blueprint {
+ public:
+  virtual ~Blueprint() = default;
+  virtual Parameters settings() = 0;              // pointers into this object
+  virtual std::string contradiction() const = 0;  // empty when the settings fit together
+  virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
+};
+
+// For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
+// conflict(Settings).
+template <class Product, class Settings, class Seam, class... Arguments>
+class BlueprintFor final : public Blueprint<Seam, Arguments...> {
+ public:
+  Parameters settings() override { return parameters(values_); }
+  std::string contradiction() const override { return conflict(values_); }
+  std::unique_ptr<Seam> build(Arguments... arguments) const override {
+    return std::make_unique<Product>(values_, arguments...);
+  }
+
+ private:
+  Settings values_;
+};
+
+template <class... Seam>
+struct CatalogEntry {
+  const char* name;
+  const char* summary;
+  std::unique_ptr<Blueprint<Seam...>> (*make)();
+};
+
+using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
+using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
+using RendererEntry = CatalogEntry<Renderer, double, const Kernels&>;  // the haptic rate in Hz
+
+}  // namespace remote_touch

@@ -1,0 +1,59 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "runners/catalog.h"
+#include "runners/commands.h"
+#include "runners/experiment.h"
+#include "runners/figures.h"
+#include "runners/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+void print(const Parameters& parameters) {
+  for (const Parameter& p : parameters)
+    std::printf("  %-24s %s\n  %-24s default %s; allowed %s\n", p.name.c_str(), p.help.c_str(), "",
+                value_text(p).c_str(), allowed(p).c_str());
+}
+
+// Prints the entry of that name, if the table has it.
+template <class Entry>
+bool describe_entry(std::span<const Entry> entries, const char* kind, const std::string& name) {
+  for (const Entry& entry : entries) {
+    if (name != entry.name) continue;
+    std::printf("%s: a %s: %s\n", entry.name, kind, entry.summary);
+    print(entry.make()->settings());
+    return true;
+  }
+  return false;
+}
+
+bool describe_experiment(const std::string& name) {
+  for (const StoredExperiment& stored : stored_experiments()) {
+    if (name != stored.name) continue;
+    const Experiment experiment = Experiment::load(name);
+    std::printf("%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
+                parse_json(experiment.to_json(), name).dump(2).c_str());
+    std::puts("Parameters of the run itself; those of its parts: remote-touch describe PART");
+    RunSettings settings;
+    print(parameters(settings));
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int command_describe(const std::string& name) {
+  bool found = describe_entry(scenarios(), "scenario", name);
+  found |= describe_entry(renderers(), "renderer", name);
+  found |= describe_entry(trajectories(), "trajectory", name);
+  found |= describe_experiment(name);
+  for (const FigureEntry& entry : figures())
+    if (name == entry.name) found = std::printf("figure %s: %s\n", entry.name, entry.summary) > 0;
+  if (!found) throw InputError(name, "unknown; allowed a name that remote-touch list prints");
+  return kDone;
+}
+
+}  // namespace remote_touch

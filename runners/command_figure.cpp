@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/result_file.h"
+#include "analysis/whole_file.h"
+#include "core/input_error.h"
+#include "runners/commands.h"
+#include "runners/figures.h"
+#include "runners/progress.h"
+#include "runners/provenance.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::vector<const FigureEntry*> chosen_figures(const std::vector<std::string>& names) {
+  std::vector<const FigureEntry*> chosen;
+  for (const std::string& name : names) {
+    const std::size_t before = chosen.size();
+    for (const FigureEntry& entry : figures())
+      if (name == "all" || name == entry.name) chosen.push_back(&entry);
+    if (chosen.size() == before)
+      throw InputError("figure " + name, "unknown; allowed a name that remote-touch list prints");
+  }
+  return chosen;
+}
+
+nlohmann::ordered_json claim_json(const Claim& claim) {
+  const nlohmann::ordered_json none;
+  return {
+      {"figure", claim.figure},
+      {"claim", claim.claim},
+      {"paper", claim.paper},
+      {"measured", std::isfinite(claim.measured) ? nlohmann::ordered_json(claim.measured) : none},
+      {"criterion", claim.criterion},
+      {"unit", claim.unit},
+      {"pass",
+       claim.verdict == Verdict::not_run ? none : nlohmann::ordered_json(claim.verdict == Verdict::pass)}};
+}
+
+void print(const Claim& claim) {
+  const char* verdict = claim.verdict == Verdict::pass   ? "pass"
+                        : claim.verdict == Verdict::fail ? "FAIL"
+                                                         : "not run";
+  std::printf("  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured, claim.unit.c_str(),
+              claim.criterion.c_str());
+}
+
+// A recording that is not there is no failure of the method: the claim says so and the rest goes on.
+Figure make(const FigureEntry& entry, const Laboratory& laboratory) {
+  try {
+    return entry.make(laboratory);
+  } catch (const InputError& error) {
+    Figure figure{entry.name, entry.summary, std::string("Not run: ") + error.what(), {}, {}, {}};
+    figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
+    return figure;
+  }
+}
+
+}  // namespace
+
+int command_figure(const CommandLine& line, const FigureRequest& request) {
+  const auto chosen = chosen_figures(request.names);
+  std::error_code failure;
+  std::filesystem::create_directories(request.folder, failure);
+  if (failure)
+    throw InputError(request.folder, "cannot be made (" + failure.message() + "); allowed a writable folder");
+
+  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  bool all_hold = true;
+  for (const FigureEntry* entry : chosen) {
+    Progress progress(std::string("figure ") + entry->name, line.quiet);
+    const Laboratory laboratory(*line.kernels, line.stop, [&](double share) { progress.update(share); });
+    const Figure figure = make(*entry, laboratory);
+    const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
+    write_figure(file, figure, provenance("", "remote-touch figure " + figure.name, line.kernels->isa));
+    std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
+    for (const Claim& claim : figure.claims) {
+      print(claim);
+      claims.push_back(claim_json(claim));
+      all_hold &= claim.verdict != Verdict::fail;
+    }
+    const std::string text = claims.dump(2) + "\n";  // after each figure: an interruption keeps what is done
+    write_whole_file(std::filesystem::path(request.folder) / "claims.json", text.data(), text.size());
+  }
+  return all_hold ? kDone : kCheckFailed;
+}
+
+}  // namespace remote_touch

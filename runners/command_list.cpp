@@ -1,0 +1,35 @@
+#include <cstdio>
+
+#include "analysis/measures.h"
+#include "runners/catalog.h"
+#include "runners/commands.h"
+#include "runners/experiment.h"
+#include "runners/figures.h"
+
+namespace remote_touch {
+
+namespace {
+void row(const char* name, const std::string& text) {
+  std::printf("  %-18s %s\n", name, text.c_str());
+}
+}  // namespace
+
+int command_list() {
+  std::puts("scenarios");
+  for (const auto& entry : scenarios()) row(entry.name, entry.summary);
+  std::puts("renderers");
+  for (const auto& entry : renderers()) row(entry.name, entry.summary);
+  std::puts("trajectories");
+  for (const auto& entry : trajectories()) row(entry.name, entry.summary);
+  std::puts("experiments");
+  for (const auto& stored : stored_experiments())
+    row(stored.name, Experiment::load(stored.name).settings().title);
+  std::puts("figures");
+  for (const auto& entry : figures()) row(entry.name, entry.summary);
+  std::puts("measures");
+  for (const auto& measure : measures())
+    row(measure.name, std::string(measure.meaning) + ", " + measure.unit);
+  return kDone;
+}
+
+}  // namespace remote_touch

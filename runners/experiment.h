@@ -1,0 +1,56 @@
+// One resolved configuration: scenario, renderer, trajectory, durations, seed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runners/catalog.h"
+
+namespace remote_touch {
+
+// Settings of the run itself.
+struct RunSettings {
+  double duration_s = 0;
+  double haptic_rate_hz = 1000;
+  double frame_latency_s = 0;
+  NoiseKey key;
+  std::string title;
+};
+
+Parameters parameters(RunSettings& s);
+
+class Experiment {
+ public:
+  // From JSON text; label names the source in errors. Overrides are "key=value" and come last. Throws
+  // InputError for anything that cannot be run, so that nothing starts that would fail for its configuration.
+  static Experiment from_json(const std::string& text, const std::string& label,
+                              const std::vector<std::string>& overrides = {});
+  // A name of data/experiments, or a JSON file.
+  static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
+
+  const RunSettings& settings() const { return settings_; }
+  std::string to_json() const;  // complete: every parameter, one line
+
+  std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
+  std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
+  std::unique_ptr<Renderer> build_renderer(const Kernels& kernels) const;
+  // Of the renderer, for analyses that need r_c; throws InputError when there is no such number.
+  double renderer_number(const std::string& name) const;
+
+ private:
+  RunSettings settings_;
+  std::string scenario_name_, renderer_name_, trajectory_name_;
+  decltype(ScenarioEntry{}.make()) scenario_;
+  decltype(RendererEntry{}.make()) renderer_;
+  decltype(TrajectoryEntry{}.make()) trajectory_;
+};
+
+// The experiments that come with the program (data/experiments), by name.
+struct StoredExperiment {
+  const char* name;
+  const char* json;
+};
+std::span<const StoredExperiment> stored_experiments();
+
+}  // namespace remote_touch

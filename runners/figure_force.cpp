@@ -1,0 +1,69 @@
+// Equation (4.15): the force between the updates of a cloud that moves evenly, for the three readings of its
+// sign.
+#include "analysis/measures.h"
+#include "runners/figures.h"
+
+namespace remote_touch {
+
+namespace {
+
+Experiment steady_rise(const std::string& sign) {
+  return Experiment::from_json(R"({
+    "title": "a noise-free plane rises at 0.1 m/s under a HIP that keeps its depth",
+    "scenario": {"name": "moving-lift", "noise_sigma_m": 0, "rise_frames": 60, "acceleration_frames": 0},
+    "renderer": {"name": "proxy"},
+    "trajectory": {"name": "press", "press_at_s": 0.5, "depth_m": 0.03, "per_frame": false},
+    "duration_s": 1.9})",
+                               "eq4.15", {"renderer.velocity_force=" + sign});
+}
+
+// From when the velocity estimate has settled.
+Trace settled(const Trace& trace) {
+  Trace part;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (trace.time_s[i] < 1.0) continue;
+    RenderOutput out;
+    out.proxy_W = trace.proxy(i), out.force_N = trace.force(i), out.frame_index = trace.frame_index[i];
+    part.append(trace.time_s[i], {trace.hip(i)}, out, trace.signed_distance_m[i]);
+  }
+  return part;
+}
+
+Table force_table(const std::string& name, const Trace& trace) {
+  std::vector<double> force;
+  for (std::size_t i = 0; i < trace.length(); ++i) force.push_back(trace.force(i).norm());
+  Table table{name, "force with the term " + name, {}};
+  table.add("time", "s", "simulated time", trace.time_s);
+  table.add("force", "N", "magnitude of the force", force);
+  return table;
+}
+
+}  // namespace
+
+Figure figure_force(const Laboratory& laboratory) {
+  Figure figure{"eq4.15",
+                "Force between updates",
+                "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force is "
+                "constant. The "
+                "velocity term of (4.15) as printed (plus), left out (none), and with the sign that removes "
+                "the jump (minus).",
+                {},
+                {{"Force", "time (s)", "force (N)", false, {}, std::pair(1.0, 1.3), {}}},
+                {}};
+  std::vector<double> jump;
+  for (const char* sign : {"plus", "none", "minus"}) {
+    const Trace trace = settled(laboratory.run(steady_rise(sign)));
+    jump.push_back(largest_force_jump_N(trace));
+    figure.tables.push_back(force_table(sign, trace));
+    figure.panels[0].curves.push_back({sign, "time", "force", CurveStyle::line, sign});
+  }
+  figure.claims = {
+      claim_at_most("eq4.15", "force jump per frame at 0.1 m/s, working sign (minus)", "smooth", jump[2],
+                    1e-6, "N"),
+      claim_between("eq4.15", "the same, printed sign (plus)", "-", jump[0], 3.8, 4.0, "N"),
+      claim_between("eq4.15", "the same, without the term", "-", jump[1], 1.9, 2.0, "N"),
+  };
+  return figure;
+}
+
+}  // namespace remote_touch

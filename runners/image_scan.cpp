@@ -1,0 +1,178 @@
+#include "runners/image_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/input_error.h"
+
+namespace remote_touch {
+
+Parameters parameters(ImageScan::Settings& s) {
+  return {
+      {"row", &s.row, -1, 4095, "image row; -1: the middle of the nearest large object"},
+      {"first_column", &s.first_column, -1, 4095,
+       "first column; -1: as far left as the depth stays within span_m"},
+      {"last_column", &s.last_column, -1, 4095,
+       "last column; -1: as far right as the depth stays within span_m"},
+      {"depth_m", &s.depth_m, -1, 1, "how far behind the seen surface the HIP stays, along the viewing ray"},
+      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
+      {"clearance_m", &s.clearance_m, 0, 10, "how far in front of the surface the motion begins and ends"},
+      {"span_m", &s.span_m, 1e-3, 100,
+       "the scan ends where the depth differs more than this from the object's"},
+      {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
+       "a depth difference larger than this within margin_m is an edge"},
+      {"margin_m", &s.margin_m, 1e-3, 1, "the HIP stays this far from holes and edges"},
+  };
+}
+
+std::string conflict(const ImageScan::Settings& s) {
+  const bool reversed = s.first_column >= 0 && s.last_column >= 0 && s.first_column >= s.last_column;
+  return reversed ? "first_column = " + std::to_string(s.first_column) + ": allowed below last_column" : "";
+}
+
+namespace {
+
+// Depth along the optical axis of every pixel; NaN where nothing was measured.
+DepthImage depth_of(const PointCloud& cloud) {
+  const CameraIntrinsics& camera = cloud.image->camera;
+  const RigidTransform X_CW = cloud.image->X_WC.inverse();
+  DepthImage depth{camera.width, camera.height, std::vector<double>(cloud.size())};
+  for (std::size_t i = 0; i < cloud.size(); ++i) depth.z_m[i] = (X_CW * cloud.point(i)).z();
+  return depth;
+}
+
+struct Object {
+  double nearest_m = 0;
+  int row = 0, column = 0;  // the middle of its pixels
+};
+
+// The nearest slab of depth, 10 cm thick, that fills 2 % of the image; its median pixel.
+Object nearest_large_object(const DepthImage& image) {
+  constexpr double kBin_m = 0.01;
+  constexpr int kBins = 1000, kSlabBins = 10;
+  std::vector<int> histogram(kBins + kSlabBins, 0);
+  for (const double z : image.z_m)
+    if (z >= 0 && z < kBin_m * kBins) ++histogram[static_cast<std::size_t>(z / kBin_m)];
+  const double enough = 0.02 * image.width * image.height;
+  std::size_t slab = 0;
+  const auto pixels_in = [&](std::size_t first) {
+    int sum = 0;
+    for (std::size_t bin = first; bin < first + kSlabBins; ++bin) sum += histogram[bin];
+    return sum;
+  };
+  while (slab + 1 < kBins && pixels_in(slab) < enough) ++slab;
+
+  Object object;
+  object.nearest_m = static_cast<double>(slab) * kBin_m;
+  std::vector<int> rows, columns;
+  for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u) {
+      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
+      if (z >= object.nearest_m && z < object.nearest_m + kBin_m * kSlabBins)
+        rows.push_back(v), columns.push_back(u);
+    }
+  if (rows.empty()) return object;
+  std::nth_element(columns.begin(), columns.begin() + columns.size() / 2, columns.end());
+  object.row = rows[rows.size() / 2];  // collected in rising order
+  object.column = columns[columns.size() / 2];
+  return object;
+}
+
+// Median depth of the square around a pixel that is as wide as the margin; NaN when the square has a hole, an
+// edge or the image's border in it.
+double supported_depth(const DepthImage& image, int u, int v, double focal, const ImageScan::Settings& s) {
+  const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
+  if (!std::isfinite(z)) return std::nan("");
+  const int half = std::max(1, static_cast<int>(focal * s.margin_m / z));
+  if (u <= half || v <= half || u + half >= image.width || v + half >= image.height) return std::nan("");
+  std::vector<double> seen;
+  for (int y = v - half; y <= v + half; ++y) {
+    for (int x = u - half; x <= u + half; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
+      // NaN fails both comparisons, so a hole ends the search too.
+      const bool joined = std::abs(image.z_m[i] - image.z_m[i - 1]) <= s.edge_jump_m &&
+                          std::abs(image.z_m[i] - image.z_m[i - image.width]) <= s.edge_jump_m;
+      if (!joined) return std::nan("");
+      seen.push_back(image.z_m[i]);
+    }
+  }
+  std::nth_element(seen.begin(), seen.begin() + seen.size() / 2, seen.end());
+  return seen[seen.size() / 2];
+}
+
+// The column farthest from the middle, in one direction, whose depth is within the span of the object's.
+int last_within_span(const std::vector<double>& depth, int from, int direction, double reference,
+                     double span_m) {
+  int last = from;
+  for (int u = from; u >= 0 && u < static_cast<int>(depth.size()); u += direction) {
+    const double z = depth[static_cast<std::size_t>(u)];
+    if (std::isfinite(z) && std::abs(z - reference) <= span_m) last = u;
+  }
+  return last;
+}
+
+// Runs of columns with support, at least as long as the margin.
+std::vector<ScanPatch> supported_patches(const std::vector<double>& depth, int first, int last, double focal,
+                                         double margin_m) {
+  std::vector<ScanPatch> patches;
+  for (int u = first; u <= last; ++u) {
+    if (std::isnan(depth[static_cast<std::size_t>(u)])) continue;
+    ScanPatch patch{u, u};
+    while (patch.last_column < last && std::isfinite(depth[static_cast<std::size_t>(patch.last_column + 1)]))
+      ++patch.last_column;
+    const double pixels = focal * margin_m / depth[static_cast<std::size_t>(u)];
+    if (patch.last_column - patch.first_column >= pixels) patches.push_back(patch);
+    u = patch.last_column;
+  }
+  return patches;
+}
+
+}  // namespace
+
+ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::Zero()) {
+  const PointCloud cloud = scenario.cloud(0);
+  if (!cloud.image)
+    throw InputError("trajectory.name = image-scan",
+                     "the frames are not organised images; allowed with a camera");
+  const CameraIntrinsics& camera = cloud.image->camera;
+  const DepthImage image = depth_of(cloud);
+  const Object object = nearest_large_object(image);
+  row_ = s.row >= 0 ? s.row : object.row;
+  if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
+    throw InputError(
+        "trajectory.row, first_column, last_column",
+        "allowed below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
+
+  std::vector<double> depth;
+  for (int u = 0; u < camera.width; ++u) depth.push_back(supported_depth(image, u, row_, camera.fx, s));
+  const auto automatic = [&](int direction) {
+    return last_within_span(depth, object.column, direction, object.nearest_m, s.span_m);
+  };
+  patches_ = supported_patches(depth, s.first_column >= 0 ? s.first_column : automatic(-1),
+                               s.last_column >= 0 ? s.last_column : automatic(+1), camera.fx, s.margin_m);
+  if (patches_.empty())
+    throw InputError("trajectory.row = " + std::to_string(row_),
+                     "nothing there was measured without holes; allowed another row or a smaller margin_m");
+
+  const auto place = [&](int u, double offset) {
+    return Vec3(cloud.image->X_WC * unproject(camera, u, row_, depth[static_cast<std::size_t>(u)] + offset));
+  };
+  path_ = PolylinePath(place(patches_.front().first_column, -s.clearance_m));
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const ScanPatch& patch = patches_[i];
+    for (int u = patch.first_column; u <= patch.last_column; ++u)
+      path_.go_to(place(u, s.depth_m), s.speed_m_per_s);
+    path_.go_to(place(patch.last_column, -s.clearance_m), s.speed_m_per_s);
+    if (i + 1 == patches_.size()) break;
+    // Across in front of both patches: towards the camera first, where the next one is nearer.
+    const int from = patch.last_column, to = patches_[i + 1].first_column;
+    const double step = depth[static_cast<std::size_t>(to)] - depth[static_cast<std::size_t>(from)];
+    path_.go_to(place(from, std::min(step, 0.0) - s.clearance_m), s.speed_m_per_s);
+    path_.go_to(place(to, std::min(-step, 0.0) - s.clearance_m), s.speed_m_per_s);
+    path_.go_to(place(to, -s.clearance_m), s.speed_m_per_s);
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,96 @@
+// remote-touch: the command line.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+
+#include "core/input_error.h"
+#include "runners/commands.h"
+#include "runners/provenance.h"
+#include "runners/simulation.h"
+
+namespace {
+
+using namespace remote_touch;
+
+std::atomic<bool> stop_requested{false};
+
+void request_stop(int) {
+  stop_requested = true;
+}
+
+// REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
+const Kernels& chosen_kernels() {
+  const char* wanted = std::getenv("REMOTE_TOUCH_ISA");
+  const Isa best = best_isa();
+  if (wanted == nullptr) return kernels_for(best);
+  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
+    if (isa <= best && kernels_for(isa).isa == std::string(wanted)) return kernels_for(isa);
+  throw InputError(std::string("REMOTE_TOUCH_ISA = ") + wanted,
+                   std::string("allowed x86-64 up to ") + kernels_for(best).isa + " on this machine");
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "remote-touch " + version());
+  app.fallthrough();
+  CommandLine line;
+  line.stop = &stop_requested;
+  app.add_flag("-q,--quiet", line.quiet, "no progress");
+
+  app.add_subcommand("list", "scenarios, renderers, trajectories, experiments, figures, measures");
+  std::string name;
+  auto* describe = app.add_subcommand("describe", "every parameter: range, default, meaning");
+  describe->add_option("name", name, "a scenario, renderer, trajectory, experiment or figure")->required();
+
+  RunRequest run;
+  auto* run_command = app.add_subcommand("run", "run one experiment and store its trace");
+  run_command->add_option("experiment", run.experiment, "a name of the list, or a JSON file")->required();
+  run_command->add_option("--set", run.overrides, "parameter=value, for example renderer.r1_m=0.004")
+      ->allow_extra_args(false);
+  run_command->add_option("-o,--output", run.output, "the HDF5 file to write")->required();
+  run_command->add_flag("--timing", run.timing, "also store the wall clock of each tick");
+
+  FigureRequest figure;
+  auto* figure_command = app.add_subcommand("figure", "reproduce figures: HDF5 and claims.json");
+  figure_command->add_option("names", figure.names, "figures of the list, or all")->required();
+  figure_command->add_option("-o,--output", figure.folder, "the folder to write into")->required();
+
+  std::string file;
+  app.add_subcommand("inspect", "what is in a result file")
+      ->add_option("file", file, "an HDF5 file")
+      ->required();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  line.kernels = &chosen_kernels();
+  const std::string chosen = app.get_subcommands().front()->get_name();
+  if (chosen == "list") return command_list();
+  if (chosen == "describe") return command_describe(name);
+  if (chosen == "run") return command_run(line, run);
+  if (chosen == "figure") return command_figure(line, figure);
+  return command_inspect(file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  try {
+    return run_command_line(argc, argv);
+  } catch (const Interrupted&) {
+    std::fputs("remote-touch: interrupted; nothing half-written was left behind\n", stderr);
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::fputs("remote-touch: out of memory\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "remote-touch: %s\n", error.what());
+  }
+  return kBadInput;
+}

@@ -1,0 +1,38 @@
+#include "runners/press.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/input_error.h"
+
+namespace remote_touch {
+
+Parameters parameters(Press::Settings& s) {
+  return {
+      {"start_m", &s.start_m, -100, 100, "where the device waits"},
+      {"press_at_s", &s.press_at_s, 0, 1e6, "when it begins to press"},
+      {"depth_m", &s.depth_m, -1, 1, "how far below the true surface it then stays"},
+      {"per_frame", &s.per_frame, 0, 1,
+       "follow the surface as the newest frame has it, or as it moves between frames"},
+  };
+}
+
+Press::Press(const Settings& settings, const Scenario& scenario) : settings_(settings), scenario_(scenario) {
+  if (!std::isfinite(scenario.surface_height(settings.start_m.x(), settings.start_m.z(), 0)))
+    throw InputError("trajectory.name = press",
+                     "the scenario has no surface height; allowed with a height field");
+}
+
+DeviceState Press::at(double time_s) const {
+  if (time_s < settings_.press_at_s) return {settings_.start_m};
+  double surface_time_s = time_s;
+  if (settings_.per_frame) {
+    // The newest frame captured by now; the half-microsecond lets a tick at the frame's own time count.
+    const double newest = std::floor((time_s + 5e-7) * scenario_.frame_rate_hz());
+    surface_time_s = scenario_.captured_s(static_cast<int>(std::min(newest, scenario_.frame_count() - 1.0)));
+  }
+  const double y = scenario_.surface_height(settings_.start_m.x(), settings_.start_m.z(), surface_time_s);
+  return {Vec3(settings_.start_m.x(), y - settings_.depth_m, settings_.start_m.z())};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,23 @@
+// Progress on stderr, apart from results on stdout.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace remote_touch {
+
+// A line that is overwritten on a terminal, and a line every ten seconds elsewhere. Not for use from several
+// threads at once.
+class Progress {
+ public:
+  Progress(std::string what, bool quiet);
+  ~Progress();
+  void update(double share);  // 0 to 1
+
+ private:
+  std::string what_;
+  bool quiet_, terminal_, shown_ = false;
+  std::chrono::steady_clock::time_point start_, last_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,22 @@
+#include "runners/provenance.h"
+
+#include "build_info.h"  // written by the build: version, commit, compiler, flags
+
+namespace remote_touch {
+
+std::string version() {
+  return REMOTE_TOUCH_VERSION;
+}
+
+TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa) {
+  return {{"config", config},
+          {"command", command},
+          {"version", REMOTE_TOUCH_VERSION},
+          {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
+          {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
+          {"compiler", REMOTE_TOUCH_COMPILER},
+          {"flags", REMOTE_TOUCH_FLAGS},
+          {"isa", isa}};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// The seam of every scripted device motion.
+#pragma once
+
+#include "core/frame.h"
+
+namespace remote_touch {
+
+// A pure function of time.
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+  virtual DeviceState at(double time_s) const = 0;
+  // When the motion ends; the device rests afterwards. 0 where there is no natural end.
+  virtual double duration_s() const = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+// The header of a PCD file (Point Cloud Library, version 0.7): text lines "KEYWORD value...", # comments, up
+// to and including the line DATA; behind it lie the points.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace remote_touch {
+
+// The part of a PCD file that is still to be read, and the number of the line that was taken last.
+struct PcdText {
+  std::string_view text;
+  std::size_t line = 0;
+
+  // The words of the next line; the line is removed from text.
+  std::vector<std::string_view> take_line();
+};
+
+// One field of the point layout: count values of size bytes each.
+struct PcdField {
+  std::string_view name;
+  char type = 'F';  // F: floating point, I: signed, U: unsigned
+  std::size_t size = 0, count = 0;
+  std::size_t first_byte = 0, first_value = 0;  // of a point: where this field starts
+
+  // The layout as the header spells it, for messages.
+  std::string text() const;
+};
+
+// What DATA is decoded with. All lengths are checked: points = width * height, and none is 0.
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::size_t width = 0, height = 0, points = 0;
+  std::size_t point_bytes = 0, point_values = 0;
+  std::string_view encoding;       // ascii, binary or binary_compressed
+  PcdField x, y, z;                // TYPE F, SIZE 4 or 8, COUNT 1
+  std::optional<PcdField> colour;  // rgb or rgba: SIZE 4, COUNT 1
+};
+
+// Takes the header off rest, which starts behind the DATA line then. The header's names are views into the
+// text. Throws InputError about file (with ":line" for a line that is no entry) if an entry is missing or not
+// allowed.
+PcdHeader read_pcd_header(const std::string& file, PcdText& rest);
+
+// A word of the file for a message: quoted, short and printable, even where the file is not text at all.
+std::string shown(std::string_view word);
+
+}  // namespace remote_touch

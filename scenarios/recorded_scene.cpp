@@ -1,0 +1,155 @@
+#include "scenarios/recorded_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include "core/input_error.h"
+
+namespace remote_touch {
+
+Parameters parameters(RecordedScene::Settings& s) {
+  return {
+      {"path", &s.path, 0, 0, "recording folder, TUM folder, folder of PCD files, or one PCD file"},
+      {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
+      {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
+      {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0, "what follows the last frame"},
+      {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
+      {"farthest_m", &s.farthest_m, 0.01, 100, "depth beyond which a measurement is discarded"},
+      {"truth_radius_m", &s.truth_radius_m, 1e-4, 1, "size of the patch that stands for the true surface"},
+  };
+}
+
+std::string conflict(const RecordedScene::Settings& s) {
+  if (s.path.empty()) return "path = \"\": allowed a recording folder or a PCD file";
+  if (s.last_frame >= 0 && s.last_frame < s.first_frame)
+    return "last_frame = " + std::to_string(s.last_frame) +
+           ": allowed first_frame = " + std::to_string(s.first_frame) + " or more, or -1";
+  return {};
+}
+
+std::string find_recording(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (fs::exists(path)) return path;
+  const char* data = std::getenv("REMOTE_TOUCH_DATA");
+  if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
+    return (fs::path(data) / path).string();
+  throw InputError(
+      path, std::string("no such recording; allowed a folder or PCD file here or below REMOTE_TOUCH_DATA") +
+                (data != nullptr ? std::string(" = ") + data : " (not set)"));
+}
+
+RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
+    : settings_(settings), recording_(index_recording(find_recording(settings.path))) {
+  const int available = static_cast<int>(recording_.frames.size());
+  const int last = settings.last_frame < 0 ? available - 1 : settings.last_frame;
+  if (settings.first_frame >= available || last >= available)
+    throw InputError(settings.path, "first_frame = " + std::to_string(settings.first_frame) +
+                                        ", last_frame = " + std::to_string(settings.last_frame) +
+                                        ": allowed 0 to " + std::to_string(available - 1));
+  first_ = settings.first_frame;
+  count_ = last - first_ + 1;
+  rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
+}
+
+int RecordedScene::frame_count() const {
+  return settings_.playback == Playback::hold || count_ == 1 ? count_ : std::numeric_limits<int>::max();
+}
+
+// The recorded time stamps, when the frames run once and in order at the recorded rate.
+double RecordedScene::captured_s(int frame) const {
+  if (settings_.playback != Playback::hold || settings_.frame_rate_hz > 0) return frame / rate_hz_;
+  const auto& frames = recording_.frames;
+  return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
+}
+
+// Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...
+std::size_t RecordedScene::source_frame(int frame) const {
+  int place = 0;
+  switch (settings_.playback) {
+    case Playback::hold:
+      place = std::min(frame, count_ - 1);
+      break;
+    case Playback::loop:
+      place = frame % count_;
+      break;
+    case Playback::ping_pong: {
+      const int cycle = std::max(1, 2 * count_ - 2);
+      place = frame % cycle;
+      if (place >= count_) place = cycle - place;
+      break;
+    }
+  }
+  return static_cast<std::size_t>(first_ + place);
+}
+
+PointCloud RecordedScene::cloud(int frame) const {
+  return read_frame(recording_, source_frame(frame), settings_.farthest_m);
+}
+
+const CloudSearch* RecordedScene::measured(std::size_t source) const {
+  if (!kept_ || kept_source_ != source) {
+    kept_ = make_search(read_frame(recording_, source, settings_.farthest_m));
+    kept_source_ = source;
+  }
+  return dynamic_cast<const CloudSearch*>(kept_.get());
+}
+
+std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
+  measured(source_frame(frame));
+  return kept_;
+}
+
+namespace {
+
+// The plane through the pixels of a window: mean of all points, and a normal from the differences between
+// opposite halves. Unusable when a pixel is missing or the depths differ by more than the window is wide: an
+// edge.
+struct Patch {
+  Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
+  bool usable = false;
+};
+
+Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v, int half,
+                   double widest_m) {
+  Patch patch;
+  if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
+  Vec3 across = Vec3::Zero(), down = Vec3::Zero();
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
+      const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
+      if (!p.allFinite()) return patch;
+      patch.mean += p, across += x * p, down += y * p;
+      nearest = std::min(nearest, p.z()), farthest = std::max(farthest, p.z());
+    }
+  }
+  patch.mean /= (2 * half + 1) * (2 * half + 1);
+  patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
+  patch.usable = farthest - nearest <= widest_m && patch.normal.allFinite();
+  return patch;
+}
+
+}  // namespace
+
+double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (!p_W.allFinite() || !(p_W.z() > 0)) return unknown;
+  int frame = std::min(static_cast<int>(std::max(0.0, time_s) * rate_hz_ + 1e-6), frame_count() - 1);
+  while (frame > 0 && captured_s(frame) > time_s) --frame;
+  while (frame + 1 < frame_count() && captured_s(frame + 1) <= time_s) ++frame;
+  const PointCloud& cloud = measured(source_frame(frame))->cloud();
+  if (!cloud.image) return unknown;
+  const CameraIntrinsics& camera = cloud.image->camera;
+  const double u = std::floor(camera.fx * p_W.x() / p_W.z() + camera.cx + 0.5);
+  const double v = std::floor(camera.fy * p_W.y() / p_W.z() + camera.cy + 0.5);
+  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
+  const int half = std::max(1, static_cast<int>(camera.fx * settings_.truth_radius_m / p_W.z()));
+  const Patch patch = patch_around(cloud, camera, static_cast<int>(u), static_cast<int>(v), half,
+                                   4 * settings_.truth_radius_m);
+  return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,59 @@
+// A recorded sequence of depth images or organised clouds, streamed at the rate it was recorded.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/parameter.h"
+#include "scenarios/recording.h"
+#include "scenarios/scenario.h"
+
+namespace remote_touch {
+
+// The world frame is the camera's: x right, y down, z forward.
+class RecordedScene final : public Scenario {
+ public:
+  enum class Playback { hold, loop, ping_pong };
+  struct Settings {
+    std::string path;
+    int first_frame = 0;
+    int last_frame = -1;
+    Playback playback = Playback::hold;
+    double frame_rate_hz = 0;
+    double farthest_m = 3;
+    double truth_radius_m = 0.006;
+  };
+
+  // Throws InputError when the recording cannot be read.
+  RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return rate_hz_; }
+  int frame_count() const override;
+  double captured_s(int frame) const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // There is no truth but the measurement: the distance to a plane through the pixels around p's, within
+  // truth_radius_m, of the newest frame; positive towards the camera. NaN at holes and depth edges.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+
+ private:
+  std::size_t source_frame(int frame) const;
+  const CloudSearch* measured(std::size_t source) const;
+
+  const Settings settings_;
+  RecordingIndex recording_;
+  int first_ = 0, count_ = 0;
+  double rate_hz_ = 0;
+  // The frame read last, kept because renderer and truth ask for it in turn.
+  mutable std::size_t kept_source_ = 0;
+  mutable std::shared_ptr<const NeighbourSearch> kept_;
+};
+
+Parameters parameters(RecordedScene::Settings& s);
+std::string conflict(const RecordedScene::Settings& s);
+
+// Where a recording is looked for: the path itself, then below the folder that the environment variable
+// REMOTE_TOUCH_DATA names. Throws InputError when it is in neither place.
+std::string find_recording(const std::string& path);
+
+}  // namespace remote_touch

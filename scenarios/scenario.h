@@ -1,0 +1,41 @@
+// The seam of every scenario: a stream of point cloud frames and what is true about the scene.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "core/kernels.h"
+#include "core/neighbour_search.h"
+#include "core/noise.h"
+#include "core/point_cloud.h"
+#include "core/vector.h"
+
+namespace remote_touch {
+
+// A pure function of its configuration, the noise key and the frame number: asked twice, it answers the same.
+// Positions are in the world frame, metres; y is up in synthetic scenes, recordings keep the camera's frame.
+class Scenario {
+ public:
+  virtual ~Scenario() = default;
+
+  virtual double frame_rate_hz() const = 0;
+  // Frames 0 .. frame_count() - 1 exist; a scene that never changes has one and goes on with it.
+  virtual int frame_count() const = 0;
+  virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
+
+  // What a renderer touches. The noise of a point may be made when it is asked for.
+  virtual std::shared_ptr<const NeighbourSearch> points(int frame) const = 0;
+  // The same frame with every point made: for drawing, for planning a path and as the oracle of points().
+  virtual PointCloud cloud(int frame) const = 0;
+
+  // Ground truth at a time: distance to the true surface, positive on the side that the sensor sees; NaN
+  // where the truth is not known.
+  virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
+  // Height (y) of the true surface over (x, z); NaN where the scene is not a height field.
+  virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,23 @@
+# Writes OUTPUT, a header that says from what the program was built; untouched when nothing changed.
+execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+set(dirty "unknown")
+if(failed)
+  set(commit "unknown")
+else()
+  execute_process(COMMAND git status --porcelain WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE changes ERROR_QUIET)
+  if(changes)
+    set(dirty "yes")
+  else()
+    set(dirty "no")
+  endif()
+endif()
+string(REGEX REPLACE " +" " " FLAGS "${FLAGS}")
+string(STRIP "${FLAGS}" FLAGS)
+file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT
+"#define REMOTE_TOUCH_VERSION \"@VERSION@\"
+#define REMOTE_TOUCH_GIT_COMMIT \"@commit@\"
+#define REMOTE_TOUCH_GIT_DIRTY \"@dirty@\"
+#define REMOTE_TOUCH_COMPILER \"@COMPILER@\"
+#define REMOTE_TOUCH_FLAGS \"@FLAGS@\"
+")
