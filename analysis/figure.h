@@ -21,8 +21,9 @@ struct Curve {
 struct Panel {
   std::string title, x_label, y_label;
   bool equal_aspect = false;
-  std::vector<Curve> curves;
-  std::optional<std::pair<double, double>> x_range, y_range;
+  std::vector<Curve> curves = {};
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};
+  std::optional<std::pair<double, double>> place = {};  // row and column; absent: one below the other
 };
 
 enum class Verdict { pass, fail, not_run };

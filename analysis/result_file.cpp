@@ -55,6 +55,7 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
   hdf5.attribute(path, "equal_aspect", panel.equal_aspect ? 1 : 0);
   hdf5.attribute(path, "x_range", std::vector{x.first, x.second});
   hdf5.attribute(path, "y_range", std::vector{y.first, y.second});
+  if (panel.place) hdf5.attribute(path, "place", std::vector{panel.place->first, panel.place->second});
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];
     const std::string place = path + "/curve" + std::to_string(i);

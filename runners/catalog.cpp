@@ -2,6 +2,7 @@
 
 #include "core/proxy_renderer.h"
 #include "runners/follow_surface.h"
+#include "runners/image_press.h"
 #include "runners/image_scan.h"
 #include "runners/press.h"
 #include "runners/waypoints.h"
@@ -50,6 +51,8 @@ const TrajectoryEntry kTrajectories[] = {
     trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
     trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),
     trajectory<ImageScan>("image-scan", "along an image row, a set depth behind the first frame's surface"),
+    trajectory<ImagePress>("image-press",
+                           "where a pixel looks, a set depth behind the newest frame's surface"),
 };
 
 const RendererEntry kRenderers[] = {

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "analysis/measures.h"
 #include "runners/catalog.h"
 #include "runners/commands.h"
 #include "runners/experiment.h"
@@ -51,7 +52,10 @@ int command_describe(const std::string& name) {
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);
   for (const FigureEntry& entry : figures())
-    if (name == entry.name) found = std::printf("figure %s: %s\n", entry.name, entry.summary) > 0;
+    if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
+  for (const Measure& measure : measures())
+    if (name == measure.name)
+      found = std::printf("%s: a measure: %s, %s\n", measure.name, measure.meaning, measure.unit) > 0;
   if (!found) throw InputError(name, "unknown; allowed a name that remote-touch list prints");
   return kDone;
 }

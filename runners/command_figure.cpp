@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "analysis/result_file.h"
@@ -49,6 +50,24 @@ void print(const Claim& claim) {
               claim.criterion.c_str());
 }
 
+// The claims that an earlier call left in the folder, of figures that are not made now.
+nlohmann::ordered_json other_claims(const std::filesystem::path& file,
+                                    const std::vector<const FigureEntry*>& chosen) {
+  nlohmann::ordered_json kept = nlohmann::ordered_json::array();
+  std::ifstream in(file);
+  const auto earlier =
+      nlohmann::ordered_json::parse(in, nullptr, false);  // absent or damaged: nothing to keep
+  if (!earlier.is_array()) return kept;
+  for (const auto& claim : earlier) {
+    const auto name = claim.is_object() ? claim.find("figure") : claim.end();
+    if (name == claim.end() || !name->is_string()) continue;
+    const std::string figure = *name;
+    const auto is_made = [&](const FigureEntry* entry) { return figure == entry->name; };
+    if (std::none_of(chosen.begin(), chosen.end(), is_made)) kept.push_back(claim);
+  }
+  return kept;
+}
+
 // A recording that is not there is no failure of the method: the claim says so and the rest goes on.
 Figure make(const FigureEntry& entry, const Laboratory& laboratory) {
   try {
@@ -69,14 +88,17 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
   if (failure)
     throw InputError(request.folder, "cannot be made (" + failure.message() + "); allowed a writable folder");
 
-  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  const auto claims_file = std::filesystem::path(request.folder) / "claims.json";
+  nlohmann::ordered_json claims = other_claims(claims_file, chosen);
   bool all_hold = true;
   for (const FigureEntry* entry : chosen) {
     Progress progress(std::string("figure ") + entry->name, line.quiet);
     const Laboratory laboratory(*line.kernels, line.stop, [&](double share) { progress.update(share); });
     const Figure figure = make(*entry, laboratory);
     const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
-    write_figure(file, figure, provenance("", "remote-touch figure " + figure.name, line.kernels->isa));
+    write_figure(
+        file, figure,
+        provenance(laboratory.configurations(), "remote-touch figure " + figure.name, line.kernels->isa));
     std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
     for (const Claim& claim : figure.claims) {
       print(claim);
@@ -84,7 +106,7 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
       all_hold &= claim.verdict != Verdict::fail;
     }
     const std::string text = claims.dump(2) + "\n";  // after each figure: an interruption keeps what is done
-    write_whole_file(std::filesystem::path(request.folder) / "claims.json", text.data(), text.size());
+    write_whole_file(claims_file, text.data(), text.size());
   }
   return all_hold ? kDone : kCheckFailed;
 }

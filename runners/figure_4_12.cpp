@@ -20,7 +20,7 @@ Table heights_per_update(const Trace& trace) {
   Table table{"updates", "height before each update of the cloud", {}};
   table.add("frame", "1", "number of the frame", frame);
   table.add("proxy_y", "m", "height of the proxy's centre", proxy);
-  table.add("plane_y", "m", "height of the true plane", plane);
+  table.add("plane_y", "m", "height of the true plane in the newest frame", plane);
   return table;
 }
 

@@ -51,11 +51,13 @@ Figure figure_force(const Laboratory& laboratory) {
                 {{"Force", "time (s)", "force (N)", false, {}, std::pair(1.0, 1.3), {}}},
                 {}};
   std::vector<double> jump;
-  for (const char* sign : {"plus", "none", "minus"}) {
+  const std::pair<const char*, const char*> readings[] = {
+      {"plus", "plus (as printed)"}, {"none", "no term"}, {"minus", "minus (used)"}};
+  for (const auto& [sign, label] : readings) {
     const Trace trace = settled(laboratory.run(steady_rise(sign)));
     jump.push_back(largest_force_jump_N(trace));
     figure.tables.push_back(force_table(sign, trace));
-    figure.panels[0].curves.push_back({sign, "time", "force", CurveStyle::line, sign});
+    figure.panels[0].curves.push_back({sign, "time", "force", CurveStyle::line, label});
   }
   figure.claims = {
       claim_at_most("eq4.15", "force jump per frame at 0.1 m/s, working sign (minus)", "smooth", jump[2],

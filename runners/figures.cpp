@@ -23,6 +23,7 @@ std::span<const FigureEntry> figures() {
 }
 
 Trace Laboratory::run(const Experiment& experiment) const {
+  configurations_.push_back(experiment.to_json());
   SimulationOptions options;
   options.kernels = &kernels_;
   options.stop = stop_;
@@ -30,11 +31,18 @@ Trace Laboratory::run(const Experiment& experiment) const {
   return simulate(experiment, options);
 }
 
+std::string Laboratory::configurations() const {
+  std::string list;
+  for (const std::string& configuration : configurations_) list += (list.empty() ? "[" : ", ") + configuration;
+  return list.empty() ? "[]" : list + "]";
+}
+
 std::vector<double> Laboratory::measure(const std::vector<Experiment>& experiments,
                                         const std::function<double(const Trace&)>& of) const {
   const int count = static_cast<int>(experiments.size());
   std::vector<double> values(experiments.size());
   std::vector<std::exception_ptr> failures(experiments.size());
+  if (!experiments.empty()) configurations_.push_back(experiments.front().to_json());
   int done = 0;
   // Run i writes slot i; an exception must not leave the loop, it would end the program.
 #pragma omp parallel for schedule(dynamic)

@@ -24,8 +24,11 @@ class Laboratory {
   // after all have ended.
   std::vector<double> measure(const std::vector<Experiment>& experiments,
                               const std::function<double(const Trace&)>& of) const;
+  // The resolved configuration of every run() and of the first experiment of every measure(), as a JSON list.
+  std::string configurations() const;
 
  private:
+  mutable std::vector<std::string> configurations_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
   std::function<void(double)> progress_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/camera.h"
 #include "core/input_error.h"
+#include "runners/seen_surface.h"
 
 namespace remote_touch {
 
@@ -33,74 +33,6 @@ std::string conflict(const ImageScan::Settings& s) {
 }
 
 namespace {
-
-// Depth along the optical axis of every pixel; NaN where nothing was measured.
-DepthImage depth_of(const PointCloud& cloud) {
-  const CameraIntrinsics& camera = cloud.image->camera;
-  const RigidTransform X_CW = cloud.image->X_WC.inverse();
-  DepthImage depth{camera.width, camera.height, std::vector<double>(cloud.size())};
-  for (std::size_t i = 0; i < cloud.size(); ++i) depth.z_m[i] = (X_CW * cloud.point(i)).z();
-  return depth;
-}
-
-struct Object {
-  double nearest_m = 0;
-  int row = 0, column = 0;  // the middle of its pixels
-};
-
-// The nearest slab of depth, 10 cm thick, that fills 2 % of the image; its median pixel.
-Object nearest_large_object(const DepthImage& image) {
-  constexpr double kBin_m = 0.01;
-  constexpr int kBins = 1000, kSlabBins = 10;
-  std::vector<int> histogram(kBins + kSlabBins, 0);
-  for (const double z : image.z_m)
-    if (z >= 0 && z < kBin_m * kBins) ++histogram[static_cast<std::size_t>(z / kBin_m)];
-  const double enough = 0.02 * image.width * image.height;
-  std::size_t slab = 0;
-  const auto pixels_in = [&](std::size_t first) {
-    int sum = 0;
-    for (std::size_t bin = first; bin < first + kSlabBins; ++bin) sum += histogram[bin];
-    return sum;
-  };
-  while (slab + 1 < kBins && pixels_in(slab) < enough) ++slab;
-
-  Object object;
-  object.nearest_m = static_cast<double>(slab) * kBin_m;
-  std::vector<int> rows, columns;
-  for (int v = 0; v < image.height; ++v)
-    for (int u = 0; u < image.width; ++u) {
-      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-      if (z >= object.nearest_m && z < object.nearest_m + kBin_m * kSlabBins)
-        rows.push_back(v), columns.push_back(u);
-    }
-  if (rows.empty()) return object;
-  std::nth_element(columns.begin(), columns.begin() + columns.size() / 2, columns.end());
-  object.row = rows[rows.size() / 2];  // collected in rising order
-  object.column = columns[columns.size() / 2];
-  return object;
-}
-
-// Median depth of the square around a pixel that is as wide as the margin; NaN when the square has a hole, an
-// edge or the image's border in it.
-double supported_depth(const DepthImage& image, int u, int v, double focal, const ImageScan::Settings& s) {
-  const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-  if (!std::isfinite(z)) return std::nan("");
-  const int half = std::max(1, static_cast<int>(focal * s.margin_m / z));
-  if (u <= half || v <= half || u + half >= image.width || v + half >= image.height) return std::nan("");
-  std::vector<double> seen;
-  for (int y = v - half; y <= v + half; ++y) {
-    for (int x = u - half; x <= u + half; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
-      // NaN fails both comparisons, so a hole ends the search too.
-      const bool joined = std::abs(image.z_m[i] - image.z_m[i - 1]) <= s.edge_jump_m &&
-                          std::abs(image.z_m[i] - image.z_m[i - image.width]) <= s.edge_jump_m;
-      if (!joined) return std::nan("");
-      seen.push_back(image.z_m[i]);
-    }
-  }
-  std::nth_element(seen.begin(), seen.begin() + seen.size() / 2, seen.end());
-  return seen[seen.size() / 2];
-}
 
 // The column farthest from the middle, in one direction, whose depth is within the span of the object's.
 int last_within_span(const std::vector<double>& depth, int from, int direction, double reference,
@@ -137,8 +69,8 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
     throw InputError("trajectory.name = image-scan",
                      "the frames are not organised images; allowed with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
-  const DepthImage image = depth_of(cloud);
-  const Object object = nearest_large_object(image);
+  const DepthImage image = depth_image(cloud);
+  const SeenObject object = nearest_large_object(image);
   row_ = s.row >= 0 ? s.row : object.row;
   if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
@@ -146,7 +78,8 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
         "allowed below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
 
   std::vector<double> depth;
-  for (int u = 0; u < camera.width; ++u) depth.push_back(supported_depth(image, u, row_, camera.fx, s));
+  for (int u = 0; u < camera.width; ++u)
+    depth.push_back(supported_depth(image, u, row_, camera.fx, {s.edge_jump_m, s.margin_m}));
   const auto automatic = [&](int direction) {
     return last_within_span(depth, object.column, direction, object.nearest_m, s.span_m);
   };

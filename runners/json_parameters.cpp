@@ -29,6 +29,12 @@ std::string names_text(const Choice& choice) {
   return text;
 }
 
+// Results could not store any other text. A file with other text is no JSON, but --set may bring it.
+bool is_utf8(const Json& text) {
+  const std::string unchanged = text.dump(-1, ' ', false, Json::error_handler_t::ignore);
+  return unchanged == text.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 // Sets one parameter from one JSON value. Every overload returns false where the value does not fit.
 struct Reader {
   const Json& json;
@@ -59,7 +65,7 @@ struct Reader {
     return true;
   }
   bool operator()(std::string* out) const {
-    if (!json.is_string()) return false;
+    if (!json.is_string() || !is_utf8(json)) return false;
     *out = json.get<std::string>();
     return true;
   }
@@ -112,7 +118,7 @@ struct Allowed {
   std::string operator()(const int*) const { return "whole numbers " + range_text(p); }
   std::string operator()(const std::uint64_t*) const { return "whole numbers " + range_text(p); }
   std::string operator()(const bool*) const { return "true, false"; }
-  std::string operator()(const std::string*) const { return "text"; }
+  std::string operator()(const std::string*) const { return "UTF-8 text"; }
   std::string operator()(const Vec3*) const { return "three numbers, each " + range_text(p); }
   std::string operator()(const Choice& choice) const { return names_text(choice); }
   std::string operator()(const Rows& rows) const {
@@ -122,7 +128,8 @@ struct Allowed {
   }
 };
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
+// Edits from a to the nearest beginning of b, so that a forgotten unit costs nothing; then edits to all of b.
+std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0u);
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -133,7 +140,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
       row[j] = std::min({row[j] + 1, row[j - 1] + 1, swapped});
     }
   }
-  return row.back();
+  return {*std::min_element(row.begin(), row.end()), row.back()};
 }
 
 [[noreturn]] void refuse_key(const std::string& key, const Parameters& parameters,
@@ -144,6 +151,23 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   throw InputError(prefix + key, "unknown; " + (nearest == parameters.end()
                                                     ? std::string("nothing is allowed here")
                                                     : "the nearest allowed is " + prefix + nearest->name));
+}
+
+// As JSON, for a message: shortened, and safe to print whatever the value holds.
+std::string shown(const Json& value) {
+  constexpr std::size_t kLongest = 160;
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kLongest) text.replace(kLongest, std::string::npos, "...");
+  return text;
+}
+
+// Throws Json::exception, or InputError for a value nested so deep that printing it would exhaust the stack.
+Json parse_shallow(const std::string& text, const std::string& label) {
+  const auto refuse_deep = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > 64) throw InputError(label, "nested too deep; allowed 64 levels");
+    return true;
+  };
+  return Json::parse(text, refuse_deep);
 }
 
 }  // namespace
@@ -165,7 +189,7 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });
     if (found == parameters.end()) refuse_key(key, parameters, prefix);
     if (!std::visit(Reader{value, *found}, found->value))
-      throw InputError(prefix + key + " = " + value.dump(), "allowed " + allowed(*found));
+      throw InputError(prefix + key + " = " + shown(value), "allowed " + allowed(*found));
   }
 }
 
@@ -175,7 +199,7 @@ void write_parameters(const Parameters& parameters, Json& object) {
 
 Json parse_json(const std::string& text, const std::string& label) {
   try {
-    return Json::parse(text);
+    return parse_shallow(text, label);
   } catch (const Json::exception& error) {
     // "[json.exception...] parse error at line 3, column 4: ..." without the library's own prefix
     std::string what = error.what();
@@ -190,8 +214,12 @@ void apply_override(Json& configuration, const std::string& assignment) {
   if (equals == std::string::npos || equals == 0)
     throw InputError("--set " + assignment, "allowed key=value, for example renderer.r1_m=0.004");
   const std::string text = assignment.substr(equals + 1);
-  Json value = Json::parse(text, nullptr, false);
-  if (value.is_discarded()) value = text;
+  Json value;
+  try {
+    value = parse_shallow(text, "--set " + assignment.substr(0, equals));
+  } catch (const Json::exception&) {
+    value = text;
+  }
 
   Json* place = &configuration;
   std::stringstream path(assignment.substr(0, equals));

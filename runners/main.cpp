@@ -1,5 +1,6 @@
 // remote-touch: the command line.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -29,6 +30,17 @@ const Kernels& chosen_kernels() {
     if (isa <= best && kernels_for(isa).isa == std::string(wanted)) return kernels_for(isa);
   throw InputError(std::string("REMOTE_TOUCH_ISA = ") + wanted,
                    std::string("allowed x86-64 up to ") + kernels_for(best).isa + " on this machine");
+}
+
+// An unknown command is named, which CLI11 leaves to guess.
+InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining();
+  if (!app.get_subcommands().empty() || left.empty())
+    return InputError(error.what(), "see remote-touch --help");
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return InputError(left.front(), "unknown; allowed " + known);
 }
 
 int run_command_line(int argc, char** argv) {
@@ -66,7 +78,8 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw usage_error(app, error);
   }
   line.kernels = &chosen_kernels();
   const std::string chosen = app.get_subcommands().front()->get_name();
@@ -77,20 +90,29 @@ int run_command_line(int argc, char** argv) {
   return command_inspect(file);
 }
 
+// One line, whatever the user's names contain.
+void complain(std::string problem) {
+  std::replace(problem.begin(), problem.end(), '\n', ' ');
+  std::fprintf(stderr, "remote-touch: %s\n", problem.c_str());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   try {
-    return run_command_line(argc, argv);
+    const int code = run_command_line(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw InputError("standard output", "cannot be written; allowed a place with room");
+    return code;
   } catch (const Interrupted&) {
-    std::fputs("remote-touch: interrupted; nothing half-written was left behind\n", stderr);
+    complain("interrupted; nothing half-written was left behind");
     return kInterrupted;
   } catch (const std::bad_alloc&) {
-    std::fputs("remote-touch: out of memory\n", stderr);
+    complain("out of memory");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "remote-touch: %s\n", error.what());
+    complain(error.what());
   }
   return kBadInput;
 }

@@ -29,11 +29,13 @@ class MovingLift final : public Scenario {
   int frame_count() const override { return settings_.rise_frames + settings_.acceleration_frames + 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Of the plane, which moves evenly from one frame's height to the next and rests after the last.
-  double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - height(time_s); }
+  // Over the plane of the newest frame: pop-through is judged against what the camera has seen.
+  double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - frame_height(time_s); }
+  // Of the plane as it moves evenly from one frame's height to the next; it rests after the last.
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 
  private:
+  double frame_height(double time_s) const;
   double height(double time_s) const;
 
   const Settings settings_;

@@ -42,7 +42,7 @@ nlohmann::json parse_camera_file(const fs::path& file) {
       "width", "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered"};
   std::ifstream stream(file);
   try {
-    const nlohmann::json json = nlohmann::json::parse(stream);
+    nlohmann::json json = nlohmann::json::parse(stream);
     if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": allowed object");
     for (const auto& [key, value] : json.items()) {
       if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;

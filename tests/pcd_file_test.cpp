@@ -23,7 +23,7 @@ class PcdFile : public ::testing::Test {
 
   // The message of the refusal, which must name the file.
   std::string error(const std::string& bytes) {
-    const std::string text = refusal([&] { read(bytes); });
+    std::string text = refusal([&] { read(bytes); });
     EXPECT_EQ(text.rfind((folder_ / "cloud.pcd").string() + ":", 0), 0u) << text;
     return text;
   }
@@ -123,9 +123,10 @@ TEST_F(PcdFile, FitsTheCameraOfAnOrganisedCloud) {
   EXPECT_LT(image.pixel_slack, 1e-4);
   for (int i = 0; i < 16 * 12; ++i) {
     const Vec3 p = result.cloud.point(i);
+    const int u = i % 16, v = i / 16;
     if (std::isnan(p.z())) continue;
-    EXPECT_LE(std::abs(image.camera.fx * p.x() / p.z() + image.camera.cx - i % 16), image.pixel_slack) << i;
-    EXPECT_LE(std::abs(image.camera.fy * p.y() / p.z() + image.camera.cy - i / 16), image.pixel_slack) << i;
+    EXPECT_LE(std::abs(image.camera.fx * p.x() / p.z() + image.camera.cx - u), image.pixel_slack) << i;
+    EXPECT_LE(std::abs(image.camera.fy * p.y() / p.z() + image.camera.cy - v), image.pixel_slack) << i;
   }
 }
 

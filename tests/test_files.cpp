@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <vector>
 
 namespace remote_touch {
@@ -28,7 +29,7 @@ TestFolder::~TestFolder() {
 }
 
 fs::path TestFolder::write(const std::string& name, const std::string& bytes) const {
-  const fs::path file = path_ / name;
+  fs::path file = path_ / name;
   fs::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << bytes;
   return file;
@@ -36,7 +37,7 @@ fs::path TestFolder::write(const std::string& name, const std::string& bytes) co
 
 fs::path TestFolder::write_png(const std::string& name, int width, int height, std::uint32_t format,
                                const void* samples, const void* palette, int palette_size) const {
-  const fs::path file = path_ / name;
+  fs::path file = path_ / name;
   fs::create_directories(file.parent_path());
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -48,8 +49,8 @@ fs::path TestFolder::write_png(const std::string& name, int width, int height, s
 }
 
 void TestFolder::write_depth(const std::string& name, std::uint16_t first, int width) const {
-  std::vector<std::uint16_t> samples;
-  for (int i = 0; i < 2 * width; ++i) samples.push_back(static_cast<std::uint16_t>(first + i));
+  std::vector<std::uint16_t> samples(static_cast<std::size_t>(2 * width));
+  std::iota(samples.begin(), samples.end(), first);
   write_png(name, width, 2, PNG_FORMAT_LINEAR_Y, samples.data());
 }
 

@@ -23,7 +23,7 @@ std::string refusal(Call call) {
   try {
     call();
   } catch (const InputError& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;
   }

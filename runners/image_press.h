@@ -1,0 +1,50 @@
+// A device that presses where one pixel looks, a set depth behind the surface of the newest frame: it stays
+// in touch while the camera or the scene moves.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/parameter.h"
+#include "runners/trajectory.h"
+#include "scenarios/scenario.h"
+
+namespace remote_touch {
+
+// Where a frame shows no surface without gaps around the pixel, the device lifts off until one does.
+class ImagePress final : public Trajectory {
+ public:
+  struct Settings {
+    int row = -1;
+    int column = -1;
+    double depth_m = 0.01;
+    double clearance_m = 0.03;
+    double press_at_s = 0.1;
+    double approach_m_per_s = 0.2;
+    double edge_jump_m = 0.015;
+    double margin_m = 0.01;
+  };
+
+  // The scenario must outlive the trajectory. Throws InputError when its frames are not organised images, or
+  // when the first frame shows nothing to touch at the pixel.
+  ImagePress(const Settings& settings, const Scenario& scenario);
+  DeviceState at(double time_s) const override;
+  double duration_s() const override { return 0; }
+
+ private:
+  double seen_depth(int frame) const;
+  int newest_frame(double time_s) const;
+
+  const Settings settings_;
+  const Scenario& scenario_;
+  ImageLayout image_;
+  int row_ = 0, column_ = 0;
+  mutable std::map<int, double> seen_;  // by frame: ticks ask for the same one many times
+};
+
+Parameters parameters(ImagePress::Settings& s);
+inline std::string conflict(const ImagePress::Settings&) {
+  return {};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,141 @@
+"""Draws one panel of a figure: its curves, limits, ticks and legend."""
+import math
+import re
+import textwrap
+
+import matplotlib.collections
+import matplotlib.patches
+import matplotlib.ticker
+import numpy as np
+
+# Each style draws one curve of the panel it is in.
+
+def draw_line(axes, curve, _, colour, **options):
+    marker = "o" if curve.x.values.size == 1 else None  # a line of one point would not be seen
+    width = 1.5 if curve.x.values.size <= 2000 else 1.0  # a noisy trace stays a line
+    axes.plot(curve.x.values, curve.y.values, color=colour, marker=marker, linewidth=width, label=curve.label,
+              **options)
+
+
+def draw_dashed(axes, curve, panel, colour):
+    draw_line(axes, curve, panel, colour, linestyle=(0, (5, 3)))
+
+
+def draw_steps(axes, curve, panel, colour):
+    draw_line(axes, curve, panel, colour, drawstyle="steps-post")
+
+
+def draw_dots(axes, curve, panel, colour):
+    """The fewer dots are in sight, the larger they are."""
+    count = np.count_nonzero(in_sight(curve, panel))
+    size = 6 if count <= 30 else 4 if count <= 100 else 2.5 if count <= 300 else 1.5 if count <= 3000 else 1
+    axes.plot(curve.x.values, curve.y.values, "o", color=colour, markersize=size, markeredgewidth=0,
+              label=curve.label)
+
+
+def draw_circles(axes, curve, _, colour):
+    """Circles of a radius in data units; an empty line makes the legend entry."""
+    axes.plot([], [], "o", color=colour, markersize=9, markerfacecolor="none", label=curve.label)
+    centres = np.column_stack([curve.x.values, curve.y.values])
+    centres = centres[np.isfinite(centres).all(axis=1)]
+    circles = [matplotlib.patches.Circle(centre, curve.radius) for centre in centres]
+    axes.add_collection(matplotlib.collections.PatchCollection(
+        circles, facecolor="none", edgecolor=colour, linewidth=1.0))
+    axes.autoscale_view()
+
+
+def draw_bars(axes, curve, panel, colour):
+    """The bar charts of one panel stand side by side."""
+    charts = [other for other in panel.curves if other.style == "bars"]
+    places = np.unique(curve.x.values[np.isfinite(curve.x.values)])
+    spacing = np.diff(places).min() if places.size > 1 else 1.0
+    width = 0.8 * spacing / len(charts)
+    offset = (charts.index(curve) - (len(charts) - 1) / 2) * width
+    axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=colour, label=curve.label)
+
+
+DRAW = {"line": draw_line, "dashed": draw_dashed, "steps": draw_steps, "dots": draw_dots,
+        "circle": draw_circles, "bars": draw_bars}
+
+
+def in_sight(curve, panel):
+    """Which samples are finite and inside x_range."""
+    low, high = panel.x_range
+    x, y = curve.x.values, curve.y.values
+    return np.isfinite(x) & np.isfinite(y) & ~(x < low) & ~(x > high)  # no comparison with NaN holds
+
+
+def with_units(label, columns):
+    """The label, or else the columns' name; with the columns' unit where they agree on one not written yet."""
+    names, units = ({getattr(column, field) for column in columns} for field in ("long_name", "units"))
+    label = label or (names.pop() if len(names) == 1 else "")
+    unit = units.pop() if len(units) == 1 else ""
+    written = re.search(r"[\[(/]|\bin\b", label) or label == unit
+    return label if written or unit in ("", "1") else f"{label} [{unit}]".strip()
+
+
+def set_y_range(axes, panel):
+    """Automatic limits see what x_range shows, and do not blow up rounding noise about a constant."""
+    automatic = all(math.isnan(limit) for limit in panel.y_range)
+    extended = any(curve.style in ("bars", "circle") for curve in panel.curves)  # reach beyond their samples
+    values = np.concatenate([curve.y.values[in_sight(curve, panel)] for curve in panel.curves] or [[]])
+    if not automatic or extended or not values.size:
+        set_given(axes.set_ylim, panel.y_range)
+        return
+    size, span = np.abs(values).max(), np.ptp(values)
+    if 0 < span < 1e-6 * size:
+        axes.set_ylim(values.mean() - 0.01 * size, values.mean() + 0.01 * size)
+    elif span > 0 and not all(math.isnan(limit) for limit in panel.x_range):
+        axes.set_ylim(values.min() - 0.05 * span, values.max() + 0.05 * span)
+
+
+def set_given(set_limits, limits):
+    set_limits(*(None if math.isnan(limit) else limit for limit in limits))
+
+
+def set_ticks(axis, limits, columns):
+    """Plain numbers without a common offset or factor; the names of an enum."""
+    names = next((column.names for column in columns if column.names), None)
+    if names:
+        axis.set_ticks(sorted(names), [names[value] for value in sorted(names)])
+        return
+    size = max(abs(limit) for limit in limits)
+    if 1e-3 <= size < 1e6:
+        formatter = matplotlib.ticker.ScalarFormatter(useOffset=False)
+        formatter.set_scientific(False)
+    else:
+        formatter = matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.6g}".replace("-", "\u2212"))
+    axis.set_major_formatter(formatter)
+
+
+def add_legend(axes, panel):
+    """Beside a panel that has the width for itself, inside one of several in a row."""
+    if not any(curve.label for curve in panel.curves):
+        return
+    handles, labels = axes.get_legend_handles_labels()
+    where = dict(loc="upper left", bbox_to_anchor=(1.0, 1.02)) if panel.place is None else dict(loc="best")
+    legend = axes.legend(handles, [textwrap.fill(label, 24) for label in labels], **where)
+    for line in legend.get_lines():  # small dots are hard to tell apart there
+        line.set_markersize(max(5, line.get_markersize()))
+
+
+def curve_key(curve, i):
+    """What has one colour throughout a figure: a label, or else a quantity and its place in the panel."""
+    return curve.label or (curve.y.long_name, i)
+
+
+def draw_panel(axes, panel, colours):
+    """colours: of each curve, by curve_key."""
+    for i, curve in enumerate(panel.curves):
+        DRAW[curve.style](axes, curve, panel, colours[curve_key(curve, i)])
+    xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
+    set_given(axes.set_xlim, panel.x_range)
+    set_y_range(axes, panel)
+    set_ticks(axes.xaxis, axes.get_xlim(), xs)
+    set_ticks(axes.yaxis, axes.get_ylim(), ys)
+    if panel.place is not None:  # narrow: the labels would run into each other
+        axes.locator_params(axis="x", nbins=5)
+    axes.set_title(textwrap.fill(panel.title, 80), loc="left")
+    axes.set_xlabel(with_units(panel.x_label, xs))
+    axes.set_ylabel(with_units(panel.y_label, ys))
+    add_legend(axes, panel)

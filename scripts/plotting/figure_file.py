@@ -1,0 +1,134 @@
+"""Reads a figure file: HDF5 of the schema remote-touch-figure/1, which analysis/result_file.cpp writes."""
+import dataclasses
+import math
+import re
+
+import h5py
+import numpy as np
+
+SCHEMA = "remote-touch-figure/1"
+STYLES = ("line", "dashed", "steps", "dots", "circle", "bars")
+
+
+class PlotError(Exception):
+    """What is wrong with the input, in one line."""
+
+
+@dataclasses.dataclass
+class Column:
+    values: np.ndarray
+    units: str
+    long_name: str
+    names: dict  # of an enum: value -> name
+
+
+@dataclasses.dataclass(eq=False)
+class Curve:
+    x: Column
+    y: Column
+    style: str
+    label: str
+    radius: float
+
+
+@dataclasses.dataclass
+class Panel:
+    title: str
+    x_label: str
+    y_label: str
+    equal_aspect: bool
+    x_range: list  # NaN: automatic
+    y_range: list
+    place: tuple  # (row, column), or None: below the panel before
+    curves: list
+
+
+@dataclasses.dataclass
+class Figure:
+    name: str  # of the files: fig4.11
+    attributes: dict
+    panels: list
+
+    @property
+    def heading(self):
+        name = self.attributes.get("figure") or self.name.removeprefix("fig")
+        number = f"Equation {name[2:]}" if name.startswith("eq") else f"Figure {name}"
+        title = self.attributes.get("title", "")
+        return f"{number}: {title}" if title else number
+
+
+def text(attributes, name, default=""):
+    """An attribute as a string, however the writer stored it."""
+    value = attributes.get(name, default)
+    if isinstance(value, np.ndarray):
+        value = value.flat[0] if value.size else default
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def number(attributes, name, default):
+    return float(np.ravel(attributes.get(name, default))[0])
+
+
+def pair(attributes, name):
+    values = np.ravel(attributes.get(name, [math.nan, math.nan])).astype(float)
+    return list(values) if values.size == 2 else [math.nan, math.nan]
+
+
+def numbered(group, prefix):
+    """The members prefix0, prefix1, ... of a group, in the order of their numbers."""
+    found = [name for name in group if re.fullmatch(prefix + r"\d+", name)]
+    return [group[name] for name in sorted(found, key=lambda name: int(name[len(prefix):]))]
+
+
+def read_column(file, table, name):
+    path = f"/tables/{table}/{name}"
+    if path not in file or not isinstance(file[path], h5py.Dataset):
+        raise PlotError(f"{file.filename}: a curve asks for {path}, which is not there")
+    data = file[path]
+    names = {value: key for key, value in (h5py.check_enum_dtype(data.dtype) or {}).items()}
+    values = np.ravel(data[()]).astype(float)
+    return Column(values, text(data.attrs, "units"), text(data.attrs, "long_name"), names)
+
+
+def read_curve(file, group):
+    table = text(group.attrs, "table")
+    x = read_column(file, table, text(group.attrs, "x"))
+    y = read_column(file, table, text(group.attrs, "y"))
+    style = text(group.attrs, "style", "line")
+    if style not in STYLES:
+        raise PlotError(f"{file.filename}: {group.name}: style {style!r}: allowed {', '.join(STYLES)}")
+    if x.values.size != y.values.size:
+        raise PlotError(f"{file.filename}: {group.name}: x and y differ in length")
+    return Curve(x, y, style, text(group.attrs, "label"), number(group.attrs, "radius", 0))
+
+
+def read_place(attributes):
+    """Row and column, or None."""
+    place = pair(attributes, "place")
+    return None if math.isnan(place[0]) else (int(place[0]), int(place[1]))
+
+
+def read_panel(file, group):
+    a = group.attrs
+    curves = [read_curve(file, curve) for curve in numbered(group, "curve")]
+    return Panel(text(a, "title"), text(a, "x_label"), text(a, "y_label"), number(a, "equal_aspect", 0) != 0,
+                 pair(a, "x_range"), pair(a, "y_range"), read_place(a), curves)
+
+
+def open_file(path):
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise PlotError(f"{path}: {error}") from None
+
+
+def schema_of(path):
+    with open_file(path) as file:
+        return text(file.attrs, "schema")
+
+
+def read_figure(path):
+    """A figure without panels is one that could not be run; its caption says why."""
+    with open_file(path) as file:
+        panels = [read_panel(file, group) for group in numbered(file.get("panels", {}), "")]
+        return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs}, panels)

@@ -1,0 +1,34 @@
+// What the benchmarks measure against: the method written plainly from its equations, over all points, in
+// double and with nothing of the kernels; and the clouds that both run on.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/gathered_points.h"
+#include "core/point_cloud.h"
+#include "core/proxy_parameters.h"
+#include "core/renderer.h"
+
+namespace remote_touch::naive {
+
+struct Step {
+  ContactState state = ContactState::free;  // before the step
+  double nearest_m = 0;
+  Vec3 normal = Vec3::Zero();
+  Vec3 step = Vec3::Zero();
+};
+
+// One proxy step, 4.2.3 and 4.2.4, looking at every point. pre: step_rule = variable, free_root = ahead.
+Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& hip_W,
+                const Vec3& previous_normal, const ProxyParameters& p);
+
+std::vector<Vec3> points_of(const PointCloud& cloud);
+
+// Indices of all points with |x - centre| <= radius, rising.
+std::vector<std::uint32_t> points_within(const PointCloud& cloud, const Ball& ball);
+
+// A wavy wall across the view of a 640x480 camera at the origin, at that mean distance along z.
+PointCloud wave_image(double distance_m);
+
+}  // namespace remote_touch::naive

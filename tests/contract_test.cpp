@@ -1,0 +1,232 @@
+// What every entry of the catalog owes its seam. A new scenario, trajectory or renderer is tested here from its birth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "runners/catalog.h"
+#include "runners/figures.h"
+#include "tests/allocation_counter.h"
+#include "tests/scenes.h"
+#include "tests/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+// --- renderers ---
+
+std::unique_ptr<Renderer> build(const RendererEntry& entry) { return entry.make()->build(1000, scenes::kernels()); }
+
+// A press into a flat cloud with a new frame every 33 ticks, and back out.
+std::vector<RenderOutput> press(Renderer& renderer) {
+  std::vector<RenderOutput> outputs;
+  for (int tick = 0; tick < 200; ++tick) {
+    if (tick % 33 == 0) renderer.on_frame(scenes::frame(scenes::flat_grid(60), tick / 33));
+    const double depth = tick < 100 ? 0.02 - 0.0005 * tick : -0.03 + 0.0005 * (tick - 100);
+    outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
+  }
+  return outputs;
+}
+
+TEST(RendererContract, NoForceInFreeSpace) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->on_frame(scenes::frame(scenes::flat_grid(40)));
+    for (int tick = 0; tick < 50; ++tick) {
+      const RenderOutput out = renderer->step({Vec3(0.001 * tick, 0.03, 0)}, 0.001 * tick);
+      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
+      EXPECT_EQ(out.state, ContactState::free) << entry.name;
+      EXPECT_EQ(out.status, RenderStatus::ok) << entry.name;
+    }
+  }
+}
+
+TEST(RendererContract, PushesTheHandOutOfTheSurface) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    double highest = 0;
+    for (const RenderOutput& out : press(*renderer)) highest = std::max(highest, out.force_N.y());
+    EXPECT_GT(highest, 1) << entry.name;
+  }
+}
+
+TEST(RendererContract, SameInputSameBits) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto first = build(entry), second = build(entry);
+    const auto a = press(*first), b = press(*second);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].proxy_W, b[i].proxy_W) << entry.name;
+      EXPECT_EQ(a[i].force_N, b[i].force_N) << entry.name;
+      EXPECT_EQ(a[i].steps, b[i].steps) << entry.name;
+    }
+  }
+}
+
+TEST(RendererContract, AStepAllocatesNothing) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->on_frame(scenes::frame(scenes::flat_grid(100)));
+    for (int tick = 0; tick < 300; ++tick) {
+      // Approach, press, slide fast, jump across the cloud.
+      const Vec3 hip(tick < 200 ? 0 : 0.002 * (tick - 250), tick < 100 ? 0.02 - 0.0004 * tick : -0.02,
+                     tick % 50 == 0 ? 0.05 : 0);
+      const std::size_t before = allocation_count();
+      renderer->step({hip}, 0.001 * tick);
+      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
+    }
+  }
+}
+
+TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    const RenderOutput out = renderer->step({Vec3(1, 2, 3)}, 0);
+    EXPECT_EQ(out.proxy_W, Vec3(1, 2, 3)) << entry.name;
+    EXPECT_EQ(out.status, RenderStatus::no_frame) << entry.name;
+    EXPECT_EQ(out.frame_index, -1) << entry.name;
+  }
+}
+
+TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->on_frame(scenes::frame(scenes::flat_grid(60)));
+    renderer->step({Vec3(0, 0.02, 0)}, 0);
+    const RenderOutput before = renderer->step({Vec3(0, -0.02, 0)}, 0.001);
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      const RenderOutput out = renderer->step({Vec3(0, bad, 0)}, 0.002);
+      EXPECT_EQ(out.status, RenderStatus::device_not_finite) << entry.name;
+      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
+      EXPECT_TRUE(out.proxy_W.allFinite()) << entry.name;
+    }
+    const RenderOutput after = renderer->step({Vec3(0, -0.02, 0)}, 0.003);
+    EXPECT_NEAR((after.proxy_W - before.proxy_W).norm(), 0, 1e-3) << entry.name;
+    EXPECT_GT(after.force_N.y(), 1) << entry.name;
+  }
+}
+
+// --- scenarios ---
+
+class ScenarioContract : public testing::Test {
+ protected:
+  ScenarioContract() {
+    folder_.write_depth("depth/0000.png", 500, 64);
+    folder_.write_depth("depth/0001.png", 520, 64);
+    folder_.write("camera.json",
+                  R"({"width": 64, "height": 2, "fx": 60, "fy": 60, "cx": 31.5, "cy": 0.5, "depth_scale_m": 0.001,
+                      "frame_rate_hz": 30})");
+  }
+
+  // With the defaults of the catalog; the recording gets one that is made here.
+  std::unique_ptr<Scenario> build(const ScenarioEntry& entry) const {
+    auto blueprint = entry.make();
+    for (const Parameter& p : blueprint->settings())
+      if (p.name == "path") *std::get<std::string*>(p.value) = folder_.path().string();
+    return blueprint->build(NoiseKey{7}, scenes::kernels());
+  }
+
+  TestFolder folder_{"contract"};
+};
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+TEST_F(ScenarioContract, FramesArePure) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto one = build(entry), other = build(entry);
+    const int last = std::min(3, one->frame_count() - 1);
+    one->cloud(last);  // asked in another order, it answers the same
+    for (const int frame : {0, last}) {
+      const PointCloud a = one->cloud(frame), b = other->cloud(frame);
+      EXPECT_GT(a.size(), 0u) << entry.name;
+      EXPECT_TRUE(same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z)) << entry.name;
+    }
+  }
+}
+
+TEST_F(ScenarioContract, SearchAndCloudShowTheSamePoints) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto scenario = build(entry);
+    const PointCloud cloud = scenario->cloud(0);
+    const auto points = scenario->points(0);
+    EXPECT_EQ(points->size(), cloud.size()) << entry.name;
+    GatheredPoints found, expected;
+    for (GatheredPoints* out : {&found, &expected}) out->reserve(cloud.size(), false, false);
+    const BruteForceSearch oracle(cloud);
+    for (std::size_t i = 0; i < cloud.size(); i += cloud.size() / 16) {
+      if (!cloud.point(i).allFinite()) continue;
+      const Ball ball{cloud.point(i), 0.012};
+      found.clear(), expected.clear();
+      points->gather(ball, scenes::kernels(), found);
+      oracle.gather(ball, scenes::kernels(), expected);
+      EXPECT_EQ(found.size(), expected.size()) << entry.name;
+      EXPECT_GT(found.size(), 0u) << entry.name;
+    }
+  }
+}
+
+TEST_F(ScenarioContract, RatesAndTimesMakeSense) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto scenario = build(entry);
+    EXPECT_GT(scenario->frame_rate_hz(), 0) << entry.name;
+    ASSERT_GE(scenario->frame_count(), 1) << entry.name;
+    EXPECT_EQ(scenario->captured_s(0), 0) << entry.name;
+    for (int j = 1; j < std::min(5, scenario->frame_count()); ++j)
+      EXPECT_GT(scenario->captured_s(j), scenario->captured_s(j - 1)) << entry.name;
+  }
+}
+
+TEST_F(ScenarioContract, OtherSeedsGiveOtherNoise) {
+  for (const char* name : {"moving-lift", "camera-scene"}) {
+    const auto entry = find_entry(scenarios(), name, "scenario");
+    const PointCloud a = entry.make()->build(NoiseKey{1}, scenes::kernels())->cloud(0);
+    const PointCloud b = entry.make()->build(NoiseKey{2}, scenes::kernels())->cloud(0);
+    EXPECT_FALSE(same_bits(a.y, b.y)) << name;
+  }
+}
+
+// --- trajectories ---
+
+TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
+  for (const TrajectoryEntry& entry : trajectories()) {
+    // The camera's scene has a surface height and an image: enough for every trajectory.
+    const auto scene = find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
+    const auto one = entry.make()->build(*scene), other = entry.make()->build(*scene);
+    for (int i = 0; i < 200; ++i) {
+      const double time = 0.01 * ((i * 37) % 200);
+      EXPECT_TRUE(one->at(time).position_W.allFinite()) << entry.name;
+      EXPECT_EQ(one->at(time).position_W, other->at(time).position_W) << entry.name;
+    }
+    const double end = one->duration_s();
+    EXPECT_GE(end, 0) << entry.name;
+    if (end == 0) continue;
+    EXPECT_EQ(one->at(end).position_W, one->at(end + 5).position_W) << entry.name;
+  }
+}
+
+// --- the tables themselves ---
+
+TEST(Catalog, EveryStoredExperimentCanBeReadAndIsCompleteWhenWritten) {
+  ASSERT_FALSE(stored_experiments().empty());
+  for (const StoredExperiment& stored : stored_experiments()) {
+    const Experiment experiment = Experiment::load(stored.name);
+    EXPECT_FALSE(experiment.settings().title.empty()) << stored.name;
+    const std::string resolved = experiment.to_json();
+    EXPECT_EQ(Experiment::from_json(resolved, stored.name).to_json(), resolved) << stored.name;
+  }
+}
+
+TEST(Catalog, NamesAreUniqueAndDescribed) {
+  const auto check = [](const auto& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      EXPECT_GT(std::string(entries[i].summary).size(), 10u) << entries[i].name;
+      for (std::size_t j = 0; j < i; ++j) EXPECT_STRNE(entries[i].name, entries[j].name);
+    }
+  };
+  check(scenarios()), check(renderers()), check(trajectories()), check(figures());
+}
+
+}  // namespace
+}  // namespace remote_touch
