@@ -26,7 +26,7 @@ struct Column {
 struct Table {
   std::string name;  // a file-safe word
   std::string title;
-  std::vector<Column> columns;
+  std::vector<Column> columns = {};
 
   // Adds a column of numbers.
   void add(std::string column, std::string units, std::string long_name, std::vector<double> values) {

@@ -51,9 +51,9 @@ Claim claim_not_run(std::string figure, std::string claim, std::string reason);
 
 struct Figure {
   std::string name, title, caption;
-  std::vector<Table> tables;
-  std::vector<Panel> panels;
-  std::vector<Claim> claims;
+  std::vector<Table> tables = {};
+  std::vector<Panel> panels = {};
+  std::vector<Claim> claims = {};
 };
 
 }  // namespace remote_touch

@@ -73,6 +73,8 @@ Hdf5Writer::Hdf5Writer() : file_(-1) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   check(H5Pset_fapl_core(access, 1 << 20, false));
   const Handle creation = creation_list(H5P_FILE_CREATE);
+  // Brings the root an object header that takes attributes above 64 KiB: a configuration with many waypoints.
+  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));
   file_ = H5Fcreate("remote-touch", H5F_ACC_TRUNC, creation, access);
   if (file_ < 0) throw std::runtime_error("the HDF5 library refused to start a file");
 }
@@ -188,6 +190,7 @@ Column read_dataset(hid_t data, const std::string& name) {
   if (rank < 1 || rank > 2) throw std::runtime_error(name + " has neither one nor two dimensions");
   check(H5Sget_simple_extent_dims(space, size.data(), nullptr));
   Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
+  if (rank == 2 && size[1] == 0) throw std::runtime_error(name + " has rows without numbers");
   column.width = static_cast<int>(rank == 2 ? size[1] : 1);
   const std::size_t count = size[0] * static_cast<std::size_t>(column.width);
   if (H5Tget_class(type) == H5T_FLOAT) {
@@ -198,7 +201,8 @@ Column read_dataset(hid_t data, const std::string& name) {
   }
   std::vector<std::int32_t> values(count);
   const bool named = H5Tget_class(type) == H5T_ENUM;
-  check(H5Dread(data, named ? hid_t(type) : H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  // Not read as its own type: that may be wider than 32 bits.
+  check(H5Dread(data, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
   column.values = std::move(values);
   for (int i = 0; named && i < H5Tget_nmembers(type); ++i) {
     char* member = H5Tget_member_name(type, static_cast<unsigned>(i));
@@ -217,17 +221,19 @@ herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names
 
 Hdf5Content read_hdf5(const std::filesystem::path& file) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  if (!std::filesystem::exists(file)) throw InputError(file.string(), "no such file; allowed an HDF5 result");
-  if (std::filesystem::is_directory(file) || H5Fis_hdf5(file.c_str()) <= 0)
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable))
+    throw InputError(file.string(), "no such file; allowed an HDF5 result");
+  if (std::filesystem::is_directory(file, unreachable) || H5Fis_hdf5(file.c_str()) <= 0)
     throw InputError(file.string(), "not a readable HDF5 file; allowed a result of this program");
   try {
     const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     Hdf5Content content;
-    const int count = static_cast<int>(H5Aget_num_attrs(opened));
-    for (int i = 0; i < count; ++i) {
-      const Handle attribute(H5Aopen_by_idx(opened, "/", H5_INDEX_NAME, H5_ITER_INC, static_cast<hsize_t>(i),
-                                            H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
+    H5O_info_t root;
+    check(H5Oget_info2(opened, &root, H5O_INFO_NUM_ATTRS));
+    for (hsize_t i = 0; i < root.num_attrs; ++i) {
+      const Handle attribute(
+          H5Aopen_by_idx(opened, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
       std::array<char, 256> name{};
       H5Aget_name(attribute, name.size(), name.data());
       content.attributes.emplace_back(name.data(), read_text(attribute));
@@ -239,7 +245,7 @@ Hdf5Content read_hdf5(const std::filesystem::path& file) {
       content.datasets.emplace_back("/" + name, read_dataset(data, name.substr(name.rfind('/') + 1)));
     }
     return content;
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {  // also a length that a damaged header claims
     throw InputError(file.string(),
                      std::string("damaged (") + error.what() + "); allowed a result of this program");
   }

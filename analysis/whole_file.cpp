@@ -25,33 +25,47 @@ int write_and_flush(int file, const char* data, std::size_t size) {
   return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
+  throw InputError(target.string(),
+                   std::string("cannot be written (") + std::strerror(error) + "); allowed " + allowed);
+}
+
 }  // namespace
 
+void require_writable(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  const auto there = std::filesystem::status(target, unreachable);
+  if (std::filesystem::is_directory(there)) refuse(target, EISDIR, "a file");
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return;  // a device or pipe
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
+}
+
 void write_whole_file(const std::filesystem::path& target, const void* data, std::size_t size) {
-  const auto refuse = [&](int error) {
-    throw InputError(target.string(), std::string("cannot be written (") + std::strerror(error) +
-                                          "); allowed a writable place with room for " +
-                                          std::to_string(size) + " bytes");
+  const auto give_up = [&](int error) {
+    refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
   };
-  if (std::filesystem::exists(target) && !std::filesystem::is_regular_file(target)) {
+  std::error_code unreachable;  // then opening it fails, and says why
+  const auto there = std::filesystem::status(target, unreachable);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
     // A device or pipe cannot be renamed over; a folder is a mistake.
-    if (std::filesystem::is_directory(target)) refuse(EISDIR);
+    if (std::filesystem::is_directory(there)) give_up(EISDIR);
     const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file < 0) refuse(errno);
+    if (file < 0) give_up(errno);
     const int error = write_and_flush(file, static_cast<const char*>(data), size);
     ::close(file);
-    if (error != 0) refuse(error);
+    if (error != 0) give_up(error);
     return;
   }
   const std::filesystem::path temporary = target.string() + ".partial-" + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) refuse(errno);
+  if (file < 0) give_up(errno);
   int error = write_and_flush(file, static_cast<const char*>(data), size);
   if (::close(file) != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(temporary.c_str());
-    refuse(error);
+    give_up(error);
   }
 }
 

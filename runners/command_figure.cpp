@@ -12,6 +12,7 @@
 #include "runners/figures.h"
 #include "runners/progress.h"
 #include "runners/provenance.h"
+#include "scenarios/recorded_scene.h"
 
 namespace remote_touch {
 
@@ -72,8 +73,8 @@ nlohmann::ordered_json other_claims(const std::filesystem::path& file,
 Figure make(const FigureEntry& entry, const Laboratory& laboratory) {
   try {
     return entry.make(laboratory);
-  } catch (const InputError& error) {
-    Figure figure{entry.name, entry.summary, std::string("Not run: ") + error.what(), {}, {}, {}};
+  } catch (const MissingRecording& error) {
+    Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
     figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
     return figure;
   }

@@ -2,6 +2,7 @@
 
 #include "analysis/measures.h"
 #include "analysis/result_file.h"
+#include "analysis/whole_file.h"
 #include "runners/commands.h"
 #include "runners/experiment.h"
 #include "runners/progress.h"
@@ -23,6 +24,7 @@ std::string normalised(const RunRequest& request) {
 
 int command_run(const CommandLine& line, const RunRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  require_writable(request.output);
   Progress progress(request.experiment, line.quiet);
   std::vector<double> durations;
   SimulationOptions options;

@@ -28,8 +28,11 @@ template <class Entry>
 auto read_part(const Json& configuration, std::span<const Entry> entries, const std::string& part,
                std::string& name) {
   const auto found = configuration.find(part);
-  if (found == configuration.end() || !found->is_object() || !found->contains("name") ||
+  if (found != configuration.end() && found->is_object() && found->contains("name") &&
       !(*found)["name"].is_string())
+    throw InputError(part + ".name = " + (*found)["name"].dump(),
+                     "allowed a name that remote-touch list prints");
+  if (found == configuration.end() || !found->is_object() || !found->contains("name"))
     throw InputError(part, "missing; allowed {\"name\": ..., parameters}");
   name = (*found)["name"].template get<std::string>();
   auto blueprint = find_entry(entries, name, part + ".name").make();

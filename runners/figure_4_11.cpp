@@ -24,7 +24,7 @@ Table heights(const Trace& trace) {
     time.push_back(trace.time_s[i]);
     hip.push_back(trace.hip(i).y()), proxy.push_back(trace.proxy(i).y());
   }
-  Table table{"heights", "height of HIP and proxy", {}};
+  Table table{"heights", "height of HIP and proxy"};
   table.add("time", "s", "simulated time", time);
   table.add("hip_y", "m", "height of the HIP", hip);
   table.add("proxy_y", "m", "height of the proxy's centre", proxy);
@@ -39,7 +39,7 @@ Table contact_heights(const Trace& trace) {
     time.push_back(trace.time_s[i]);
     height.push_back(contact_point(trace, i, kContactRadius_m).y());
   }
-  Table table{"contact", "height of the contact point", {}};
+  Table table{"contact", "height of the contact point"};
   table.add("time", "s", "simulated time", time);
   table.add("contact_y", "m", "height of the contact point", height);
   return table;
@@ -63,19 +63,15 @@ Figure figure_4_11(const Laboratory& laboratory) {
   Figure figure{
       "4.11",
       "Flat point cloud",
-      "A flat 100 x 100 grid. The HIP moves at 2 r_c per second along the plane, for 1 s above it, 3 s below "
-      "and 1 s above. Bottom: the contact point sinks a little between the points.",
-      {heights(trace), contact_heights(trace)},
-      {},
-      {}};
+      "A flat 100 x 100 grid. The HIP moves at 2 r_c per second along the plane, for 1 s above it, 3 s "
+      "below and 1 s above. Bottom: the contact point sinks a little between the points.",
+      {heights(trace), contact_heights(trace)}};
   figure.panels = {{"Height of HIP and proxy",
                     "time (s)",
                     "y (m)",
                     false,
                     {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
-                     {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}},
-                    {},
-                    {}},
+                     {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}},
                    {"Height of the contact point",
                     "time (s)",
                     "y (m)",

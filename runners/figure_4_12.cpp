@@ -17,7 +17,7 @@ Table heights_per_update(const Trace& trace) {
     proxy.push_back(trace.proxy(i).y());
     plane.push_back(trace.proxy(i).y() - trace.signed_distance_m[i]);
   }
-  Table table{"updates", "height before each update of the cloud", {}};
+  Table table{"updates", "height before each update of the cloud"};
   table.add("frame", "1", "number of the frame", frame);
   table.add("proxy_y", "m", "height of the proxy's centre", proxy);
   table.add("plane_y", "m", "height of the true plane in the newest frame", plane);
@@ -57,11 +57,9 @@ Figure figure_4_12(const Laboratory& laboratory) {
   Figure figure{
       "4.12",
       "Lifted point cloud",
-      "A 200 x 200 cloud with noise sigma = 0.6 r_c rises at 20 r_c/s and then accelerates with 600 r_c/s^2 "
-      "for ten updates. Height of the proxy and of the true plane just before each update.",
-      {heights_per_update(trace)},
-      {},
-      {}};
+      "A 200 x 200 cloud with noise sigma = 0.6 r_c rises at 20 r_c/s and then accelerates with 600 "
+      "r_c/s^2 for ten updates. Height of the proxy and of the true plane just before each update.",
+      {heights_per_update(trace)}};
   figure.panels = {{"Height before each update",
                     "frame",
                     "y (m)",

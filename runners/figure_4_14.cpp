@@ -59,7 +59,7 @@ double rms(const std::vector<double>& values) {
 }
 
 Table contact_table(const Contact& contact) {
-  Table table{"contact", "contact point", {}};
+  Table table{"contact", "contact point"};
   table.add("x", "m", "position of the contact point", contact.x);
   table.add("y", "m", "height of the contact point", contact.y);
   table.add("error", "m", "height over the exact closing with a ball of r_c", contact.error);
@@ -68,7 +68,7 @@ Table contact_table(const Contact& contact) {
 }
 
 Table profile_table(const Oracle& oracle) {
-  Table table{"profile", "exact profile and its closing", {}};
+  Table table{"profile", "exact profile and its closing"};
   std::vector<double> x, height, closing;
   for (std::size_t i = 0; i < oracle.heights.size(); i += 20) {
     x.push_back(oracle.low + static_cast<double>(i) * kSampling_m);
@@ -90,7 +90,7 @@ std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace,
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (std::abs(trace.proxy(i).x() - valley_x) < std::abs(trace.proxy(nearest).x() - valley_x)) nearest = i;
-  Table points{"points", "one row of the grid", {}}, ball{"ball", "the proxy in a valley", {}};
+  Table points{"points", "one row of the grid"}, ball{"ball", "the proxy in a valley"};
   points.add("x", "m", "position", x), points.add("y", "m", "height", y);
   ball.add("x", "m", "position", {trace.proxy(nearest).x()}),
       ball.add("y", "m", "height", {trace.proxy(nearest).y()});
@@ -110,13 +110,9 @@ Figure figure_4_14(const Laboratory& laboratory) {
   Figure figure{"4.14",
                 "Sharp corners",
                 "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the wave and the "
-                "contact point. "
-                "Bottom: a part of it, with the points and a circle of radius r_c. Convex corners are "
-                "rendered sharp; in "
-                "a valley the proxy rests on both flanks.",
-                {contact_table(contact), profile_table(oracle)},
-                {},
-                {}};
+                "contact point. Bottom: a part of it, with the points and a circle of radius r_c. Convex "
+                "corners are rendered sharp; in a valley the proxy rests on both flanks.",
+                {contact_table(contact), profile_table(oracle)}};
   for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
   const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
   const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
@@ -124,9 +120,7 @@ Figure figure_4_14(const Laboratory& laboratory) {
                     "x (m)",
                     "y (m)",
                     false,
-                    {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line},
-                    {},
-                    {}},
+                    {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}},
                    {"A part of it",
                     "x (m)",
                     "y (m)",

@@ -32,7 +32,7 @@ Trace settled(const Trace& trace) {
 Table force_table(const std::string& name, const Trace& trace) {
   std::vector<double> force;
   for (std::size_t i = 0; i < trace.length(); ++i) force.push_back(trace.force(i).norm());
-  Table table{name, "force with the term " + name, {}};
+  Table table{name, "force with the term " + name};
   table.add("time", "s", "simulated time", trace.time_s);
   table.add("force", "N", "magnitude of the force", force);
   return table;
@@ -43,10 +43,9 @@ Table force_table(const std::string& name, const Trace& trace) {
 Figure figure_force(const Laboratory& laboratory) {
   Figure figure{"eq4.15",
                 "Force between updates",
-                "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force is "
-                "constant. The "
-                "velocity term of (4.15) as printed (plus), left out (none), and with the sign that removes "
-                "the jump (minus).",
+                "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "
+                "is constant. The velocity term of (4.15) as printed (plus), left out (none), and with "
+                "the sign that removes the jump (minus).",
                 {},
                 {{"Force", "time (s)", "force (N)", false, {}, std::pair(1.0, 1.3), {}}},
                 {}};

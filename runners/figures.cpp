@@ -33,7 +33,8 @@ Trace Laboratory::run(const Experiment& experiment) const {
 
 std::string Laboratory::configurations() const {
   std::string list;
-  for (const std::string& configuration : configurations_) list += (list.empty() ? "[" : ", ") + configuration;
+  for (const std::string& configuration : configurations_)
+    list += (list.empty() ? "[" : ", ") + configuration;
   return list.empty() ? "[]" : list + "]";
 }
 

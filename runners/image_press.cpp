@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/input_error.h"
+#include "runners/seen_object.h"
 #include "runners/seen_surface.h"
 
 namespace remote_touch {
@@ -30,7 +31,7 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
     throw InputError("trajectory.name = image-press",
                      "the frames are not organised images; allowed with a camera");
   image_ = *cloud.image;
-  const SeenObject object = nearest_large_object(depth_image(cloud));
+  const SeenObject object = nearest_large_object(depth_image(cloud), image_.camera);
   row_ = settings.row >= 0 ? settings.row : object.row;
   column_ = settings.column >= 0 ? settings.column : object.column;
   if (row_ >= image_.camera.height || column_ >= image_.camera.width)

@@ -21,7 +21,8 @@ class ImagePress final : public Trajectory {
     double clearance_m = 0.03;
     double press_at_s = 0.1;
     double approach_m_per_s = 0.2;
-    double edge_jump_m = 0.015;
+    double edge_jump_m =
+        0.006;  // below sqrt(2) r_c: a square of points wider than that lets the proxy through
     double margin_m = 0.01;
   };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/input_error.h"
+#include "runners/seen_object.h"
 #include "runners/seen_surface.h"
 
 namespace remote_touch {
@@ -22,7 +23,7 @@ Parameters parameters(ImageScan::Settings& s) {
       {"span_m", &s.span_m, 1e-3, 100,
        "the scan ends where the depth differs more than this from the object's"},
       {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
-       "a depth difference larger than this within margin_m is an edge"},
+       "a larger step from pixel to pixel within margin_m is an edge; doubled up to twice if all is"},
       {"margin_m", &s.margin_m, 1e-3, 1, "the HIP stays this far from holes and edges"},
   };
 }
@@ -70,21 +71,25 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
                      "the frames are not organised images; allowed with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   const DepthImage image = depth_image(cloud);
-  const SeenObject object = nearest_large_object(image);
+  const SeenObject object = nearest_large_object(image, camera);
   row_ = s.row >= 0 ? s.row : object.row;
   if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
         "trajectory.row, first_column, last_column",
         "allowed below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
 
+  // A coarse sensor steps further from pixel to pixel than a proxy can bridge; better a rough scan than none.
   std::vector<double> depth;
-  for (int u = 0; u < camera.width; ++u)
-    depth.push_back(supported_depth(image, u, row_, camera.fx, {s.edge_jump_m, s.margin_m}));
-  const auto automatic = [&](int direction) {
-    return last_within_span(depth, object.column, direction, object.nearest_m, s.span_m);
-  };
-  patches_ = supported_patches(depth, s.first_column >= 0 ? s.first_column : automatic(-1),
-                               s.last_column >= 0 ? s.last_column : automatic(+1), camera.fx, s.margin_m);
+  for (double jump = s.edge_jump_m; patches_.empty() && jump <= 4 * s.edge_jump_m; jump *= 2) {
+    depth.clear();
+    for (int u = 0; u < camera.width; ++u)
+      depth.push_back(supported_depth(image, u, row_, camera.fx, {jump, s.margin_m}));
+    const auto automatic = [&](int direction) {
+      return last_within_span(depth, object.column, direction, object.nearest_m, s.span_m);
+    };
+    patches_ = supported_patches(depth, s.first_column >= 0 ? s.first_column : automatic(-1),
+                                 s.last_column >= 0 ? s.last_column : automatic(+1), camera.fx, s.margin_m);
+  }
   if (patches_.empty())
     throw InputError("trajectory.row = " + std::to_string(row_),
                      "nothing there was measured without holes; allowed another row or a smaller margin_m");

@@ -28,7 +28,8 @@ class ImageScan final : public Trajectory {
     double speed_m_per_s = 0.1;
     double clearance_m = 0.03;
     double span_m = 0.3;
-    double edge_jump_m = 0.015;
+    double edge_jump_m =
+        0.006;  // below sqrt(2) r_c: a square of points wider than that lets the proxy through
     double margin_m = 0.01;
   };
 

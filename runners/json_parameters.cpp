@@ -183,7 +183,9 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
                      bool skip_name) {
   if (!object.is_object()) throw InputError(path, "not an object; allowed {\"name\": ..., ...}");
   const std::string prefix = path.empty() ? "" : path + ".";
-  for (const auto& [key, value] : object.items()) {
+  for (const auto& item : object.items()) {
+    const std::string& key = item.key();
+    const Json& value = item.value();
     if (skip_name && key == "name") continue;
     const auto found =
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });

@@ -13,37 +13,6 @@ DepthImage depth_image(const PointCloud& cloud) {
   return depth;
 }
 
-SeenObject nearest_large_object(const DepthImage& image) {
-  constexpr double kBin_m = 0.01;
-  constexpr int kBins = 1000, kSlabBins = 10;
-  std::vector<int> histogram(kBins + kSlabBins, 0);
-  for (const double z : image.z_m)
-    if (z >= 0 && z < kBin_m * kBins) ++histogram[static_cast<std::size_t>(z / kBin_m)];
-  const double enough = 0.02 * image.width * image.height;
-  std::size_t slab = 0;
-  const auto pixels_in = [&](std::size_t first) {
-    int sum = 0;
-    for (std::size_t bin = first; bin < first + kSlabBins; ++bin) sum += histogram[bin];
-    return sum;
-  };
-  while (slab + 1 < kBins && pixels_in(slab) < enough) ++slab;
-
-  SeenObject object;
-  object.nearest_m = static_cast<double>(slab) * kBin_m;
-  std::vector<int> rows, columns;
-  for (int v = 0; v < image.height; ++v)
-    for (int u = 0; u < image.width; ++u) {
-      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-      if (z >= object.nearest_m && z < object.nearest_m + kBin_m * kSlabBins)
-        rows.push_back(v), columns.push_back(u);
-    }
-  if (rows.empty()) return object;
-  std::nth_element(columns.begin(), columns.begin() + columns.size() / 2, columns.end());
-  object.row = rows[rows.size() / 2];  // collected in rising order
-  object.column = columns[columns.size() / 2];
-  return object;
-}
-
 double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support) {
   const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
   if (!std::isfinite(z)) return std::nan("");

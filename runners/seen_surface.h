@@ -8,16 +8,9 @@ namespace remote_touch {
 // Depth along the optical axis of every pixel, NaN where nothing was measured. pre: cloud.image is set.
 DepthImage depth_image(const PointCloud& cloud);
 
-// The nearest slab of depth, 10 cm thick, that fills 2 % of the image.
-struct SeenObject {
-  double nearest_m = 0;
-  int row = 0, column = 0;  // median of its pixels
-};
-SeenObject nearest_large_object(const DepthImage& image);
-
 // What counts as a surface without gaps.
 struct Support {
-  double edge_jump_m = 0.015;  // a larger depth difference between neighbouring pixels is an edge
+  double edge_jump_m = 0.006;  // a larger depth difference between neighbouring pixels is an edge
   double margin_m = 0.01;      // how far around a pixel the surface must go on
 };
 // Median depth of the square around a pixel that is as wide as the margin; NaN when the square has a hole, an

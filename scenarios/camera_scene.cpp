@@ -102,9 +102,9 @@ void CameraScene::cast_rays() {
 void CameraScene::mark_holes() {
   const int w = camera_.width, h = camera_.height, reach = settings_.hole_px;
   hole_.assign(true_depth_.z_m.size(), 0);
-  const auto mark = [&](int u, int v) {
-    for (int y = std::max(0, v - reach); y <= std::min(h - 1, v + reach); ++y)
-      for (int x = std::max(0, u - reach); x <= std::min(w - 1, u + reach); ++x)
+  const auto mark = [&](int u_first, int u_last, int v_first, int v_last) {
+    for (int y = std::max(0, v_first); y <= std::min(h - 1, v_last); ++y)
+      for (int x = std::max(0, u_first); x <= std::min(w - 1, u_last); ++x)
         hole_[static_cast<std::size_t>(y) * w + x] = 1;
   };
   const auto jumps = [&](std::size_t a, std::size_t b) {
@@ -114,7 +114,9 @@ void CameraScene::mark_holes() {
   for (int v = 0; v < h; ++v) {
     for (int u = 0; u < w; ++u) {
       const std::size_t i = static_cast<std::size_t>(v) * w + u;
-      if ((u + 1 < w && jumps(i, i + 1)) || (v + 1 < h && jumps(i, i + w))) mark(u, v);
+      // As many pixels on either side of the edge.
+      if (u + 1 < w && jumps(i, i + 1)) mark(u + 1 - reach, u + reach, v - reach, v + reach);
+      if (v + 1 < h && jumps(i, i + w)) mark(u - reach, u + reach, v + 1 - reach, v + reach);
     }
   }
 }

@@ -30,7 +30,9 @@ class MovingLift final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Over the plane of the newest frame: pop-through is judged against what the camera has seen.
-  double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - frame_height(time_s); }
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return p_W.y() - frame_height(time_s);
+  }
   // Of the plane as it moves evenly from one frame's height to the next; it rests after the last.
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 

@@ -42,7 +42,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
     if (words.empty() || words[0].front() == '#') continue;
     if (std::find(kKeywords.begin(), kKeywords.end(), words[0]) == kKeywords.end()) {
       std::string allowed;
-      for (const std::string_view keyword : kKeywords) allowed += " " + std::string(keyword);
+      for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
       throw InputError(file + ":" + std::to_string(rest.line),
                        shown(words[0]) + " is no PCD header entry: allowed" + allowed);
     }

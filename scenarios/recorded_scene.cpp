@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "core/input_error.h"
-
 namespace remote_touch {
 
 Parameters parameters(RecordedScene::Settings& s) {
@@ -36,7 +34,7 @@ std::string find_recording(const std::string& path) {
   const char* data = std::getenv("REMOTE_TOUCH_DATA");
   if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
     return (fs::path(data) / path).string();
-  throw InputError(
+  throw MissingRecording(
       path, std::string("no such recording; allowed a folder or PCD file here or below REMOTE_TOUCH_DATA") +
                 (data != nullptr ? std::string(" = ") + data : " (not set)"));
 }

@@ -1,4 +1,5 @@
-// What every entry of the catalog owes its seam. A new scenario, trajectory or renderer is tested here from its birth.
+// What every entry of the catalog owes its seam. A new scenario, trajectory or renderer is tested here from
+// its birth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,9 @@ namespace {
 
 // --- renderers ---
 
-std::unique_ptr<Renderer> build(const RendererEntry& entry) { return entry.make()->build(1000, scenes::kernels()); }
+std::unique_ptr<Renderer> build(const RendererEntry& entry) {
+  return entry.make()->build(1000, scenes::kernels());
+}
 
 // A press into a flat cloud with a new frame every 33 ticks, and back out.
 std::vector<RenderOutput> press(Renderer& renderer) {
@@ -113,8 +116,9 @@ class ScenarioContract : public testing::Test {
   ScenarioContract() {
     folder_.write_depth("depth/0000.png", 500, 64);
     folder_.write_depth("depth/0001.png", 520, 64);
-    folder_.write("camera.json",
-                  R"({"width": 64, "height": 2, "fx": 60, "fy": 60, "cx": 31.5, "cy": 0.5, "depth_scale_m": 0.001,
+    folder_.write(
+        "camera.json",
+        R"({"width": 64, "height": 2, "fx": 60, "fy": 60, "cx": 31.5, "cy": 0.5, "depth_scale_m": 0.001,
                       "frame_rate_hz": 30})");
   }
 
@@ -192,7 +196,8 @@ TEST_F(ScenarioContract, OtherSeedsGiveOtherNoise) {
 TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
   for (const TrajectoryEntry& entry : trajectories()) {
     // The camera's scene has a surface height and an image: enough for every trajectory.
-    const auto scene = find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
+    const auto scene =
+        find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
     const auto one = entry.make()->build(*scene), other = entry.make()->build(*scene);
     for (int i = 0; i < 200; ++i) {
       const double time = 0.01 * ((i * 37) % 200);

@@ -1,4 +1,5 @@
-// Same configuration, same bits: for any instruction set, neighbour search, order of the points and number of threads.
+// Same configuration, same bits: for any instruction set, neighbour search, order of the points and number of
+// threads.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -35,7 +36,8 @@ TEST(Determinism, EveryInstructionSet) {
     const std::string reference = digest_of(c.experiment, c.overrides, Isa::x86_64);
     for (const Isa isa : {Isa::x86_64_v3, Isa::x86_64_v4}) {
       if (isa > best_isa()) continue;  // named in the build's summary by the digests_across_builds test
-      EXPECT_EQ(digest_of(c.experiment, c.overrides, isa), reference) << c.experiment << ", " << kernels_for(isa).isa;
+      EXPECT_EQ(digest_of(c.experiment, c.overrides, isa), reference)
+          << c.experiment << ", " << kernels_for(isa).isa;
     }
   }
 }
@@ -47,7 +49,8 @@ TEST(Determinism, EveryNumberOfThreads) {
     const std::string reference = digest_of(c.experiment, c.overrides, best_isa());
     for (const int threads : {2, 8}) {
       omp_set_num_threads(threads);
-      EXPECT_EQ(digest_of(c.experiment, c.overrides, best_isa()), reference) << c.experiment << ", " << threads;
+      EXPECT_EQ(digest_of(c.experiment, c.overrides, best_isa()), reference)
+          << c.experiment << ", " << threads;
     }
   }
   omp_set_num_threads(threads_before);
@@ -59,7 +62,8 @@ std::vector<Vec3> slide(const std::shared_ptr<const NeighbourSearch>& points) {
   renderer.on_frame({0, 0, 0, points});
   std::vector<Vec3> path;
   for (int tick = 0; tick < 400; ++tick) {
-    const RenderOutput out = renderer.step({Vec3(-0.02 + 1e-4 * tick, tick < 20 ? 0.01 : -0.01, 1e-4)}, 0.001 * tick);
+    const RenderOutput out =
+        renderer.step({Vec3(-0.02 + 1e-4 * tick, tick < 20 ? 0.01 : -0.01, 1e-4)}, 0.001 * tick);
     path.push_back(out.proxy_W), path.push_back(out.force_N), path.push_back(out.normal_W);
   }
   return path;

@@ -121,7 +121,8 @@ TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
   for (const bool holds : {true, false}) {
     const double spacing = (holds ? 1.41 : 1.415) * kContactRadius;
     ProxyRenderer renderer = scenes::renderer();
-    renderer.on_frame(scenes::frame(scenes::flat_grid(20, spacing)));  // even: the origin is the middle of a cell
+    renderer.on_frame(
+        scenes::frame(scenes::flat_grid(20, spacing)));  // even: the origin is the middle of a cell
     hold(renderer, Vec3(0, 0.02, 0), 1);
     const RenderOutput out = hold(renderer, Vec3(0, -0.02, 0), 200, 0.001);
     EXPECT_EQ(out.proxy_W.y() > 0, holds) << out.proxy_W.transpose();
@@ -169,8 +170,8 @@ TEST(EdgeCase, RepeatedAndDroppedFramesOfASteadyRise) {
       const int frame = tick / 33;
       if (tick % 33 == 0 && !(dropped && frame == 10)) {
         const double height = 0.001 * (frame == 10 ? 9 : frame) - 0.004;
-        renderer.on_frame({frame, frame / 30.0, frame / 30.0,
-                           make_search(scenes::flat_grid(40, 0.0015, height))});
+        renderer.on_frame(
+            {frame, frame / 30.0, frame / 30.0, make_search(scenes::flat_grid(40, 0.0015, height))});
       }
       const double surface = 0.001 * frame - 0.004;
       const RenderOutput out = renderer.step({Vec3(0, tick < 200 ? 0.002 : surface - 0.01, 0)}, 0.001 * tick);
@@ -187,7 +188,8 @@ TEST(EdgeCase, TheFrameRateChanges) {
   double captured = 0;
   for (int frame = 0; frame < 40; ++frame) {
     captured += frame < 20 ? 1.0 / 30 : 1.0 / 15;
-    renderer.on_frame({frame, captured, captured, make_search(scenes::flat_grid(40, 0.0015, 0.05 * captured - 0.02))});
+    renderer.on_frame(
+        {frame, captured, captured, make_search(scenes::flat_grid(40, 0.0015, 0.05 * captured - 0.02))});
     const double hip = 0.05 * captured - (frame < 12 ? 0 : 0.03);
     const RenderOutput out = hold(renderer, Vec3(0, hip, 0), 33, captured);
     if (frame > 14) {
@@ -223,11 +225,13 @@ TEST(EdgeCase, AFixtureRadiusKeepsTheProxyOut) {
   double nearest = 1, strongest = 0;
   for (int tick = 1; tick < 1000; ++tick) {
     const double angle = 0.002 * tick;
-    const RenderOutput out = renderer.step({Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0)}, 0.001 * tick);
+    const RenderOutput out =
+        renderer.step({Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0)}, 0.001 * tick);
     nearest = std::min(nearest, out.proxy_W.norm());
     if (out.force_N.norm() > 0)
-      strongest = out.force_N.norm() / ((Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0) - out.proxy_W).norm() -
-                                        kContactRadius);
+      strongest =
+          out.force_N.norm() /
+          ((Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0) - out.proxy_W).norm() - kContactRadius);
   }
   EXPECT_NEAR(nearest, 0.105, 2e-5);
   EXPECT_NEAR(strongest, 250, 1);  // the point's own stiffness

@@ -104,7 +104,7 @@ TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
     all.finish();
     const double first = scenes::kernels().first_hit(all.view(), p.data(), u.data(), 0.005);
     kept.around(p);
-    for (const double limit : {0.0001, 0.004, 0.03, 0.1, 5.0}) {
+    for (const double limit : {0.0001, 0.004, 0.009, 0.03, 0.1, 5.0}) {
       const double want = std::min(limit, first);
       EXPECT_EQ(kept.first_hit(p, u, 0.005, limit), want) << limit;
       EXPECT_EQ(hopping.first_hit(p, u, 0.005, limit), want) << limit;
@@ -160,11 +160,12 @@ TEST(EntrenchedStep, GetsAllPointsOut) {
 }
 
 TEST(EntrenchedStep, WithoutANormalItGoesBackFromTheHip) {
-  PointCloud one;
-  one.append({0, 0, 0});
+  PointCloud cloud;
+  cloud.append({0, 0, 0});
+  cloud.append({0.003, 0.004, 0});  // at r_c: touched, but not within r1, so it sets no step
   GatheredPoints points;
-  points.reserve(1, false, false);
-  BruteForceSearch(one).gather({Vec3::Zero(), 1}, scenes::kernels(), points);
+  points.reserve(2, false, false);
+  BruteForceSearch(cloud).gather({Vec3::Zero(), 1}, scenes::kernels(), points);
   points.finish();
   const auto step = [&](const Vec3& normal, const Vec3& u, const ProxyParameters& p = kDefault) {
     return entrenched_step(points.view(), scenes::kernels(), Vec3::Zero(), normal, u, p);

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 #include <random>
-#include <set>
 #include <tuple>
 #include <vector>
 
@@ -128,6 +127,9 @@ TEST(MovingLift, LazyPointsAreTheCloudBitForBit) {
         balls.push_back({i % 2 == 0 ? far : near, 0.002 + 0.0003 * static_cast<double>(i)});
         balls.push_back({balls.back().centre + Vec3(0.001, 0.0002, -0.001), 0.01});  // a proxy moves a little
       }
+      // Where the noise has thrown a point highest: only a bound that no normal exceeds finds it.
+      const auto highest = std::max_element(cloud.y.begin(), cloud.y.end()) - cloud.y.begin();
+      balls.push_back({cloud.point(static_cast<std::size_t>(highest)), 1e-5});
       const auto search = lift.points(frame);
       std::size_t total = 0, empty = 0;
       for (int round = 0; round < 2; ++round) {
@@ -245,19 +247,13 @@ TEST(CameraScene, DepthIsQuantisedInWholeDisparities) {
   const double step = 0.00285;
   const CameraScene scene = camera(0, step);
   const PointCloud cloud = scene.cloud(0);
-  std::set<long> levels;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (std::isnan(cloud.x[i])) continue;
     const double z = axis_depth(cloud.point(i)), level = 1 / (step * z);
     ASSERT_NEAR(level, std::round(level), 1e-9);
     // Half a disparity is half a step of 0.00285 z^2, to first order in step z.
     ASSERT_LT(std::abs(z - scene.true_depth().z_m[i]), 0.5 * step * z * z * (1 + step * z));
-    levels.insert(std::lround(level));
   }
-  ASSERT_GT(levels.size(), 50u);
-  const double z = 1 / (step * static_cast<double>(*levels.begin())),
-               next = 1 / (step * static_cast<double>(*std::next(levels.begin())));
-  EXPECT_NEAR((z - next) / (z * z), step, 0.01 * step);
 }
 
 TEST(CameraScene, NoiseGrowsWithTheSquareOfTheDepth) {
@@ -300,7 +296,7 @@ TEST(CameraScene, HolesAlongDepthEdgesOnly) {
     const int missing = std::isnan(cloud.x[i]) + std::isnan(cloud.y[i]) + std::isnan(cloud.z[i]);
     EXPECT_TRUE(missing == 0 || missing == 3);
     EXPECT_TRUE(to_edge[i] > 2 || missing) << "a point beside an edge: " << i;
-    EXPECT_TRUE(to_edge[i] <= 3 || !missing || std::isnan(truth[i])) << "a hole away from edges: " << i;
+    EXPECT_TRUE(to_edge[i] <= 2 || !missing || std::isnan(truth[i])) << "a hole away from edges: " << i;
     holes += missing && std::isfinite(truth[i]), valid += !missing;
   }
   EXPECT_GT(holes, 500);

@@ -107,7 +107,7 @@ Survey survey_columns(const PointsView& points, const double p[3], const ProxyRe
     const double distance = __builtin_sqrt(dx * dx + dy * dy + dz * dz);
     const double r = kRadius ? distance - radius[i] : distance;
     const double psi = wendland(smaller(larger((r - r1) * scale, 0.0), 1.0));
-    const double w = psi / larger(distance, 1e-300);  // a point at P itself adds 0 / 1e-300 = 0: skipped
+    const double w = psi / larger(distance, 1e-150);  // a point at P itself adds 0 / 1e-150 = 0: skipped
     nearest = smaller(r, nearest);
     sx += (dx * w + grid) - grid;
     sy += (dy * w + grid) - grid;

@@ -1,4 +1,5 @@
 # Writes OUTPUT, a header that says from what the program was built; untouched when nothing changed.
+cmake_policy(VERSION 3.25)
 execute_process(COMMAND git rev-parse HEAD WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit
   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 set(dirty "unknown")

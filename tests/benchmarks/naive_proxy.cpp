@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <utility>
 
 #include "core/camera.h"
+#include "tests/scenes.h"
 
 namespace remote_touch::naive {
 
@@ -96,6 +99,7 @@ Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3
 
 std::vector<Vec3> points_of(const PointCloud& cloud) {
   std::vector<Vec3> points;
+  points.reserve(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cloud.point(i));
   return points;
 }
@@ -118,6 +122,92 @@ PointCloud wave_image(double distance_m) {
     for (int u = 0; u < camera.width; ++u)
       depth.z_m.push_back(distance_m + 0.01 * std::sin(0.03 * u) + 0.005 * std::sin(0.05 * v));
   return cloud_from_depth(depth, camera, RigidTransform::Identity());
+}
+
+namespace {
+
+constexpr double kQueryRadius_m = 0.01;
+constexpr int kQueries = 512;
+
+// Points of the middle of a cloud with rows of that width.
+std::vector<Ball> jumping_balls(const PointCloud& cloud, int width) {
+  const int height = static_cast<int>(cloud.size()) / width;
+  std::mt19937 random(1);
+  const auto within_middle = [&](int count) {
+    return count / 6 + static_cast<int>(random() % (count * 2 / 3));
+  };
+  std::vector<Ball> balls;
+  while (balls.size() < kQueries) {
+    const int u = within_middle(width), v = within_middle(height);
+    const Vec3 centre = cloud.point(static_cast<std::size_t>(v) * width + u);
+    if (centre.allFinite()) balls.push_back({centre, kQueryRadius_m});
+  }
+  return balls;
+}
+
+std::vector<Ball> sliding_on_grid() {
+  std::vector<Ball> balls;
+  balls.reserve(kQueries);
+  for (int i = 0; i < kQueries; ++i) balls.push_back({Vec3(-0.025 + 1e-4 * i, 0, 3e-5 * i), kQueryRadius_m});
+  return balls;
+}
+
+// The row with the fewest holes on its right half, for a recorded image has whole regions without depth.
+int measured_row(const PointCloud& cloud, const CameraIntrinsics& camera) {
+  int best = 0, most = -1;
+  for (int v = camera.height / 3; v < 2 * camera.height / 3; ++v) {
+    int measured = 0;
+    for (int u = camera.width / 2; u < camera.width; ++u)
+      measured += std::isfinite(cloud.z[static_cast<std::size_t>(v) * camera.width + u]) ? 1 : 0;
+    if (measured > most) best = v, most = measured;
+  }
+  return best;
+}
+
+// Over a hole the surface goes on at the depth of the last measured pixel.
+std::vector<Ball> sliding_on_image(const PointCloud& cloud, const CameraIntrinsics& camera) {
+  const int row = measured_row(cloud, camera);
+  double z = 0;
+  const auto depth_at = [&](double u) {
+    const double here = cloud.z[static_cast<std::size_t>(row) * camera.width + std::lround(u)];
+    if (std::isfinite(here)) z = here;
+    return z;
+  };
+  for (int u = camera.width - 1; u > camera.width / 2; --u) depth_at(u);  // a depth to begin with
+  std::vector<Ball> balls;
+  balls.reserve(kQueries);
+  double u = camera.width / 2.0;
+  for (int i = 0; i < kQueries; ++i) {
+    balls.push_back({unproject(camera, u, row, depth_at(u)), kQueryRadius_m});
+    u += 1e-4 * camera.fx / z;
+  }
+  return balls;
+}
+
+Queries with_expected(Queries queries) {
+  for (const Ball& ball : queries.balls) queries.expected.push_back(points_within(queries.cloud, ball));
+  return queries;
+}
+
+const char* suffix(Centres centres) {
+  return centres == Centres::slide ? "_slide" : "_jump";
+}
+
+}  // namespace
+
+Queries on_grid(Centres centres) {
+  constexpr int kWidth = 100;
+  Queries queries{std::string("grid") + suffix(centres), scenes::flat_grid(kWidth)};
+  queries.balls = centres == Centres::slide ? sliding_on_grid() : jumping_balls(queries.cloud, kWidth);
+  return with_expected(std::move(queries));
+}
+
+Queries on_image(const std::string& name, PointCloud cloud, Centres centres) {
+  Queries queries{name + suffix(centres), std::move(cloud)};
+  const CameraIntrinsics& camera = queries.cloud.image->camera;
+  queries.balls = centres == Centres::slide ? sliding_on_image(queries.cloud, camera)
+                                            : jumping_balls(queries.cloud, camera.width);
+  return with_expected(std::move(queries));
 }
 
 }  // namespace remote_touch::naive

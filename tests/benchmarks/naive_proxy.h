@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/gathered_points.h"
@@ -30,5 +31,22 @@ std::vector<std::uint32_t> points_within(const PointCloud& cloud, const Ball& ba
 
 // A wavy wall across the view of a 640x480 camera at the origin, at that mean distance along z.
 PointCloud wave_image(double distance_m);
+
+// Balls of 1 cm around centres on a surface, and the points within each.
+struct Queries {
+  std::string name;
+  PointCloud cloud;
+  std::vector<Ball> balls = {};
+  std::vector<std::vector<std::uint32_t>> expected = {};  // points_within() of each ball
+};
+
+// slide: 0.1 mm from one centre to the next, a tick's way at 0.1 m/s. jump: random points, as if each query
+// came from another user; neither caches nor branch predictors help then.
+enum class Centres { slide, jump };
+
+// On a flat grid of 100x100 points.
+Queries on_grid(Centres centres);
+// On an organised cloud in the camera frame; a slide goes along a row, from the middle to the right.
+Queries on_image(const std::string& name, PointCloud cloud, Centres centres);
 
 }  // namespace remote_touch::naive

@@ -14,9 +14,8 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "core/camera.h"
-#include "core/noise.h"
 #include "core/proxy_renderer.h"
 #include "core/proxy_step.h"
 #include "scenarios/recording.h"
@@ -40,8 +39,8 @@ std::vector<const Kernels*> levels() {
 }
 
 // Checked once a process: repetitions and calibration run the same code on the same data.
-void add(const std::string& name, std::function<bool()> is_right,
-         std::function<void(benchmark::State&)> time) {
+void add(const std::string& name, const std::function<bool()>& is_right,
+         const std::function<void(benchmark::State&)>& time) {
   const auto checked = std::make_shared<bool>(false);
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     if (!*checked && !is_right()) {
@@ -316,53 +315,10 @@ void add_ticks(const Slide& slide) {
 
 // --- radius queries ---
 
-constexpr double kQueryRadius_m = 0.01;
-constexpr int kQueries = 512;
-
-// Balls along a line on a surface, 0.1 mm apart, and the points that the plain loop finds in each.
-struct Queries {
-  std::string name;
-  PointCloud cloud;
-  std::vector<Ball> balls = {};
-  std::vector<std::vector<std::uint32_t>> expected = {};
-};
-
-Queries with_expected(Queries queries) {
-  for (const Ball& ball : queries.balls)
-    queries.expected.push_back(naive::points_within(queries.cloud, ball));
-  return queries;
-}
-
-Queries on_grid() {
-  Queries queries{"grid", scenes::flat_grid(100)};
-  for (int i = 0; i < kQueries; ++i)
-    queries.balls.push_back({Vec3(-0.025 + 1e-4 * i, 0, 3e-5 * i), kQueryRadius_m});
-  return with_expected(std::move(queries));
-}
-
-// Along the middle of the image; over a hole with the depth of the last measured pixel.
-Queries on_image(const std::string& name, PointCloud cloud) {
-  Queries queries{name, std::move(cloud)};
-  const ImageLayout& image = *queries.cloud.image;
-  const int width = image.camera.width, row = image.camera.height / 2;
-  double z = 0;
-  for (int u = 0; u < width / 2 || !(z > 0); ++u) {
-    const double here = queries.cloud.z[static_cast<std::size_t>(row) * width + u];
-    if (std::isfinite(here)) z = here;
-  }
-  for (int i = 0; i < kQueries; ++i) {
-    const double u = 0.5 * width + 1e-4 * i * image.camera.fx / z;
-    const double here = queries.cloud.z[static_cast<std::size_t>(row) * width + std::lround(u)];
-    if (std::isfinite(here)) z = here;
-    queries.balls.push_back({unproject(image.camera, u, row, z), kQueryRadius_m});
-  }
-  return with_expected(std::move(queries));
-}
-
-bool finds_expected(const NeighbourSearch& search, const Queries& queries, const Kernels& kernels) {
+bool finds_expected(const NeighbourSearch& search, const naive::Queries& queries, const Kernels& kernels) {
   GatheredPoints list;
   list.reserve(search.size(), false, false);
-  for (int i = 0; i < kQueries; ++i) {
+  for (std::size_t i = 0; i < queries.balls.size(); ++i) {
     list.clear();
     search.gather(queries.balls[i], kernels, list);
     std::vector<std::uint32_t> found(list.index(), list.index() + list.size());
@@ -372,11 +328,11 @@ bool finds_expected(const NeighbourSearch& search, const Queries& queries, const
   return true;
 }
 
-void time_queries(benchmark::State& state, const NeighbourSearch& search, const Queries& queries,
+void time_queries(benchmark::State& state, const NeighbourSearch& search, const naive::Queries& queries,
                   const Kernels& kernels) {
   GatheredPoints list;
   list.reserve(search.size(), false, false);
-  int i = 0;
+  std::size_t i = 0;
   double found = 0;
   for (auto _ : state) {
     list.clear();
@@ -384,13 +340,13 @@ void time_queries(benchmark::State& state, const NeighbourSearch& search, const 
     list.finish();
     benchmark::ClobberMemory();
     found += static_cast<double>(list.size());
-    if (++i == kQueries) i = 0;
+    if (++i == queries.balls.size()) i = 0;
   }
   state.counters["found"] = benchmark::Counter(found, benchmark::Counter::kAvgIterations);
 }
 
 void add_query(const std::string& name, const std::shared_ptr<const NeighbourSearch>& search,
-               const Queries& queries) {
+               const naive::Queries& queries) {
   for (const Kernels* kernels : levels())
     add(
         name + "/" + queries.name + "/" + kernels->isa,
@@ -398,7 +354,7 @@ void add_query(const std::string& name, const std::shared_ptr<const NeighbourSea
         [=, &queries](benchmark::State& state) { time_queries(state, *search, queries, *kernels); });
 }
 
-void add_queries(const Queries& queries) {
+void add_queries(const naive::Queries& queries) {
   add_query("query_brute_force", std::make_shared<BruteForceSearch>(queries.cloud), queries);
   add_query("query_cells", std::make_shared<UniformGridSearch>(queries.cloud, 0.004), queries);
   if (queries.cloud.image)
@@ -506,11 +462,16 @@ int main(int argc, char** argv) {
   add_ticks(grid);
   add_ticks(image);
 
-  // At 1.03 m a 1 cm ball holds the 81 points of the published comparison.
-  std::vector<Queries> queries{on_grid(), on_image("image_0.75m", naive::wave_image(0.75)),
-                               on_image("image_1.03m", naive::wave_image(1.03))};
-  if (auto recorded = recorded_cloud()) queries.push_back(on_image("image_recorded", std::move(*recorded)));
-  for (const Queries& each : queries) add_queries(each);
+  // At 1.03 m a 1 cm ball holds 81 pixels, as in the published comparison.
+  std::vector<naive::Queries> queries;
+  const std::optional<PointCloud> recorded = recorded_cloud();
+  for (const naive::Centres centres : {naive::Centres::slide, naive::Centres::jump}) {
+    queries.push_back(naive::on_grid(centres));
+    queries.push_back(naive::on_image("image_0.75m", naive::wave_image(0.75), centres));
+    queries.push_back(naive::on_image("image_1.03m", naive::wave_image(1.03), centres));
+    if (recorded) queries.push_back(naive::on_image("image_recorded", *recorded, centres));
+  }
+  for (const naive::Queries& each : queries) add_queries(each);
   add_normals();
 
   benchmark::Initialize(&argc, argv);
