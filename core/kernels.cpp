@@ -1,10 +1,21 @@
 #include "core/kernels.h"
 
+#include "core/kernels/level.h"
+
+REMOTE_TOUCH_DECLARE_KERNELS(x86_64)
+REMOTE_TOUCH_DECLARE_KERNELS(x86_64_v3)
+REMOTE_TOUCH_DECLARE_KERNELS(x86_64_v4)
+
 namespace remote_touch {
 
-extern const Kernels kernels_x86_64;
-extern const Kernels kernels_x86_64_v3;
-extern const Kernels kernels_x86_64_v4;
+namespace {
+constexpr Kernels kX86_64{"x86-64",          x86_64::append_within, x86_64::survey,
+                          x86_64::first_hit, x86_64::way_out,       x86_64::normals};
+constexpr Kernels kX86_64v3{"x86-64-v3",          x86_64_v3::append_within, x86_64_v3::survey,
+                            x86_64_v3::first_hit, x86_64_v3::way_out,       x86_64_v3::normals};
+constexpr Kernels kX86_64v4{"x86-64-v4",          x86_64_v4::append_within, x86_64_v4::survey,
+                            x86_64_v4::first_hit, x86_64_v4::way_out,       x86_64_v4::normals};
+}  // namespace
 
 Isa best_isa() {
   __builtin_cpu_init();
@@ -19,13 +30,13 @@ Isa best_isa() {
 const Kernels& kernels_for(Isa isa) {
   switch (isa) {
     case Isa::x86_64_v4:
-      return kernels_x86_64_v4;
+      return kX86_64v4;
     case Isa::x86_64_v3:
-      return kernels_x86_64_v3;
+      return kX86_64v3;
     case Isa::x86_64:
       break;
   }
-  return kernels_x86_64;
+  return kX86_64;
 }
 
 }  // namespace remote_touch

@@ -41,7 +41,8 @@ struct Survey {
   double touching;       // number of points with r_n <= r2
 };
 
-// Stored points with consecutive positions in the columns, as a neighbour search hands them over.
+// Stored points with consecutive positions in the columns, as a neighbour search hands them over: count of
+// them, or, in an image, rows of count, whose first points are stride apart.
 struct PointRun {
   const double* x;
   const double* y;
@@ -51,6 +52,8 @@ struct PointRun {
   const std::uint32_t* index;  // null: first_index, first_index + 1, ...
   std::uint32_t first_index;
   std::size_t count;
+  std::size_t rows = 1;
+  std::size_t stride = 0;
 };
 
 // Columns to append to; each has room for every point of the cloud plus kLanes.

@@ -39,13 +39,15 @@ struct PixelRange {
 // z). pre: z > radius, so that both tangents are in front of the camera.
 PixelRange tangent_range(double lateral, double z, double radius, double focal, double centre, double slack,
                          int count) {
-  const double squared = z * z - radius * radius;
+  const double squared = z * z - radius * radius, scale = focal / squared;
   const double spread = radius * std::sqrt(std::max(0.0, lateral * lateral + squared));
-  const double low = focal * (lateral * z - spread) / squared + centre - slack;
-  const double high = focal * (lateral * z + spread) / squared + centre + slack;
-  // Clamped as double: far off to the side the pixel does not fit an int.
-  return {static_cast<int>(std::ceil(std::clamp(low, -1.0, count + 1.0))),
-          static_cast<int>(std::floor(std::clamp(high, -2.0, count - 1.0)))};
+  const double low = scale * (lateral * z - spread) + centre - slack;
+  const double high = scale * (lateral * z + spread) + centre + slack;
+  // Clamped as double: far off to the side the pixel does not fit an int. Shifted to be positive, truncation
+  // rounds down, where std::floor is a call on the oldest machines.
+  const int top = count + 2;
+  return {top - static_cast<int>(top - std::clamp(low, -1.0, count + 1.0)),
+          static_cast<int>(std::clamp(high, -2.0, count - 1.0) + 2.0) - 2};
 }
 
 }  // namespace
@@ -68,10 +70,12 @@ void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, Gathere
     rows = tangent_range(c_C.y(), c_C.z(), radius, camera.fy, camera.cy, slack, camera.height);
     columns.first = std::max(columns.first, 0), rows.first = std::max(rows.first, 0);
   }
-  if (columns.first > columns.last) return;
+  if (columns.first > columns.last || rows.first > rows.last) return;
   const auto width = static_cast<std::size_t>(columns.last - columns.first + 1);
-  for (int v = rows.first; v <= rows.last; ++v)
-    out.add(run(static_cast<std::size_t>(v) * camera.width + columns.first, width), ball, kernels);
+  PointRun window = run(static_cast<std::size_t>(rows.first) * camera.width + columns.first, width);
+  window.rows = static_cast<std::size_t>(rows.last - rows.first + 1);
+  window.stride = static_cast<std::size_t>(camera.width);
+  out.add(window, ball, kernels);
 }
 
 // --- uniform grid ---

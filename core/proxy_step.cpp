@@ -38,15 +38,16 @@ double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& 
   return step;
 }
 
-// (4.11), (4.12): share gamma of the way when closer than r1, else xi r1. The fixed rule of [1] takes small
-// steps.
-double step_length(double distance, const ProxyParameters& p) {
-  if (p.step_rule == StepRule::fixed) return std::min(p.fixed_step_m, distance);
-  return distance < p.r1_m ? p.gamma * distance : p.xi * p.r1_m;
-}
-
 Vec3 along(const Vec3& direction, double length, double norm) {
   return norm > 0 ? Vec3(direction * (length / norm)) : Vec3::Zero();
+}
+
+// (4.11), (4.12): share gamma of the way when it is shorter than r1, else xi r1. The fixed rule of [1]: small
+// steps.
+Vec3 step_towards(const Vec3& goal, const ProxyParameters& p) {
+  const double distance = goal.norm();
+  if (p.step_rule == StepRule::fixed) return along(goal, std::min(p.fixed_step_m, distance), distance);
+  return distance < p.r1_m ? Vec3(p.gamma * goal) : along(goal, p.xi * p.r1_m, distance);
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ Vec3 unit_normal(const Survey& survey, const Vec3& previous) {
 Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p) {
   const double distance = u.norm();
   if (!(distance > 0)) return Vec3::Zero();
-  if (p.step_rule == StepRule::fixed) return along(u, step_length(distance, p), distance);
+  if (p.step_rule == StepRule::fixed) return step_towards(u, p);
   const Vec3 direction = u / distance;
   const double step =
       p.free_root == FreeRoot::ahead
@@ -86,9 +87,7 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
 
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   const double height = u.dot(normal);
-  const Vec3 goal = height < 0 ? Vec3(u - height * normal) : u;
-  const double distance = goal.norm();
-  return along(goal, step_length(distance, p), distance);
+  return step_towards(height < 0 ? Vec3(u - height * normal) : u, p);
 }
 
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
