@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/input_error.h"
@@ -59,6 +60,9 @@ class TestFolder {
 };
 
 std::string bytes_of(const std::filesystem::path& file);
+
+// The names of what is in a folder, in order.
+std::vector<std::string> files_in(const std::filesystem::path& folder);
 
 // The bytes of a value as they are in memory.
 template <class Value>

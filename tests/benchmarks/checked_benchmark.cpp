@@ -1,0 +1,38 @@
+#include "tests/benchmarks/checked_benchmark.h"
+
+#include <memory>
+
+namespace remote_touch::benchmarks {
+namespace {
+
+bool mismatch = false;
+
+}  // namespace
+
+std::vector<const Kernels*> levels() {
+  std::vector<const Kernels*> all;
+  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
+    if (isa <= best_isa()) all.push_back(&kernels_for(isa));
+  return all;
+}
+
+// Checked once a process: repetitions and calibration run the same code on the same data.
+void add(const std::string& name, const std::function<bool()>& is_right,
+         const std::function<void(benchmark::State&)>& time) {
+  const auto checked = std::make_shared<bool>(false);
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    if (!*checked && !is_right()) {
+      mismatch = true;
+      state.SkipWithError("the answers differ from the reference");
+      return;
+    }
+    *checked = true;
+    time(state);
+  });
+}
+
+bool mismatch_seen() {
+  return mismatch;
+}
+
+}  // namespace remote_touch::benchmarks

@@ -1,0 +1,25 @@
+// Benchmarks whose answers are compared with a reference before they are timed.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/kernels.h"
+
+namespace remote_touch::benchmarks {
+
+// The kernels of every instruction set level that this machine has.
+std::vector<const Kernels*> levels();
+
+// time() runs only if is_right(); otherwise the benchmark is skipped with an error. Both are called after the
+// call of add().
+void add(const std::string& name, const std::function<bool()>& is_right,
+         const std::function<void(benchmark::State&)>& time);
+
+// Whether any answer differed so far.
+bool mismatch_seen();
+
+}  // namespace remote_touch::benchmarks

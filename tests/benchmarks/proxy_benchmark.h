@@ -1,0 +1,24 @@
+// The parts of proxy_benchmark. What is given to them must live until the benchmarks have run.
+#pragma once
+
+#include <vector>
+
+#include "tests/benchmarks/naive_proxy.h"
+#include "tests/benchmarks/slide.h"
+
+namespace remote_touch::benchmarks {
+
+// One proxy step; still is stopped(slide).
+void add_steps(const Slide& slide, const Slide& still);
+
+// Whole ticks of the renderer.
+void add_ticks(const Slide& slide);
+
+// Radius queries around centres that slide and centres that jump, on every cloud there is.
+std::vector<naive::Queries> query_sets();
+void add_queries(const naive::Queries& queries);
+
+// The normals of the noise.
+void add_normals();
+
+}  // namespace remote_touch::benchmarks

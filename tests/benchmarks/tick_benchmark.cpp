@@ -1,0 +1,54 @@
+// Whole ticks of the renderer.
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+
+#include "core/proxy_renderer.h"
+#include "tests/benchmarks/checked_benchmark.h"
+#include "tests/benchmarks/proxy_benchmark.h"
+
+namespace remote_touch::benchmarks {
+namespace {
+
+bool ticks_agree(const Slide& slide, const Kernels& kernels) {
+  ProxyRenderer renderer(kSettings, kTickRate_hz, kernels);
+  renderer.on_frame({0, 0, 0, slide.search});
+  for (std::size_t i = 0; i < kCheckedTicks; ++i) {
+    const double time_s = i / kTickRate_hz;
+    const Vec3 hip_W = i == 0 ? slide.above : hip_at(slide, time_s);
+    if ((renderer.step({hip_W}, time_s).proxy_W - slide.expected_ticks[i]).norm() > 1e-9) return false;
+  }
+  return true;
+}
+
+void time_ticks(benchmark::State& state, const Slide& slide, const Kernels& kernels) {
+  constexpr int kTicksOneWay = 500;
+  ProxyRenderer renderer(kSettings, kTickRate_hz, kernels);
+  renderer.on_frame({0, 0, 0, slide.search});
+  renderer.step({slide.above}, 0);
+  for (int i = 0; i < 10; ++i) renderer.step({slide.start}, 0);  // down to the surface
+  int tick = 0, way = 1;
+  double steps = 0, in_contact = 0;
+  for (auto _ : state) {
+    const RenderOutput out = renderer.step({hip_at(slide, tick / kTickRate_hz)}, 0);
+    steps += out.steps;
+    in_contact += out.state == ContactState::contact ? 1 : 0;
+    tick += way;
+    if (tick == 0 || tick == kTicksOneWay) way = -way;
+  }
+  using Counter = benchmark::Counter;
+  state.counters["steps"] = Counter(steps, Counter::kAvgIterations);
+  state.counters["in_contact"] = Counter(in_contact, Counter::kAvgIterations);
+  state.counters["s_per_step"] = Counter(steps, Counter::kIsRate | Counter::kInvert);
+}
+
+}  // namespace
+
+void add_ticks(const Slide& slide) {
+  for (const Kernels* kernels : levels())
+    add(
+        "tick/" + slide.name + "/" + kernels->isa, [&slide, kernels] { return ticks_agree(slide, *kernels); },
+        [&slide, kernels](benchmark::State& state) { time_ticks(state, slide, *kernels); });
+}
+
+}  // namespace remote_touch::benchmarks

@@ -1,0 +1,82 @@
+# What the tests of the command line share: an empty folder to work in, and checks of what a command does.
+# A test begins with `source checks.sh PROGRAM`, and its last command is `finish`.
+# shellcheck shell=bash
+set -uo pipefail
+program=$(realpath "${1:?usage: $0 PROGRAM}") || exit 2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+unset REMOTE_TOUCH_DATA REMOTE_TOUCH_ISA OMP_NUM_THREADS GLIBC_TUNABLES
+export LC_ALL=C
+
+failures=0
+pass() { echo "ok      $1"; }
+fail() { echo "FAILED  $1: $2"; failures=$((failures + 1)); }
+skip() { echo "skipped $1: $2"; }
+
+# is NAME COMMAND...: the command succeeds.
+is() {
+  local name=$1
+  shift
+  if "$@" >is.log 2>&1; then pass "$name"; else fail "$name" "$* ($(head -c 300 is.log))"; fi
+}
+
+# succeeds NAME ARGUMENT...: exit 0 and a silent stderr; stdout is kept in the file out.
+succeeds() {
+  local name=$1 code=0
+  shift
+  "$program" "$@" >out 2>err || code=$?
+  if [[ $code -eq 0 && ! -s err ]]; then pass "$name"; else fail "$name" "exit $code, $(head -c 300 err)"; fi
+}
+
+# The folder made is where every refused command would write.
+mkdir made
+nothing_left() { [[ -z $(find made -mindepth 1) ]]; }
+is_one_message() { [[ $(wc -l <err) -eq 1 && $(<err) == 'remote-touch: '* ]]; }
+
+# judge_refusal NAME CODE WORD...: exit 2, one line with every word, no file left behind.
+judge_refusal() {
+  local name=$1 code=$2 word missing=
+  shift 2
+  for word in "$@"; do grep -qF -e "$word" err || missing+=" '$word'"; done
+  if [[ $code -ne 2 ]]; then
+    fail "$name" "exit $code instead of 2: $(head -c 300 err)"
+  elif ! is_one_message; then
+    fail "$name" "not one line from remote-touch: $(head -c 300 err)"
+  elif [[ -n $missing ]]; then
+    fail "$name" "says nothing of$missing: $(<err)"
+  elif ! nothing_left; then
+    fail "$name" "left $(find made -mindepth 1 | tr '\n' ' ')"
+  else
+    pass "$name"
+  fi
+  find made -mindepth 1 -delete
+}
+
+# refused NAME WORD... -- ARGUMENT...
+refused() {
+  local name=$1 words=() code=0
+  shift
+  while [[ $1 != -- ]]; do words+=("$1") && shift; done
+  shift
+  "$program" "$@" >out 2>err || code=$?
+  judge_refusal "$name" "$code" "${words[@]}"
+}
+# Of a run that would write made/x.h5.
+run_refused() {
+  local name=$1 words=()
+  shift
+  while [[ $1 != -- ]]; do words+=("$1") && shift; done
+  shift
+  refused "$name" "${words[@]}" -- run "$@" -o made/x.h5
+}
+
+digest_of() { "$program" run "$@" -o digest.h5 2>&1 | sed -n 's/.*digest //p'; }
+# entries_of SECTION: the names that `list` has in it.
+entries_of() { "$program" list | sed -n "/^$1\$/,/^[a-z]/s/^  \([^ ]*\) .*/\1/p"; }
+
+# Tells how it went, and succeeds if every check did.
+finish() {
+  if [[ $failures -eq 0 ]]; then echo "all as it should be"; else echo "$failures FAILED"; fi
+  [[ $failures -eq 0 ]]
+}
