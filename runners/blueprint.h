@@ -10,7 +10,7 @@
 #include "core/noise.h"
 #include "core/parameter.h"
 #include "core/renderer.h"
-#include "runners/trajectory.h"
+#include "runners/trajectories/trajectory.h"
 #include "scenarios/scenario.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "core/input_error.h"
-#include "runners/commands.h"
+#include "runners/commands/commands.h"
 #include "runners/provenance.h"
 #include "runners/simulation.h"
 

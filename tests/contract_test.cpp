@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "runners/catalog.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 #include "tests/allocation_counter.h"
 #include "tests/scenes.h"
 #include "tests/test_files.h"

@@ -1,4 +1,4 @@
-#include "runners/trajectory.h"
+#include "runners/trajectories/trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/input_error.h"
-#include "runners/follow_surface.h"
-#include "runners/image_scan.h"
-#include "runners/polyline_path.h"
-#include "runners/press.h"
-#include "runners/waypoints.h"
+#include "runners/trajectories/follow_surface.h"
+#include "runners/trajectories/image_scan.h"
+#include "runners/trajectories/polyline_path.h"
+#include "runners/trajectories/press.h"
+#include "runners/trajectories/waypoints.h"
 #include "scenarios/camera_scene.h"
 #include "scenarios/flat_grid.h"
 #include "scenarios/moving_lift.h"

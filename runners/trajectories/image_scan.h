@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parameter.h"
-#include "runners/polyline_path.h"
-#include "runners/trajectory.h"
+#include "runners/trajectories/polyline_path.h"
+#include "runners/trajectories/trajectory.h"
 #include "scenarios/scenario.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/waypoints.h"
+#include "runners/trajectories/waypoints.h"
 
 namespace remote_touch {
 

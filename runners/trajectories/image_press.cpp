@@ -1,11 +1,11 @@
-#include "runners/image_press.h"
+#include "runners/trajectories/image_press.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/input_error.h"
-#include "runners/seen_object.h"
-#include "runners/seen_surface.h"
+#include "runners/trajectories/seen_object.h"
+#include "runners/trajectories/seen_surface.h"
 
 namespace remote_touch {
 

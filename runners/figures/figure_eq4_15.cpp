@@ -1,7 +1,7 @@
 // Equation (4.15): the force between the updates of a cloud that moves evenly, for the three readings of its
 // sign.
 #include "analysis/measures.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 
@@ -40,7 +40,7 @@ Table force_table(const std::string& name, const Trace& trace) {
 
 }  // namespace
 
-Figure figure_force(const Laboratory& laboratory) {
+Figure figure_eq4_15(const Laboratory& laboratory) {
   Figure figure{"eq4.15",
                 "Force between updates",
                 "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "

@@ -1,4 +1,4 @@
-#include "runners/press.h"
+#include "runners/trajectories/press.h"
 
 #include <algorithm>
 #include <cmath>

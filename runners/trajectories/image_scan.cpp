@@ -1,12 +1,12 @@
-#include "runners/image_scan.h"
+#include "runners/trajectories/image_scan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/input_error.h"
-#include "runners/seen_object.h"
-#include "runners/seen_surface.h"
+#include "runners/trajectories/seen_object.h"
+#include "runners/trajectories/seen_surface.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 
 #include "analysis/contact_point.h"
 #include "analysis/measures.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 

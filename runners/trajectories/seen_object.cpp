@@ -1,4 +1,4 @@
-#include "runners/seen_object.h"
+#include "runners/trajectories/seen_object.h"
 
 #include <algorithm>
 #include <cmath>

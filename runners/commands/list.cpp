@@ -2,9 +2,9 @@
 
 #include "analysis/measures.h"
 #include "runners/catalog.h"
-#include "runners/commands.h"
+#include "runners/commands/commands.h"
 #include "runners/experiment.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 

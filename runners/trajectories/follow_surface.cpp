@@ -1,4 +1,4 @@
-#include "runners/follow_surface.h"
+#include "runners/trajectories/follow_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/contact_point.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/polyline_path.h"
+#include "runners/trajectories/polyline_path.h"
 
 #include <algorithm>
 

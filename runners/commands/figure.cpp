@@ -8,9 +8,9 @@
 #include "analysis/result_file.h"
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
-#include "runners/commands.h"
-#include "runners/figures.h"
-#include "runners/progress.h"
+#include "runners/commands/commands.h"
+#include "runners/commands/progress.h"
+#include "runners/figures/figures.h"
 #include "runners/provenance.h"
 #include "scenarios/recorded_scene.h"
 

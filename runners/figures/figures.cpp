@@ -1,4 +1,4 @@
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 #include <exception>
 
@@ -11,7 +11,7 @@ constexpr FigureEntry kFigures[] = {
      figure_4_11},
     {"4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12},
     {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14},
-    {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_force},
+    {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15},
     {"4.16", "ramp and box seen by a simulated depth camera: proxy path and force", figure_4_16},
     {"4.16-recorded", "the same experiment on recorded depth images and clouds", figure_4_16_recorded},
 };

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/parameter.h"
-#include "runners/trajectory.h"
+#include "runners/trajectories/trajectory.h"
 #include "scenarios/scenario.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/seen_surface.h"
+#include "runners/trajectories/seen_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/hdf5_file.h"
-#include "runners/commands.h"
+#include "runners/commands/commands.h"
 #include "runners/json_parameters.h"
 
 namespace remote_touch {

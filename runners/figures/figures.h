@@ -48,6 +48,6 @@ Figure figure_4_12(const Laboratory& laboratory);
 Figure figure_4_14(const Laboratory& laboratory);
 Figure figure_4_16(const Laboratory& laboratory);
 Figure figure_4_16_recorded(const Laboratory& laboratory);
-Figure figure_force(const Laboratory& laboratory);
+Figure figure_eq4_15(const Laboratory& laboratory);
 
 }  // namespace remote_touch

@@ -3,9 +3,9 @@
 #include "analysis/measures.h"
 #include "analysis/result_file.h"
 #include "analysis/whole_file.h"
-#include "runners/commands.h"
+#include "runners/commands/commands.h"
+#include "runners/commands/progress.h"
 #include "runners/experiment.h"
-#include "runners/progress.h"
 #include "runners/provenance.h"
 #include "runners/simulation.h"
 

@@ -4,7 +4,7 @@
 
 #include "analysis/ball_closing.h"
 #include "analysis/contact_point.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 

@@ -2,7 +2,7 @@
 #include <numeric>
 
 #include "analysis/measures.h"
-#include "runners/figures.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 
