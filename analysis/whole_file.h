@@ -11,7 +11,8 @@ namespace remote_touch {
 // nor a temporary.
 void write_whole_file(const std::filesystem::path& target, const void* data, std::size_t size);
 
-// Throws as write_whole_file would for a folder that is missing or not writable, before any work is done for the file.
+// Throws as write_whole_file would for a folder that is missing or not writable, before any work is done for
+// the file.
 void require_writable(const std::filesystem::path& target);
 
 }  // namespace remote_touch

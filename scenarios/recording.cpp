@@ -73,6 +73,14 @@ int pixel_count(const fs::path& file, const nlohmann::json& json, const std::str
   refuse(file, key + " = " + json[key].dump() + ": allowed a whole number from 1 to 65535");
 }
 
+// Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
+double frame_rate(const fs::path& file, const nlohmann::json& json) {
+  constexpr double kMost_hz = 10000;
+  const double value = number(file, json, "frame_rate_hz", true);
+  if (value <= kMost_hz) return value;
+  refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": allowed above 0 to 10000");
+}
+
 // The intrinsics and the scale, all needed; colour_registered is optional.
 CameraFile read_camera(const fs::path& file, const nlohmann::json& json) {
   CameraFile result;
@@ -149,7 +157,7 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
   const CameraFile camera = read_camera(camera_file, json);
   RecordingIndex index;
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
-  index.frame_rate_hz = number(camera_file, json, "frame_rate_hz", true);
+  index.frame_rate_hz = frame_rate(camera_file, json);
   append_frames(index, files_in_order(folder / "depth", ".png"));
   if (index.frames.empty()) refuse(folder / "depth", "holds no .png file");
   for (RecordedFrame& frame : index.frames) {
@@ -163,7 +171,7 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
   RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}};
   if (fs::exists(camera_file)) {
-    index.frame_rate_hz = number(camera_file, parse_camera_file(camera_file), "frame_rate_hz", true);
+    index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
   }
   append_frames(index, files);
   const PcdCloud first = read_pcd(files.front());
