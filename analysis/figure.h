@@ -42,7 +42,7 @@ struct Claim {
 // measured within [low, high].
 Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
                     double high, std::string unit);
-// measured at most, at least, or exactly a value.
+// measured at most, or at least, a value.
 Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
                     std::string unit);
 Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,

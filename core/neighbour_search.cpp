@@ -55,6 +55,11 @@ PixelRange tangent_range(double lateral, double z, double radius, double focal, 
 ImageWindowSearch::ImageWindowSearch(PointCloud cloud) : CloudSearch(std::move(cloud)) {
   if (!cloud_.image) throw std::invalid_argument("ImageWindowSearch: the cloud has no image layout");
   X_CW_ = cloud_.image->X_WC.inverse();
+  nearest_depth_m_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    const double depth = X_CW_.linear().row(2).dot(cloud_.point(i)) + X_CW_.translation().z();
+    nearest_depth_m_ = depth < nearest_depth_m_ ? depth : nearest_depth_m_;  // NaN is not less
+  }
 }
 
 void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
@@ -63,7 +68,9 @@ void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, Gathere
   // Rounding of the transform and of the points, far above what double leaves at room scale.
   const double radius = ball.radius * (1 + 1e-9) + 1e-9;
   PixelRange columns{0, camera.width - 1}, rows{0, camera.height - 1};
-  if (c_C.z() < -radius) return;  // behind the camera; nothing was measured there
+  // Behind all that was measured there is nothing to find in front of it: a ball at the camera need not see
+  // it all.
+  if (!(c_C.z() + radius >= nearest_depth_m_)) return;
   if (c_C.z() > 1.001 * radius) {
     const double slack = cloud_.image->pixel_slack;
     columns = tangent_range(c_C.x(), c_C.z(), radius, camera.fx, camera.cx, slack, camera.width);

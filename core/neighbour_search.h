@@ -58,6 +58,7 @@ class ImageWindowSearch final : public CloudSearch {
 
  private:
   RigidTransform X_CW_;
+  double nearest_depth_m_;  // of the whole image
 };
 
 // Looks at the cells of a uniform grid that the ball's bounding box meets. Points are stored cell after cell,

@@ -19,7 +19,7 @@ Parameters parameters(ProxyParameters& p) {
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
        "carry the proxy with the cloud at updates (4.3), (4.13)"},
       {"longest_prediction_s", &p.longest_prediction_s, 0, 10,
-       "frames further apart than this are treated as this far apart in (4.3)"},
+       "(4.3) carries the proxy, and (4.15) the force, no longer than this beyond a frame (or one frame interval)"},
       {"step_rule", choice(p.step_rule, {"variable", "fixed"}), 0, 0,
        "step sizes of 4.2.4, or fixed small steps as in the predecessor [1]"},
       {"fixed_step_m", &p.fixed_step_m, 1e-7, 0.01, "step length of the fixed rule"},

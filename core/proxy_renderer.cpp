@@ -1,10 +1,16 @@
 #include "core/proxy_renderer.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/proxy_step.h"
 
 namespace remote_touch {
+
+namespace {
+// A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
+constexpr double kFarthestHip_m = 1e6;
+}  // namespace
 
 ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
     : p_(parameters),
@@ -33,7 +39,8 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out;
   out.proxy_W = proxy_W_, out.normal_W = normal_W_;
   out.frame_index = frame_index_;
-  if (!hip_W.allFinite()) {  // hold still and let go: a force from a lost position would be a guess
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
+    // Hold still and let go: a force from a lost position would be a guess.
     coupling_.release();
     out.status = RenderStatus::device_not_finite;
     return out;
@@ -128,8 +135,9 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
     return Vec3::Zero();
   }
   const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
-  return coupling_.force(hip_W - p_W, time_s - frame_arrived_s_, velocity_.vector(),
-                         contact_stiffness_N_per_m_);
+  // Bounded: when frames stop to come, the surface is no longer taken to go on.
+  const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
+  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_);
 }
 
 // (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.

@@ -8,7 +8,8 @@ namespace remote_touch {
 
 enum class ContactState { free = 0, contact = 1, entrenched = 2 };
 
-// Why an output is not an ordinary one. The most serious reason wins.
+// Why an output is not an ordinary one. device_not_finite also stands for a HIP more than 1000 km away. The
+// most serious reason wins.
 enum class RenderStatus {
   ok = 0,
   stale_frame_dropped = 1,

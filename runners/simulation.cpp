@@ -9,13 +9,17 @@ namespace remote_touch {
 
 namespace {
 
+// A frame that arrives with a tick belongs to it, however the sum of two times was rounded.
+constexpr double kSameTime_s = 5e-7;
+
 // Hands frames over when they arrive.
 class FrameStream {
  public:
   FrameStream(const Scenario& scenario, double latency_s) : scenario_(scenario), latency_s_(latency_s) {}
 
   void deliver_until(double time_s, Renderer& renderer) {
-    while (next_ < scenario_.frame_count() && scenario_.captured_s(next_) + latency_s_ <= time_s) {
+    while (next_ < scenario_.frame_count() &&
+           scenario_.captured_s(next_) + latency_s_ <= time_s + kSameTime_s) {
       const double captured = scenario_.captured_s(next_);
       renderer.on_frame({next_, captured, captured + latency_s_, scenario_.points(next_)});
       ++next_;

@@ -35,13 +35,6 @@ MovingLift::MovingLift(const Settings& settings, const NoiseKey& key, const Kern
   }
 }
 
-double MovingLift::frame_height(double time_s) const {
-  // Half a microsecond lets a time that is a frame's own count, however it was rounded.
-  const double newest = std::floor((time_s + 5e-7) * settings_.frame_rate_hz);
-  return height_m_[static_cast<std::size_t>(
-      std::clamp(newest, 0.0, static_cast<double>(height_m_.size() - 1)))];
-}
-
 double MovingLift::height(double time_s) const {
   const double last = static_cast<double>(height_m_.size() - 1);
   const double place = std::clamp(time_s * settings_.frame_rate_hz, 0.0, last);

@@ -31,13 +31,12 @@ class MovingLift final : public Scenario {
   PointCloud cloud(int frame) const override;
   // Over the plane of the newest frame: pop-through is judged against what the camera has seen.
   double signed_distance(const Vec3& p_W, double time_s) const override {
-    return p_W.y() - frame_height(time_s);
+    return p_W.y() - height_m_[static_cast<std::size_t>(newest_frame(time_s))];
   }
   // Of the plane as it moves evenly from one frame's height to the next; it rests after the last.
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 
  private:
-  double frame_height(double time_s) const;
   double height(double time_s) const;
 
   const Settings settings_;

@@ -15,7 +15,10 @@ int clamped(double place, int count) {
 }  // namespace
 
 NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
-    : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {}
+    : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
+  index_.reserve(size());
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->reserve(size());
+}
 
 // The part of the grid from which a point can reach the ball; empty when the plane itself is out of reach.
 NoisyGridSearch::Window NoisyGridSearch::window(const Ball& ball, double margin_m) const {
@@ -44,10 +47,10 @@ void NoisyGridSearch::make(const Window& w, const Kernels& kernels) const {
       x_.push_back(grid_.x(column)), y_.push_back(height_m_), z_.push_back(grid_.z(row));
     }
   if (sigma_m_ == 0) return;
-  std::vector<double> nx(index_.size()), ny(index_.size()), nz(index_.size());
-  kernels.normals(stream_, index_.data(), index_.size(), nx.data(), ny.data(), nz.data());
+  for (auto* column : {&nx_, &ny_, &nz_}) column->resize(index_.size());
+  kernels.normals(stream_, index_.data(), index_.size(), nx_.data(), ny_.data(), nz_.data());
   for (std::size_t i = 0; i < index_.size(); ++i)
-    x_[i] += sigma_m_ * nx[i], y_[i] += sigma_m_ * ny[i], z_[i] += sigma_m_ * nz[i];
+    x_[i] += sigma_m_ * nx_[i], y_[i] += sigma_m_ * ny_[i], z_[i] += sigma_m_ * nz_[i];
 }
 
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {

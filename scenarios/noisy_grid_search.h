@@ -35,7 +35,8 @@ class NoisyGridSearch final : public NeighbourSearch {
   const NoiseStream stream_;
   mutable Window made_;
   mutable std::vector<std::uint32_t> index_;
-  mutable std::vector<double> x_, y_, z_;
+  mutable std::vector<double> x_, y_, z_, nx_, ny_,
+      nz_;  // room for all points, so that a query never allocates
 };
 
 }  // namespace remote_touch

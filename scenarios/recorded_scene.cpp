@@ -135,10 +135,7 @@ Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!p_W.allFinite() || !(p_W.z() > 0)) return unknown;
-  int frame = std::min(static_cast<int>(std::max(0.0, time_s) * rate_hz_ + 1e-6), frame_count() - 1);
-  while (frame > 0 && captured_s(frame) > time_s) --frame;
-  while (frame + 1 < frame_count() && captured_s(frame + 1) <= time_s) ++frame;
-  const PointCloud& cloud = measured(source_frame(frame))->cloud();
+  const PointCloud& cloud = measured(source_frame(newest_frame(time_s)))->cloud();
   if (!cloud.image) return unknown;
   const CameraIntrinsics& camera = cloud.image->camera;
   const double u = std::floor(camera.fx * p_W.x() / p_W.z() + camera.cx + 0.5);

@@ -42,7 +42,12 @@ nlohmann::json parse_camera_file(const fs::path& file) {
       "width", "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered"};
   std::ifstream stream(file);
   try {
-    nlohmann::json json = nlohmann::json::parse(stream);
+    // The keys hold plain values. Deeper nesting is no camera, and deep enough it would exhaust the stack.
+    const auto refuse_deep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+      if (depth > 4) refuse(file, "is nested too deep: allowed an object of plain values");
+      return true;
+    };
+    nlohmann::json json = nlohmann::json::parse(stream, refuse_deep);
     if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": allowed object");
     for (const auto& [key, value] : json.items()) {
       if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;

@@ -24,6 +24,10 @@ class Scenario {
   virtual int frame_count() const = 0;
   virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
 
+  // The newest frame captured by then; half a microsecond lets a frame's own time count, however it was
+  // rounded.
+  int newest_frame(double time_s) const;
+
   // What a renderer touches. The noise of a point may be made when it is asked for.
   virtual std::shared_ptr<const NeighbourSearch> points(int frame) const = 0;
   // The same frame with every point made: for drawing, for planning a path and as the oracle of points().

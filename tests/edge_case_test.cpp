@@ -116,6 +116,17 @@ TEST(EdgeCase, HipJumpsAcrossTheCloud) {
   EXPECT_EQ(back.proxy_W, Vec3(0.01, 3, 0));
 }
 
+TEST(EdgeCase, AHipBeyondAllReasonIsRefused) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(100)));
+  hold(renderer, Vec3(0, 0.02, 0), 1);
+  for (const double far : {1e7, 1e155, 1e300}) {
+    const RenderOutput out = renderer.step({Vec3(far, 0, -far)}, 0.002);
+    EXPECT_EQ(out.status, RenderStatus::device_not_finite);
+    EXPECT_EQ(out.proxy_W, Vec3(0, 0.02, 0));
+  }
+}
+
 // A square grid holds a ball as long as half its diagonal is shorter than the radius: spacing sqrt(2) r_c.
 TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
   for (const bool holds : {true, false}) {

@@ -82,6 +82,32 @@ TEST(ForceOverTime, CountsFromTheArrivalOfTheFrame) {
   }
 }
 
+// The cloud stops to come while v_hat is 0.1 m/s: the force may go on as if it rose for longest_prediction_s,
+// no longer.
+TEST(ForceOverTime, StaysBoundedWhenTheStreamStops) {
+  const Trace trace = simulate(Experiment::load(
+      "fig4.12", {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0", "scenario.rise_frames=20",
+                  "scenario.acceleration_frames=0", "duration_s=4"}));
+  for (std::size_t i = 800; i < trace.length(); ++i)
+    ASSERT_LE(trace.force(i).norm(), kStiffness * (0.03 + kContactRadius + 0.1 * 0.1 + 1e-3)) << i;
+  EXPECT_EQ(trace.force(trace.length() - 1), trace.force(trace.length() - 1000));
+}
+
+// Below 10 Hz a frame interval is longer than longest_prediction_s: the estimate must be right all the same.
+TEST(ForceOverTime, SlowStreamsHaveARightVelocity) {
+  ProxyRenderer renderer = scenes::renderer();
+  RenderOutput out;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const int frame = tick / 250;
+    if (tick % 250 == 0)
+      renderer.on_frame({frame, 0.25 * frame, 0.25 * frame,
+                         make_search(scenes::flat_grid(40, 0.0015, 0.003 * frame - 0.02))});
+    out = renderer.step({Vec3(0, tick < 2000 ? 0.005 : 0.003 * frame - 0.04, 0)}, 0.001 * tick);
+    if (frame <= 12) continue;
+    ASSERT_NEAR(out.surface_velocity_m_per_s, 0.012, 1e-4) << tick;
+  }
+}
+
 TEST(ForceOverTime, LatencyDelaysTheFrames) {
   const Trace trace = simulate(Experiment::load("fig4.11", {"frame_latency_s=0.05", "duration_s=0.1"}));
   for (std::size_t i = 0; i < trace.length(); ++i) EXPECT_EQ(trace.frame_index[i], i < 50 ? -1 : 0) << i;

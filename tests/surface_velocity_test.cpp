@@ -128,8 +128,23 @@ TEST(SurfaceVelocity, PredictionIsBoundedWhenFramesStayAway) {
   const double v = velocity.m_per_s();
   EXPECT_NEAR(velocity.on_frame(kInterval + 60, kUp).y(), v * longest, 1e-16);
   velocity.on_step(0.001 * kUp);
-  EXPECT_NEAR(velocity.m_per_s(), v + 0.001 / longest, 1e-15);
+  // What it was carried and the step, over the true time.
+  EXPECT_NEAR(velocity.m_per_s(), (v * longest + 0.001) / 60, 1e-15);
   EXPECT_NEAR(velocity.on_frame(2 * kInterval + 60, kUp).y(), velocity.m_per_s() * kInterval, 1e-15);
+}
+
+// More frames than steps: they count as one, over their whole time.
+TEST(SurfaceVelocity, FramesWithoutAStepBetweenThemCountAsOne) {
+  SurfaceVelocity velocity(0.1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(0.001, kUp);
+  velocity.on_frame(0.002, kUp);
+  velocity.on_step(0.0002 * kUp);
+  EXPECT_NEAR(velocity.m_per_s(), 0.1, 1e-15);
+  const double first = velocity.on_frame(0.003, kUp).y(), second = velocity.on_frame(0.004, kUp).y();
+  EXPECT_NEAR(first + second, 0.0002, 1e-17);
+  velocity.on_step(Vec3::Zero());
+  EXPECT_NEAR(velocity.m_per_s(), 0.1, 1e-15);
 }
 
 }  // namespace

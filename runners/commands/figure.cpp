@@ -18,14 +18,17 @@ namespace remote_touch {
 
 namespace {
 
+// Each once, in the order of the table.
 std::vector<const FigureEntry*> chosen_figures(const std::vector<std::string>& names) {
-  std::vector<const FigureEntry*> chosen;
   for (const std::string& name : names) {
-    const std::size_t before = chosen.size();
-    for (const FigureEntry& entry : figures())
-      if (name == "all" || name == entry.name) chosen.push_back(&entry);
-    if (chosen.size() == before)
+    const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
+    if (std::none_of(figures().begin(), figures().end(), is_named))
       throw InputError("figure " + name, "unknown; allowed a name that remote-touch list prints");
+  }
+  std::vector<const FigureEntry*> chosen;
+  for (const FigureEntry& entry : figures()) {
+    const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
+    if (std::any_of(names.begin(), names.end(), names_it)) chosen.push_back(&entry);
   }
   return chosen;
 }

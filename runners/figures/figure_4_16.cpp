@@ -57,12 +57,26 @@ double wrong_side_share(const Trace& trace) {
   return known == 0 ? std::nan("") : static_cast<double>(wrong) / static_cast<double>(known);
 }
 
+// Share of the ticks in which the HIP is held back whose truth is known: of the others nothing is claimed.
+double known_share(const Trace& trace) {
+  std::size_t pressed = 0, known = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (!pressing(trace, i, kContactRadius_m)) continue;
+    ++pressed;
+    known += std::isnan(trace.signed_distance_m[i]) ? 0 : 1;
+  }
+  return pressed == 0 ? std::nan("") : static_cast<double>(known) / static_cast<double>(pressed);
+}
+
 void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
   const std::string prefix = where.empty() ? "" : where + ": ";
   const auto none = [&](const std::string& what, double share) {
     figure.claims.push_back(claim_at_most(figure.name, prefix + what, "none", share, 0, "share"));
   };
   none("ticks with the proxy on the wrong side of the surface", wrong_side_share(trace));
+  figure.claims.push_back(claim_at_least(figure.name,
+                                         prefix + "touching ticks in which the true side is known", "-",
+                                         known_share(trace), 0.7, "share"));
   none("ticks with a number that is not finite", non_finite_share(trace));
   none("ticks in which the HIP was held back without force", share_without_force(trace, kContactRadius_m));
 }

@@ -51,18 +51,10 @@ double ImagePress::seen_depth(int frame) const {
              supported_depth(depth_image(scenario_.cloud(frame)), column_, row_, image_.camera.fx, support);
 }
 
-int ImagePress::newest_frame(double time_s) const {
-  const int last = scenario_.frame_count() - 1;
-  int frame = static_cast<int>(std::min(time_s * scenario_.frame_rate_hz(), static_cast<double>(last)));
-  while (frame > 0 && scenario_.captured_s(frame) > time_s) --frame;
-  while (frame < last && scenario_.captured_s(frame + 1) <= time_s) ++frame;
-  return frame;
-}
-
 DeviceState ImagePress::at(double time_s) const {
   const double travelled = settings_.approach_m_per_s * std::max(0.0, time_s - settings_.press_at_s);
   double offset = std::min(travelled - settings_.clearance_m, settings_.depth_m);
-  int frame = newest_frame(time_s);
+  int frame = scenario_.newest_frame(time_s);
   if (std::isnan(seen_depth(frame))) offset = -settings_.clearance_m;
   while (std::isnan(seen_depth(frame))) --frame;  // ends at frame 0, which the constructor checked
   return {image_.X_WC * unproject(image_.camera, column_, row_, seen_depth(frame) + offset)};

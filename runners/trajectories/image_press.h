@@ -34,7 +34,6 @@ class ImagePress final : public Trajectory {
 
  private:
   double seen_depth(int frame) const;
-  int newest_frame(double time_s) const;
 
   const Settings settings_;
   const Scenario& scenario_;

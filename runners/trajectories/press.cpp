@@ -1,6 +1,5 @@
 #include "runners/trajectories/press.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/input_error.h"
@@ -26,11 +25,7 @@ Press::Press(const Settings& settings, const Scenario& scenario) : settings_(set
 DeviceState Press::at(double time_s) const {
   if (time_s < settings_.press_at_s) return {settings_.start_m};
   double surface_time_s = time_s;
-  if (settings_.per_frame) {
-    // The newest frame captured by now; the half-microsecond lets a tick at the frame's own time count.
-    const double newest = std::floor((time_s + 5e-7) * scenario_.frame_rate_hz());
-    surface_time_s = scenario_.captured_s(static_cast<int>(std::min(newest, scenario_.frame_count() - 1.0)));
-  }
+  if (settings_.per_frame) surface_time_s = scenario_.captured_s(scenario_.newest_frame(time_s));
   const double y = scenario_.surface_height(settings_.start_m.x(), settings_.start_m.z(), surface_time_s);
   return {Vec3(settings_.start_m.x(), y - settings_.depth_m, settings_.start_m.z())};
 }
