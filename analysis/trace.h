@@ -23,7 +23,6 @@ struct Trace {
   Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
   Vec3 force(std::size_t i) const { return row(force_N, i); }
   Vec3 normal_at(std::size_t i) const { return row(normal, i); }
-  ContactState state_at(std::size_t i) const { return static_cast<ContactState>(state[i]); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 

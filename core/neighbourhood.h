@@ -23,7 +23,6 @@ class Neighbourhood {
   // limit when nothing is met before. Looks at the whole swept tube.
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
 
-  bool empty() const { return !points_ || points_->size() == 0; }
   // M of kernels.h for sums over the present list.
   double sum_grid() const { return sum_grid_; }
 

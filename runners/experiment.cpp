@@ -103,11 +103,4 @@ std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels) con
   return renderer_->build(settings_.haptic_rate_hz, kernels);
 }
 
-double Experiment::renderer_number(const std::string& name) const {
-  for (const Parameter& p : renderer_->settings())
-    if (p.name == name)
-      if (const auto* value = std::get_if<double*>(&p.value)) return **value;
-  throw InputError("renderer." + name, "not a number of the renderer " + renderer_name_);
-}
-
 }  // namespace remote_touch

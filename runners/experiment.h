@@ -35,8 +35,6 @@ class Experiment {
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
   std::unique_ptr<Renderer> build_renderer(const Kernels& kernels) const;
-  // Of the renderer, for analyses that need r_c; throws InputError when there is no such number.
-  double renderer_number(const std::string& name) const;
 
  private:
   RunSettings settings_;

@@ -137,7 +137,8 @@ PointCloud CameraScene::cloud(int frame) const {
       z += settings_.noise_per_m * z * z * normal[u];
       // The sensor counts whole disparities, proportional to 1/z.
       if (steps > 0) z = steps / std::floor(steps / z + 0.5);
-      if (hole_[first + u]) z = std::numeric_limits<double>::quiet_NaN();
+      // Nothing is measured at a hole, nor behind the camera, where strong noise can throw a depth.
+      if (hole_[first + u] || !(z > 0)) z = std::numeric_limits<double>::quiet_NaN();
     }
   }
   return cloud_from_depth(measured, camera_, X_WC_);

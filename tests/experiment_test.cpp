@@ -184,12 +184,5 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
 }
 
-TEST(Experiments, TellNumbersOfTheirRenderer) {
-  const Experiment experiment = Experiment::from_json(kSmall, "small", {"renderer.r1_m=0.004"});
-  EXPECT_EQ(experiment.renderer_number("r1_m"), 0.004);
-  EXPECT_HAS(refusal([&] { (void)experiment.renderer_number("step_rule"); }), "renderer.step_rule");
-  EXPECT_HAS(refusal([&] { (void)experiment.renderer_number("moon"); }), "renderer.moon");
-}
-
 }  // namespace
 }  // namespace remote_touch
