@@ -9,9 +9,6 @@ namespace remote_touch {
 
 namespace {
 
-// A frame that arrives with a tick belongs to it, however the sum of two times was rounded.
-constexpr double kSameTime_s = 5e-7;
-
 // Hands frames over when they arrive.
 class FrameStream {
  public:

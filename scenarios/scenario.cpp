@@ -5,7 +5,6 @@
 namespace remote_touch {
 
 int Scenario::newest_frame(double time_s) const {
-  constexpr double kSameTime_s = 5e-7;
   const int last = frame_count() - 1;
   const double guess = std::max(0.0, time_s) * frame_rate_hz();  // exact for a steady stream
   int frame = static_cast<int>(std::min(guess, static_cast<double>(last)));

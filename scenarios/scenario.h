@@ -13,6 +13,9 @@
 
 namespace remote_touch {
 
+// Two times closer than this are one: sums and quotients of times are rounded differently.
+inline constexpr double kSameTime_s = 5e-7;
+
 // A pure function of its configuration, the noise key and the frame number: asked twice, it answers the same.
 // Positions are in the world frame, metres; y is up in synthetic scenes, recordings keep the camera's frame.
 class Scenario {
