@@ -4,12 +4,9 @@ namespace remote_touch {
 
 void GatheredPoints::reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness) {
   const std::size_t room = cloud_size + 2 * kLanes;
-  const auto grow = [room](auto& column) {
-    if (column.size() < room) column.resize(room);
-  };
-  grow(x_), grow(y_), grow(z_), grow(index_);
-  if (with_radius) grow(radius_);
-  if (with_stiffness) grow(stiffness_);
+  x_.grow(room), y_.grow(room), z_.grow(room), index_.grow(room);
+  if (with_radius) radius_.grow(room);
+  if (with_stiffness) stiffness_.grow(room);
   with_radius_ = with_radius, with_stiffness_ = with_stiffness;
 }
 

@@ -1,8 +1,9 @@
 // The points near the proxy, copied side by side into columns that the kernels read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "core/kernels.h"
 #include "core/vector.h"
@@ -12,6 +13,22 @@ namespace remote_touch {
 struct Ball {
   Vec3 centre;
   double radius;
+};
+
+// Room for numbers that are written before they are read; pages never written cost nothing.
+template <class T>
+class Room {
+ public:
+  // What was stored is lost when the room grows.
+  void grow(std::size_t size) {
+    if (size > size_) numbers_ = std::make_unique_for_overwrite<T[]>(size), size_ = size;
+  }
+  T* data() const { return numbers_.get(); }
+  T& operator[](std::size_t i) const { return numbers_[i]; }
+
+ private:
+  std::unique_ptr<T[]> numbers_;
+  std::size_t size_ = 0;
 };
 
 // Columns are allocated once, by reserve(); adding and clearing never allocate. The order of the points is
@@ -33,8 +50,8 @@ class GatheredPoints {
  private:
   std::size_t count_ = 0;
   bool with_radius_ = false, with_stiffness_ = false;
-  std::vector<double> x_, y_, z_, radius_, stiffness_;
-  std::vector<std::uint32_t> index_;
+  Room<double> x_, y_, z_, radius_, stiffness_;
+  Room<std::uint32_t> index_;
 };
 
 }  // namespace remote_touch

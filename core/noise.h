@@ -30,4 +30,9 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
            static_cast<std::uint32_t>(key.replicate)}};
 }
 
+// The radius of a pair of normals falls with the random word it is made of, so a word above this limit makes
+// a radius below the one given. The limit is generous by a millionth: no word at or above the radius is
+// missed, whatever the last bit of the C library's exp.
+std::uint32_t largest_word(double radius);
+
 }  // namespace remote_touch

@@ -25,6 +25,7 @@ void ProxyRenderer::on_frame(const Frame& frame) {
     return;
   }
   near_.set_points(frame.points);
+  has_look_ = false;
   frame_index_ = frame.index;
   frame_captured_s_ = frame.captured_s;
   frame_arrived_s_ = frame.arrives_s;
@@ -61,14 +62,16 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   return out;
 }
 
-// State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it.
-ProxyRenderer::Look ProxyRenderer::look() {
-  Look here;
-  here.points = near_.around(proxy_W_).view();
+// State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it; kept while it rests.
+const ProxyRenderer::Look& ProxyRenderer::look() {
+  if (has_look_ && proxy_W_ == looked_from_W_) return look_;
+  look_.points = near_.around(proxy_W_).view();
   const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid()};
-  here.survey = kernels_.survey(here.points, proxy_W_.data(), regions);
-  here.state = classify(here.survey.nearest, p_);
-  return here;
+  look_.survey = kernels_.survey(look_.points, proxy_W_.data(), regions);
+  look_.state = classify(look_.survey.nearest, p_);
+  looked_from_W_ = proxy_W_;
+  has_look_ = true;
+  return look_;
 }
 
 // The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
@@ -77,7 +80,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
   bool touched = false;
   for (int k = 1; k <= p_.steps_per_tick; ++k) {
     const Vec3 u = hip_W - proxy_W_;
-    const Look here = look();
+    const Look& here = look();
     normal_W_ = unit_normal(here.survey, normal_W_);
     if (here.state == ContactState::contact) {
       in_contact_ = true;
@@ -115,7 +118,7 @@ Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
 
 // The output describes the position that the tick ends in; the state of the method is not touched.
 void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
-  const Look here = look();
+  const Look& here = look();
   out.proxy_W = proxy_W_;
   out.state = here.state;
   out.normal_W = unit_normal(here.survey, normal_W_);

@@ -24,7 +24,7 @@ class ProxyRenderer final : public Renderer {
     ContactState state;
     PointsView points;
   };
-  Look look();
+  const Look& look();
   int move(const Vec3& hip_W);
   Vec3 next_step(const Look& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
@@ -36,6 +36,10 @@ class ProxyRenderer final : public Renderer {
   Neighbourhood near_;
   SurfaceVelocity velocity_;
   VirtualCoupling coupling_;
+
+  Look look_;  // from looked_from_W_, while has_look_
+  Vec3 looked_from_W_ = Vec3::Zero();
+  bool has_look_ = false;
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();

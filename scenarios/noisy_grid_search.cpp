@@ -8,57 +8,80 @@ namespace remote_touch {
 namespace {
 // Made beyond what was asked for, so that the next queries of a moving proxy find their points ready.
 constexpr double kSpareMargin_m = 0.004;
-
-int clamped(double place, int count) {
-  return static_cast<int>(std::clamp(place, -1.0, static_cast<double>(count)));
-}
+// Far above the rounding of sums of metres.
+constexpr double kRounding_m = 1e-9;
 }  // namespace
 
 NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
     : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
-  index_.reserve(size());
-  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->reserve(size());
+  index_.grow(size() + 1), column_limit_.grow(static_cast<std::size_t>(grid.columns));
+  x_.grow(size()), y_.grow(size()), z_.grow(size());
 }
 
-// The part of the grid from which a point can reach the ball; empty when the plane itself is out of reach.
-NoisyGridSearch::Window NoisyGridSearch::window(const Ball& ball, double margin_m) const {
-  const double reach = ball.radius + kLargestNormal * sigma_m_ + margin_m + 1e-9;
-  Window w;
-  if (std::abs(ball.centre.y() - height_m_) > reach) return w;
-  w.first_column = std::max(
-      0, clamped(std::ceil((ball.centre.x() - reach - grid_.x(0)) / grid_.spacing_m), grid_.columns));
-  w.last_column =
-      std::min(grid_.columns - 1,
-               clamped(std::floor((ball.centre.x() + reach - grid_.x(0)) / grid_.spacing_m), grid_.columns));
-  w.first_row =
-      std::max(0, clamped(std::ceil((ball.centre.z() - reach - grid_.z(0)) / grid_.spacing_m), grid_.rows));
-  w.last_row =
-      std::min(grid_.rows - 1,
-               clamped(std::floor((ball.centre.z() + reach - grid_.z(0)) / grid_.spacing_m), grid_.rows));
-  return w;
+bool NoisyGridSearch::Cylinder::holds(const Ball& ball) const {
+  return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius <= radius_m;
 }
 
-void NoisyGridSearch::make(const Window& w, const Kernels& kernels) const {
-  made_ = w;
-  index_.clear(), x_.clear(), y_.clear(), z_.clear();
-  for (int row = w.first_row; row <= w.last_row; ++row)
-    for (int column = w.first_column; column <= w.last_column; ++column) {
-      index_.push_back(static_cast<std::uint32_t>(row * grid_.columns + column));
-      x_.push_back(grid_.x(column)), y_.push_back(height_m_), z_.push_back(grid_.z(row));
+// The columns or rows whose undisturbed coordinate lies within reach of the centre.
+NoisyGridSearch::Range NoisyGridSearch::within(double centre, double reach, double start, double spacing,
+                                               int count) {
+  const auto clamped = [count](double place) {
+    return static_cast<int>(std::clamp(place, -1.0, static_cast<double>(count)));
+  };
+  return {std::max(0, clamped(std::ceil((centre - reach - start) / spacing))),
+          std::min(count - 1, clamped(std::floor((centre + reach - start) / spacing)))};
+}
+
+// First the points that can come into the cylinder at all, by two of their random words; then their noise.
+void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) const {
+  const double inner = cylinder.radius_m + kRounding_m, reach = inner + kLargestNormal * sigma_m_;
+  const Range columns = within(cylinder.x, reach, grid_.x(0), grid_.spacing_m, grid_.columns);
+  const Range rows = within(cylinder.z, reach, grid_.z(0), grid_.spacing_m, grid_.rows);
+  const auto limit = [&](double distance) {
+    return largest_word(distance <= inner ? 0 : (distance - inner) / sigma_m_);
+  };
+  const auto width = static_cast<std::size_t>(std::max(0, columns.last - columns.first + 1));
+  for (std::size_t i = 0; i < width; ++i)
+    column_limit_[i] = limit(std::abs(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x));
+  std::size_t candidates = 0;
+  for (int row = rows.first; row <= rows.last; ++row)
+    candidates += kernels.large_normals(
+        stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width, column_limit_.data(),
+        limit(std::abs(grid_.z(row) - cylinder.z)), index_.data() + candidates);
+  make_points(candidates, cylinder, kernels);
+  made_ = cylinder;
+}
+
+// The noisy points of the first indices; those outside the cylinder are dropped.
+void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylinder,
+                                  const Kernels& kernels) const {
+  constexpr std::size_t kChunk = 256;
+  double nx[kChunk] = {}, ny[kChunk] = {}, nz[kChunk] = {};
+  const double squared = cylinder.radius_m * cylinder.radius_m;
+  count_ = 0;
+  for (std::size_t done = 0; done < candidates; done += kChunk) {
+    const std::size_t chunk = std::min(kChunk, candidates - done);
+    if (sigma_m_ > 0) kernels.normals(stream_, index_.data() + done, chunk, nx, ny, nz);
+    for (std::size_t i = 0; i < chunk; ++i) {
+      const std::uint32_t point = index_[done + i];
+      const auto columns = static_cast<std::uint32_t>(grid_.columns);
+      const double x = grid_.x(static_cast<int>(point % columns)) + sigma_m_ * nx[i];
+      const double z = grid_.z(static_cast<int>(point / columns)) + sigma_m_ * nz[i];
+      const double dx = x - cylinder.x, dz = z - cylinder.z;
+      if (dx * dx + dz * dz > squared) continue;
+      index_[count_] = point;
+      x_[count_] = x, y_[count_] = height_m_ + sigma_m_ * ny[i], z_[count_] = z;
+      ++count_;
     }
-  if (sigma_m_ == 0) return;
-  for (auto* column : {&nx_, &ny_, &nz_}) column->resize(index_.size());
-  kernels.normals(stream_, index_.data(), index_.size(), nx_.data(), ny_.data(), nz_.data());
-  for (std::size_t i = 0; i < index_.size(); ++i)
-    x_[i] += sigma_m_ * nx_[i], y_[i] += sigma_m_ * ny_[i], z_[i] += sigma_m_ * nz_[i];
+  }
 }
 
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
-  const Window needed = window(ball, 0);
-  if (needed.first_column > needed.last_column || needed.first_row > needed.last_row) return;
-  if (!made_.holds(needed)) make(window(ball, kSpareMargin_m), kernels);
-  out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, index_.size()}, ball,
-          kernels);
+  const double reach = ball.radius + kLargestNormal * sigma_m_ + kRounding_m;
+  if (std::abs(ball.centre.y() - height_m_) > reach) return;
+  if (!made_.holds(ball))
+    make({ball.centre.x(), ball.centre.z(), ball.radius + kSpareMargin_m + kRounding_m}, kernels);
+  out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
 }
 
 }  // namespace remote_touch

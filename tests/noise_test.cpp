@@ -155,6 +155,37 @@ TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
   }
 }
 
+// Every point with normals that large is found, and, of those that are not, hardly any: the random word
+// decides z's radius, not z.
+TEST(Noise, LargeNormalsAreFoundByTheirWords) {
+  constexpr std::uint32_t kFirst = 12345, kCount = 40001;
+  const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
+  std::vector<std::uint32_t> every(kCount);
+  std::iota(every.begin(), every.end(), kFirst);
+  const Normals normals = draw(stream, every);
+  for (const double xy : {0.0, 0.5, 2.0, 3.5})
+    for (const double z : {0.0, 1.0, 2.5}) {
+      const std::vector<std::uint32_t> limit(kCount, largest_word(xy));
+      std::vector<std::vector<std::uint32_t>> found;
+      for (const Kernels* kernels : every_level()) {
+        found.emplace_back(kCount + 1);
+        found.back().resize(kernels->large_normals(stream, kFirst, kCount, limit.data(), largest_word(z),
+                                                   found.back().data()));
+        ASSERT_EQ(found.back(), found.front()) << kernels->isa;
+      }
+      std::size_t next = 0;
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        const bool is_found = next < found[0].size() && found[0][next] == kFirst + i;
+        next += is_found ? 1 : 0;
+        const double radius = std::hypot(normals[0][i], normals[1][i]);
+        if (radius >= xy && std::abs(normals[2][i]) >= z) ASSERT_TRUE(is_found) << i;
+        if (radius < xy - 1e-5) ASSERT_FALSE(is_found) << i;
+      }
+      const double expected = kCount * std::exp(-0.5 * (xy * xy + z * z));
+      EXPECT_NEAR(static_cast<double>(found[0].size()), expected, 5 * std::sqrt(expected) + 1);
+    }
+}
+
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
 }

@@ -76,4 +76,25 @@ void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t 
   }
 }
 
+std::size_t large_normals(const NoiseStream& stream, std::uint32_t first, std::size_t count,
+                          const std::uint32_t* xy_limit, std::uint32_t z_limit, std::uint32_t* index) {
+  constexpr std::size_t kChunk = 64;
+  std::uint32_t large[kChunk];
+  std::size_t found = 0;
+  for (std::size_t done = 0; done < count; done += kChunk) {
+    const std::size_t chunk = count - done < kChunk ? count - done : kChunk;
+    const auto start = first + static_cast<std::uint32_t>(done);
+#pragma omp simd
+    for (std::size_t i = 0; i < chunk; ++i) {
+      const Words words = philox(stream, start + static_cast<std::uint32_t>(i));
+      large[i] = (words.w[0] <= xy_limit[done + i]) & (words.w[2] <= z_limit);
+    }
+    for (std::size_t i = 0; i < chunk; ++i) {
+      index[found] = start + static_cast<std::uint32_t>(i);
+      found += large[i];
+    }
+  }
+  return found;
+}
+
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL
