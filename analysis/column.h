@@ -1,4 +1,4 @@
-// Named columns of numbers with units: what results are stored in and what analyses read.
+// Named columns of numbers or texts with units: what results are stored in and what analyses read.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace remote_touch {
 
-// length * width numbers, row after row; width 3 for a vector. Integers may carry names (an enumeration).
+// length * width values, row after row; width 3 for a vector. Integers may carry names (an enumeration).
 struct Column {
   std::string name;
   std::string units;  // SI symbol, "1" for a pure number
   std::string long_name;
-  std::variant<std::vector<double>, std::vector<std::int32_t>> values;
+  std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::string>> values;
   int width = 1;
   std::vector<std::string> value_names;
 

@@ -24,7 +24,7 @@ class Sha256 {
   void add(const Column& column) {
     add(column.name.c_str(), column.name.size() + 1);
     add(&column.width, sizeof column.width);
-    std::visit([this](const auto& v) { add(v.data(), v.size() * sizeof v[0]); }, column.values);
+    std::visit([this](const auto& v) { add_values(v); }, column.values);
   }
   std::string hex() {
     std::array<unsigned char, 32> bytes{};
@@ -36,6 +36,14 @@ class Sha256 {
   }
 
  private:
+  template <class Number>
+  void add_values(const std::vector<Number>& numbers) {
+    add(numbers.data(), numbers.size() * sizeof(Number));
+  }
+  void add_values(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) add(text.c_str(), text.size() + 1);
+  }
+
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> state_;
 };
 

@@ -28,14 +28,23 @@ class Hdf5Writer {
   void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
   void attribute(const std::string& object, const std::string& name, std::int32_t value);
   void attributes(const std::string& object, const TextAttributes& list);
-  // Writes the columns as datasets of a group, with units and long_name. The column called scale becomes the
+  // Writes the columns as datasets of a group, with units and long_name. The column called rows becomes the
   // dimension scale of the rows of all others; empty: none.
-  void columns(const std::string& group, const std::vector<Column>& columns, const std::string& scale);
+  void columns(const std::string& group, const std::vector<Column>& columns, const std::string& rows);
+  // A column as an array over axes: names of datasets of the same group that scale() made scales. Its values
+  // run through the last axis first. Stored in one piece where it is to be written in place later; else in
+  // compressed chunks when it is long.
+  enum class Storage { compact, in_place };
+  void array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
+             Storage storage);
+  // Makes a dataset the scale of its own dimension.
+  void scale(const std::string& path);
   // Throws InputError naming the file when it cannot be written.
   void save(const std::filesystem::path& target);
 
  private:
-  void dataset(const std::string& path, const Column& column);
+  void dataset(const std::string& path, const Column& column, const std::vector<unsigned long long>& extent,
+               Storage storage);
   std::int64_t file_;
 };
 
@@ -44,7 +53,12 @@ struct Hdf5Content {
   std::vector<std::pair<std::string, Column>> datasets;  // path and values, in the order of the paths
 };
 
-// Reads every dataset of one or two dimensions. Throws InputError when the file is missing or not HDF5.
+// Reads every dataset; an array of more than two dimensions comes as one column. Throws InputError when the
+// file is missing or not HDF5.
 Hdf5Content read_hdf5(const std::filesystem::path& file);
+
+// Where in the file the values of a dataset begin that was stored in_place. Throws InputError as read_hdf5
+// does.
+std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset);
 
 }  // namespace remote_touch

@@ -36,9 +36,22 @@ void print_states(const std::string& path, const Column& column, const std::vect
   std::puts("");
 }
 
+// How many are not empty, and the first of them.
+void print_texts(const std::string& path, const Column& column, const std::vector<std::string>& texts) {
+  const auto is_empty = [](const std::string& text) { return text.empty(); };
+  const auto first = std::find_if_not(texts.begin(), texts.end(), is_empty);
+  std::printf("  %-32s %8zu x %d  %-6s  %td not empty%s%s\n", path.c_str(), column.length(), column.width, "",
+              static_cast<std::ptrdiff_t>(texts.size()) - std::count_if(texts.begin(), texts.end(), is_empty),
+              first == texts.end() ? "" : ": ", first == texts.end() ? "" : first->c_str());
+}
+
 void print(const std::string& path, const Column& column) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) {
     print_numbers(path, column, *numbers);
+    return;
+  }
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
+    print_texts(path, column, *texts);
     return;
   }
   const auto& integers = std::get<std::vector<std::int32_t>>(column.values);
