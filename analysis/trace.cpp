@@ -11,7 +11,7 @@ void push(std::vector<double>& column, const Vec3& v) {
 void Trace::reserve(std::size_t ticks) {
   for (auto* column : {&time_s, &surface_velocity_m_per_s, &nearest_m, &signed_distance_m})
     column->reserve(ticks);
-  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal}) column->reserve(3 * ticks);
+  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal, &carried_m}) column->reserve(3 * ticks);
   for (auto* column : {&state, &proxy_steps, &converged, &contact_count, &frame_index, &status})
     column->reserve(ticks);
 }
@@ -19,7 +19,7 @@ void Trace::reserve(std::size_t ticks) {
 void Trace::append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance) {
   time_s.push_back(time);
   push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
-      push(normal, out.normal_W);
+      push(normal, out.normal_W), push(carried_m, out.carried_m);
   state.push_back(static_cast<std::int32_t>(out.state));
   proxy_steps.push_back(out.steps);
   converged.push_back(out.converged ? 1 : 0);
@@ -44,6 +44,12 @@ std::vector<Column> Trace::columns() const {
        "estimated point cloud velocity along the normal",
        surface_velocity_m_per_s,
        1,
+       {}},
+      {"frame_correction",
+       "m",
+       "what frame updates moved the proxy by before the tick, (4.3)",
+       carried_m,
+       3,
        {}},
       {"proxy_steps", "1", "proxy steps made in the tick", proxy_steps, 1, {}},
       {"converged", "1", "the proxy converged in the tick", converged, 1, {"no", "yes"}},

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 struct Trace {
   std::vector<double> time_s;
-  std::vector<double> hip_m, proxy_m, force_N, normal;  // three numbers a row
+  std::vector<double> hip_m, proxy_m, force_N, normal, carried_m;  // three numbers a row
   std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
   std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m;
 
@@ -23,6 +23,7 @@ struct Trace {
   Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
   Vec3 force(std::size_t i) const { return row(force_N, i); }
   Vec3 normal_at(std::size_t i) const { return row(normal, i); }
+  Vec3 carried(std::size_t i) const { return row(carried_m, i); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 

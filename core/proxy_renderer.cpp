@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/proxy_step.h"
 
@@ -32,6 +33,7 @@ void ProxyRenderer::on_frame(const Frame& frame) {
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
   proxy_W_ += correction;
+  carried_m_ += correction;
   contact_proxy_W_ += correction;
 }
 
@@ -40,6 +42,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out;
   out.proxy_W = proxy_W_, out.normal_W = normal_W_;
   out.frame_index = frame_index_;
+  out.carried_m = std::exchange(carried_m_, Vec3::Zero());
   if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
     // Hold still and let go: a force from a lost position would be a guess.
     coupling_.release();

@@ -49,6 +49,7 @@ class ProxyRenderer final : public Renderer {
   double contact_stiffness_N_per_m_ = 0;
   double frame_captured_s_ = 0, frame_arrived_s_ = 0;
   int frame_index_ = -1;
+  Vec3 carried_m_ = Vec3::Zero();  // by (4.3) since the last tick
   bool stale_frame_ = false;
 };
 
