@@ -9,13 +9,16 @@
 
 namespace remote_touch {
 
-enum class CurveStyle { line, dots, steps, dashed, circle, bars };
+// squares: filled cells of a map, as large as the samples lie apart; map: the same coloured by z; band: from
+// y to z.
+enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band };
 
 struct Curve {
   std::string table, x, y;  // names of a table and two of its columns
   CurveStyle style = CurveStyle::line;
-  std::string label;  // empty: not in the legend
-  double radius = 0;  // of circles, in data units
+  std::string label;   // empty: not in the legend
+  double radius = 0;   // of circles, in data units
+  std::string z = {};  // a third column, of maps and bands
 };
 
 struct Panel {

@@ -42,6 +42,12 @@ std::string style_name(CurveStyle style) {
       return "circle";
     case CurveStyle::bars:
       return "bars";
+    case CurveStyle::squares:
+      return "squares";
+    case CurveStyle::map:
+      return "map";
+    case CurveStyle::band:
+      return "band";
   }
   return "line";
 }
@@ -63,6 +69,7 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
     hdf5.attributes(place, {{"table", curve.table},
                             {"x", curve.x},
                             {"y", curve.y},
+                            {"z", curve.z},
                             {"style", style_name(curve.style)},
                             {"label", curve.label}});
     hdf5.attribute(place, "radius", std::vector<double>{curve.radius});

@@ -5,14 +5,21 @@ import textwrap
 
 import matplotlib.collections
 import matplotlib.patches
+import matplotlib.patheffects
 import matplotlib.ticker
+import matplotlib.transforms
 import numpy as np
+
+CELLS = ("squares", "map")  # the styles that draw cells
+HALO = [matplotlib.patheffects.withStroke(linewidth=4, foreground="white")]  # about a line over cells
 
 # Each style draws one curve of the panel it is in.
 
-def draw_line(axes, curve, _, colour, **options):
+def draw_line(axes, curve, panel, colour, **options):
     marker = "o" if curve.x.values.size == 1 else None  # a line of one point would not be seen
     width = 1.5 if curve.x.values.size <= 2000 else 1.0  # a noisy trace stays a line
+    if has_cells(panel):
+        width, options = 2.0, options | {"path_effects": HALO}
     axes.plot(curve.x.values, curve.y.values, color=colour, marker=marker, linewidth=width, label=curve.label,
               **options)
 
@@ -54,15 +61,89 @@ def draw_bars(axes, curve, panel, colour):
     axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=colour, label=curve.label)
 
 
+def draw_squares(axes, curve, panel, colour):
+    """Filled cells; an empty line makes the legend entry."""
+    axes.plot([], [], "s", color=colour, markersize=9, markeredgewidth=0, label=curve.label)
+    add_cells(axes, curve, panel, facecolor=colour)
+
+
+def draw_map(axes, curve, panel, _):
+    """Cells coloured by z. The colour bar hangs on the panel, so it follows where equal aspect puts that."""
+    cells = add_cells(axes, curve, panel, array=curve.z.values[is_finite(curve)], cmap="viridis")
+    cells.set_clim(colour_range(curve.z))
+    width = 0.03 if panel.place is None else 0.05
+    bar = axes.figure.colorbar(cells, cax=axes.inset_axes([1.02, 0, width, 1]))
+    bar.outline.set_visible(False)
+    bar.set_label(textwrap.fill(with_units("", [curve.z]), 36))
+    set_ticks(bar.ax.yaxis, cells.get_clim(), [curve.z])
+
+
+def draw_band(axes, curve, _, colour):
+    axes.fill_between(curve.x.values, curve.y.values, curve.z.values, color=colour, alpha=0.25, linewidth=0,
+                      label=curve.label)
+
+
 DRAW = {"line": draw_line, "dashed": draw_dashed, "steps": draw_steps, "dots": draw_dots,
-        "circle": draw_circles, "bars": draw_bars}
+        "circle": draw_circles, "bars": draw_bars, "squares": draw_squares, "map": draw_map, "band": draw_band}
+
+
+def has_cells(panel):
+    return any(curve.style in CELLS for curve in panel.curves)
+
+
+def cell_size(values, limits):
+    """The smallest distance between values that differ by more than rounding; of one value, a share of the panel."""
+    gaps = np.diff(np.unique(values[np.isfinite(values)]))
+    gaps = gaps[gaps > 1e-6 * gaps.sum()]
+    if gaps.size:
+        return gaps.min()
+    return 1.0 if any(math.isnan(limit) for limit in limits) else abs(limits[1] - limits[0]) / 50
+
+
+def add_cells(axes, curve, panel, **options):
+    """Without a seam between neighbours. Automatic limits end where the cells end."""
+    size = cell_size(curve.x.values, panel.x_range), cell_size(curve.y.values, panel.y_range)
+    centres = np.column_stack([curve.x.values, curve.y.values])[is_finite(curve)]
+    outlines = centres[:, np.newaxis] + 0.5 * np.multiply([(-1, -1), (1, -1), (1, 1), (-1, 1)], size)
+    cells = matplotlib.collections.PolyCollection(outlines, linewidth=0, antialiased=False, **options)
+    if centres.size:
+        corners = outlines.reshape(-1, 2)
+        cells.sticky_edges.x[:], cells.sticky_edges.y[:] = np.transpose([corners.min(axis=0), corners.max(axis=0)])
+    axes.add_collection(cells)
+    axes.autoscale_view()
+    return cells
+
+
+def colour_range(column):
+    """Of a map. A share has the same colours in all figures; an enum has a colour for each name."""
+    values = np.array(list(column.names)) if column.names else column.values[np.isfinite(column.values)]
+    if not values.size or (values.min() >= 0 and values.max() <= 1):
+        return 0, 1
+    return values.min(), values.max()
+
+
+def is_finite(curve):
+    """Which samples can be drawn."""
+    columns = [column.values for column in (curve.x, curve.y, curve.z) if column]
+    return np.isfinite(columns).all(axis=0)
 
 
 def in_sight(curve, panel):
     """Which samples are finite and inside x_range."""
     low, high = panel.x_range
-    x, y = curve.x.values, curve.y.values
-    return np.isfinite(x) & np.isfinite(y) & ~(x < low) & ~(x > high)  # no comparison with NaN holds
+    return is_finite(curve) & ~(curve.x.values < low) & ~(curve.x.values > high)  # no comparison with NaN holds
+
+
+def reach(curve, panel):
+    """The y values that a curve covers in sight."""
+    seen = in_sight(curve, panel)
+    y = curve.y.values[seen]
+    if curve.style == "band":
+        return np.concatenate([y, curve.z.values[seen]])
+    if curve.style in CELLS:
+        half = cell_size(curve.y.values, panel.y_range) / 2
+        return np.concatenate([y - half, y + half])
+    return y
 
 
 def with_units(label, columns):
@@ -78,7 +159,7 @@ def set_y_range(axes, panel):
     """Automatic limits see what x_range shows, and do not blow up rounding noise about a constant."""
     automatic = all(math.isnan(limit) for limit in panel.y_range)
     extended = any(curve.style in ("bars", "circle") for curve in panel.curves)  # reach beyond their samples
-    values = np.concatenate([curve.y.values[in_sight(curve, panel)] for curve in panel.curves] or [[]])
+    values = np.concatenate([reach(curve, panel) for curve in panel.curves] or [[]])
     if not automatic or extended or not values.size:
         set_given(axes.set_ylim, panel.y_range)
         return
@@ -86,7 +167,8 @@ def set_y_range(axes, panel):
     if 0 < span < 1e-6 * size:
         axes.set_ylim(values.mean() - 0.01 * size, values.mean() + 0.01 * size)
     elif span > 0 and not all(math.isnan(limit) for limit in panel.x_range):
-        axes.set_ylim(values.min() - 0.05 * span, values.max() + 0.05 * span)
+        margin = 0 if has_cells(panel) else 0.05 * span
+        axes.set_ylim(values.min() - margin, values.max() + margin)
 
 
 def set_given(set_limits, limits):
@@ -108,13 +190,26 @@ def set_ticks(axis, limits, columns):
     axis.set_major_formatter(formatter)
 
 
-def add_legend(axes, panel):
+def legend_below(panel):
+    """Where it would cover an area if it were inside, or a colour bar if it were beside."""
+    styles = {curve.style for curve in panel.curves}
+    return "map" in styles or (panel.place is not None and not styles.isdisjoint(("squares", "band")))
+
+
+def legend_place(axes, panel):
     """Beside a panel that has the width for itself, inside one of several in a row."""
-    if not any(curve.label for curve in panel.curves):
-        return
+    if legend_below(panel):
+        under_labels = matplotlib.transforms.ScaledTranslation(0, -0.55, axes.figure.dpi_scale_trans)
+        return dict(loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=axes.transAxes + under_labels,
+                    borderaxespad=0, ncol=3 if panel.place is None else 1)
+    return dict(loc="upper left", bbox_to_anchor=(1.0, 1.02)) if panel.place is None else dict(loc="best")
+
+
+def add_legend(axes, panel):
     handles, labels = axes.get_legend_handles_labels()
-    where = dict(loc="upper left", bbox_to_anchor=(1.0, 1.02)) if panel.place is None else dict(loc="best")
-    legend = axes.legend(handles, [textwrap.fill(label, 24) for label in labels], **where)
+    if not handles:
+        return
+    legend = axes.legend(handles, [textwrap.fill(label, 24) for label in labels], **legend_place(axes, panel))
     for line in legend.get_lines():  # small dots are hard to tell apart there
         line.set_markersize(max(5, line.get_markersize()))
 
@@ -137,5 +232,5 @@ def draw_panel(axes, panel, colours):
         axes.locator_params(axis="x", nbins=5)
     axes.set_title(textwrap.fill(panel.title, 80), loc="left")
     axes.set_xlabel(with_units(panel.x_label, xs))
-    axes.set_ylabel(with_units(panel.y_label, ys))
+    axes.set_ylabel(textwrap.fill(with_units(panel.y_label, ys), 36))
     add_legend(axes, panel)

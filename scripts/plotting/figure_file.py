@@ -7,7 +7,8 @@ import h5py
 import numpy as np
 
 SCHEMA = "remote-touch-figure/1"
-STYLES = ("line", "dashed", "steps", "dots", "circle", "bars")
+STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band")
+NEED_Z = ("map", "band")
 
 
 class PlotError(Exception):
@@ -29,6 +30,7 @@ class Curve:
     style: str
     label: str
     radius: float
+    z: Column | None  # the colours of a map, the other edge of a band; None for every other style
 
 
 @dataclasses.dataclass
@@ -97,9 +99,12 @@ def read_curve(file, group):
     style = text(group.attrs, "style", "line")
     if style not in STYLES:
         raise PlotError(f"{file.filename}: {group.name}: style {style!r}: allowed {', '.join(STYLES)}")
-    if x.values.size != y.values.size:
-        raise PlotError(f"{file.filename}: {group.name}: x and y differ in length")
-    return Curve(x, y, style, text(group.attrs, "label"), number(group.attrs, "radius", 0))
+    if style in NEED_Z and not text(group.attrs, "z"):
+        raise PlotError(f"{file.filename}: {group.name}: style {style!r} needs z, the name of a third column")
+    z = read_column(file, table, text(group.attrs, "z")) if style in NEED_Z else None
+    if any(column.values.size != x.values.size for column in (y, z) if column):
+        raise PlotError(f"{file.filename}: {group.name}: {'x, y and z' if z else 'x and y'} differ in length")
+    return Curve(x, y, style, text(group.attrs, "label"), number(group.attrs, "radius", 0), z)
 
 
 def read_place(attributes):

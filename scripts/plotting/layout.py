@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from plotting.drawing import curve_key, draw_panel
+from plotting.drawing import curve_key, draw_panel, has_cells, legend_below
 
 WIDTH_IN, HEIGHT_IN, DPI = 9.0, 6.0, 130
 COLOURS = ["#1f4e79", "#c8501e", "#2f7d4f", "#8a4f9e", "#b08900", "#555555", "#2f93b5", "#a3224a"]
@@ -35,18 +35,24 @@ def set_equal_aspect(axes, panel):
     axes.set_aspect("equal", adjustable="box" if has_range(panel) else "datalim", anchor="W")
 
 
+def legend_height(axes):
+    """In inches."""
+    legend = axes.get_legend()
+    return legend.get_window_extent().height / axes.figure.dpi if legend else 0
+
+
 def row_height(row, columns, rows):
     """Inches for the panels of one row: what equal aspect asks for, else a share of the page."""
     share = max(HEIGHT_IN / rows, 2.3)
     heights = []
     for axes, panel in row:
-        height = share
+        height = max(share, 3.8) if has_cells(panel) else share
         if panel.equal_aspect:
             (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
             across = 0.7 * WIDTH_IN / columns
             asked = across * abs(y1 - y0) / abs(x1 - x0) + 0.9
             height = min(max(asked, 1.8 if has_range(panel) else share), HEIGHT_IN)
-        heights.append(height)
+        heights.append(height + (legend_height(axes) if legend_below(panel) else 0))
     return max(heights, default=share)
 
 
