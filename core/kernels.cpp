@@ -9,14 +9,14 @@ REMOTE_TOUCH_DECLARE_KERNELS(x86_64_v4)
 namespace remote_touch {
 
 namespace {
-constexpr Kernels kX86_64{"x86-64",        x86_64::append_within, x86_64::survey,       x86_64::first_hit,
-                          x86_64::way_out, x86_64::normals,       x86_64::large_normals};
-constexpr Kernels kX86_64v3{
-    "x86-64-v3",        x86_64_v3::append_within, x86_64_v3::survey,       x86_64_v3::first_hit,
-    x86_64_v3::way_out, x86_64_v3::normals,       x86_64_v3::large_normals};
-constexpr Kernels kX86_64v4{
-    "x86-64-v4",        x86_64_v4::append_within, x86_64_v4::survey,       x86_64_v4::first_hit,
-    x86_64_v4::way_out, x86_64_v4::normals,       x86_64_v4::large_normals};
+constexpr Kernels kX86_64{"x86-64",        x86_64::append_within, x86_64::survey,    x86_64::first_hit,
+                          x86_64::way_out, x86_64::normals,       x86_64::candidates};
+constexpr Kernels kX86_64v3{"x86-64-v3",          x86_64_v3::append_within, x86_64_v3::survey,
+                            x86_64_v3::first_hit, x86_64_v3::way_out,       x86_64_v3::normals,
+                            x86_64_v3::candidates};
+constexpr Kernels kX86_64v4{"x86-64-v4",          x86_64_v4::append_within, x86_64_v4::survey,
+                            x86_64_v4::first_hit, x86_64_v4::way_out,       x86_64_v4::normals,
+                            x86_64_v4::candidates};
 }  // namespace
 
 Isa best_isa() {

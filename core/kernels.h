@@ -88,11 +88,11 @@ struct Kernels {
   // Three standard normals for each of the points index[0..count).
   void (*normals)(const NoiseStream&, const std::uint32_t* index, std::size_t count, double* x, double* y,
                   double* z);
-  // Of the points first .. first + count - 1, in order, those whose normals may be large: sqrt(x^2 + y^2) at
-  // least the radius of xy_limit[i] (see largest_word in noise.h) and |z| at least that of z_limit. Returns
-  // how many; index has room for count + 1.
-  std::size_t (*large_normals)(const NoiseStream&, std::uint32_t first, std::size_t count,
-                               const std::uint32_t* xy_limit, std::uint32_t z_limit, std::uint32_t* index);
+  // Of the points first .. first + count - 1, in order, those whose random words allow the x normal to be
+  // what x[i] asks and the z normal what z asks (asks_of in noise.h); of points that are not returned neither
+  // is. Returns how many; index has room for count + kLanes.
+  std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
+                            const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
 };
 
 // x86-64 levels in rising order.

@@ -19,29 +19,42 @@ Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
 
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);
-  list_valid_ = false;
-  for (GatheredPoints* columns : {&list_, &tube_})
-    columns->reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
+  // 0.8661 > sqrt(3)/2: from a cube's centre to its corner, with room for rounding.
+  list_radius_ = reach_ + points_->largest_fixture_radius() + 0.8661 * pitch_;
+  const auto reserve = [this](GatheredPoints& columns) {
+    columns.reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
+  };
+  for (Kept& kept : kept_) reserve(kept.points), kept.valid = false;
+  reserve(tube_);
 }
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {
   const Vec3 centre = (p / pitch_).array().round().matrix() * pitch_;
-  if (list_valid_ && centre == list_centre_) return list_;
-  list_centre_ = centre;
-  // 0.8661 > sqrt(3)/2: from the cube's centre to its corner, with room for rounding.
-  list_radius_ = reach_ + points_->largest_fixture_radius() + 0.8661 * pitch_;
-  list_.clear();
-  points_->gather({list_centre_, list_radius_}, kernels_, list_);
-  list_.finish();
-  list_valid_ = true;
-  sum_grid_ = 1.5 * static_cast<double>(std::bit_ceil(list_.size() + 1));
-  return list_;
+  if (present_->valid && centre == present_->centre) return present_->points;
+  for (Kept& kept : kept_)
+    if (kept.valid && centre == kept.centre) {
+      present_ = &kept;
+      return kept.points;
+    }
+  present_ = present_ == &kept_.back() ? kept_.data() : present_ + 1;
+  present_->centre = centre;
+  gather(*present_);
+  return present_->points;
+}
+
+void Neighbourhood::gather(Kept& kept) {
+  kept.points.clear();
+  points_->gather({kept.centre, list_radius_}, kernels_, kept.points);
+  kept.points.finish();
+  kept.sum_grid = 1.5 * static_cast<double>(std::bit_ceil(kept.points.size() + 1));
+  kept.valid = true;
 }
 
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
   const double girth = radius + points_->largest_fixture_radius();
-  const bool covered = list_valid_ && (p - list_centre_).norm() + limit + girth <= list_radius_;
-  if (covered) return std::min(limit, kernels_.first_hit(list_.view(), p.data(), u.data(), radius));
+  const Kept& here = *present_;
+  const bool covered = here.valid && (p - here.centre).norm() + limit + girth <= list_radius_;
+  if (covered) return std::min(limit, kernels_.first_hit(here.points.view(), p.data(), u.data(), radius));
 
   // A point first met between two hops lies within girth of that part of the axis, so it is in that hop's
   // ball; the root is taken from p itself, whatever the hop, so the result does not depend on the hops.

@@ -1,6 +1,7 @@
 // The points around a moving proxy, gathered once and kept while the proxy stays near.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/gathered_points.h"
@@ -8,8 +9,9 @@
 
 namespace remote_touch {
 
-// The kept list belongs to a small cube of space, not to the way the proxy came: a position always meets the
-// same list, so results do not depend on history or on the search used.
+// A kept list belongs to a small cube of space, not to the way the proxy came: a position always meets the
+// same list, so results do not depend on history or on the search used. A few are kept, because a proxy on
+// noisy points goes to and fro between neighbouring cubes.
 class Neighbourhood {
  public:
   // reach: every point with r_n <= reach of the position asked about is in the list (and some beyond).
@@ -24,18 +26,25 @@ class Neighbourhood {
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
 
   // M of kernels.h for sums over the present list.
-  double sum_grid() const { return sum_grid_; }
+  double sum_grid() const { return present_->sum_grid; }
 
  private:
+  struct Kept {
+    Vec3 centre = Vec3::Zero();
+    bool valid = false;
+    double sum_grid = 1.5;
+    GatheredPoints points = {};
+  };
+  void gather(Kept& kept);
+
   double reach_;
   double pitch_;  // edge of the cubes
+  double list_radius_ = 0;
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> points_;
-  GatheredPoints list_, tube_;
-  Vec3 list_centre_ = Vec3::Zero();
-  double list_radius_ = 0;
-  bool list_valid_ = false;
-  double sum_grid_ = 1.5;
+  std::array<Kept, 4> kept_;
+  Kept* present_ = kept_.data();
+  GatheredPoints tube_;
 };
 
 }  // namespace remote_touch

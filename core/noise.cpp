@@ -6,11 +6,12 @@
 namespace remote_touch {
 
 // radius^2 = -2 ln((word + 1) 2^-32), see kernels/noise.cpp
-std::uint32_t largest_word(double radius) {
+std::uint64_t asks_of(double least, double towards) {
   constexpr double kWords = 4294967296.0;
-  if (!(radius > 0)) return 0xFFFFFFFFu;
-  const double words = kWords * std::exp(-0.5 * radius * radius) * (1 + 1e-6) + 1;
-  return static_cast<std::uint32_t>(std::min(words, kWords - 1));
+  if (!(least > 0)) return 0xFFFFFFFFu;
+  const double words = kWords * std::exp(-0.5 * least * least) * (1 + 1e-6) + 1;
+  const std::uint64_t sign = towards < 0 ? 1 : 0;
+  return static_cast<std::uint64_t>(std::min(words, kWords - 1)) | sign << 62 | std::uint64_t{1} << 63;
 }
 
 }  // namespace remote_touch

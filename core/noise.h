@@ -30,9 +30,11 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
            static_cast<std::uint32_t>(key.replicate)}};
 }
 
-// The radius of a pair of normals falls with the random word it is made of, so a word above this limit makes
-// a radius below the one given. The limit is generous by a millionth: no word at or above the radius is
-// missed, whatever the last bit of the C library's exp.
-std::uint32_t largest_word(double radius);
+// What a normal must be, at least `least` towards positive values (or negative, where towards is below 0), as
+// a question about the two random words that it is made of: its radius falls with the first, its sign follows
+// from the second. Nothing is asked for least <= 0. The answer errs to yes only, by a millionth, so it does
+// not depend on the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the sign wanted;
+// 63: a sign is wanted.
+std::uint64_t asks_of(double least, double towards);
 
 }  // namespace remote_touch

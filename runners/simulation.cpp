@@ -73,7 +73,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     frames.deliver_until(time_s, *renderer);
     const DeviceState device = trajectory->at(time_s);
-    watch.lap_s();
+    if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
     trace.append(time_s, device, out, scenario->signed_distance(out.proxy_W, time_s));

@@ -36,7 +36,8 @@ class NoisyGridSearch final : public NeighbourSearch {
   // Room for all points, so that a query never allocates.
   mutable Cylinder made_;
   mutable std::size_t count_ = 0;
-  mutable Room<std::uint32_t> index_, column_limit_;
+  mutable Room<std::uint32_t> index_;
+  mutable Room<std::uint64_t> x_asks_;
   mutable Room<double> x_, y_, z_;
 };
 

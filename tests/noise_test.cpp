@@ -155,33 +155,41 @@ TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
   }
 }
 
-// Every point with normals that large is found, and, of those that are not, hardly any: the random word
-// decides z's radius, not z.
-TEST(Noise, LargeNormalsAreFoundByTheirWords) {
+// Every point whose normals are what is asked is found; of the others only those whose words leave it open.
+TEST(Noise, CandidatesAreFoundByTheirWords) {
   constexpr std::uint32_t kFirst = 12345, kCount = 40001;
   const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
   std::vector<std::uint32_t> every(kCount);
   std::iota(every.begin(), every.end(), kFirst);
   const Normals normals = draw(stream, every);
-  for (const double xy : {0.0, 0.5, 2.0, 3.5})
-    for (const double z : {0.0, 1.0, 2.5}) {
-      const std::vector<std::uint32_t> limit(kCount, largest_word(xy));
+  for (const double x : {0.0, 0.5, -2.0, 3.5})
+    for (const double z : {0.0, 1.0, -2.5}) {
+      const std::vector<std::uint64_t> asks(kCount, asks_of(std::abs(x), x));
       std::vector<std::vector<std::uint32_t>> found;
       for (const Kernels* kernels : every_level()) {
-        found.emplace_back(kCount + 1);
-        found.back().resize(kernels->large_normals(stream, kFirst, kCount, limit.data(), largest_word(z),
-                                                   found.back().data()));
+        found.emplace_back(kCount + kLanes);
+        found.back().resize(kernels->candidates(stream, kFirst, kCount, asks.data(), asks_of(std::abs(z), z),
+                                                found.back().data()));
         ASSERT_EQ(found.back(), found.front()) << kernels->isa;
       }
+      const auto is_asked = [](double normal, double least) {
+        return least == 0 || (least > 0 ? normal >= least : normal <= least);
+      };
+      const auto has_sign = [](double normal, double least) {
+        return least == 0 || (normal > 0) == (least > 0);
+      };
       std::size_t next = 0;
       for (std::uint32_t i = 0; i < kCount; ++i) {
         const bool is_found = next < found[0].size() && found[0][next] == kFirst + i;
         next += is_found ? 1 : 0;
-        const double radius = std::hypot(normals[0][i], normals[1][i]);
-        const bool must = radius >= xy && std::abs(normals[2][i]) >= z, must_not = radius < xy - 1e-5;
+        const double nx = normals[0][i], nz = normals[2][i];
+        const bool must = is_asked(nx, x) && is_asked(nz, z);
+        const bool must_not =
+            std::hypot(nx, normals[1][i]) < std::abs(x) - 1e-5 || !has_sign(nx, x) || !has_sign(nz, z);
         ASSERT_TRUE(is_found ? !must_not : !must) << i;
       }
-      const double expected = kCount * std::exp(-0.5 * (xy * xy + z * z));
+      const double halves = (x == 0 ? 1 : 0.5) * (z == 0 ? 1 : 0.5);
+      const double expected = halves * kCount * std::exp(-0.5 * (x * x + z * z));
       EXPECT_NEAR(static_cast<double>(found[0].size()), expected, 5 * std::sqrt(expected) + 1);
     }
 }

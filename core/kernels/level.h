@@ -15,8 +15,8 @@
                  double inner);                                                                           \
   void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x,       \
                double* y, double* z);                                                                     \
-  std::size_t large_normals(const NoiseStream& stream, std::uint32_t first, std::size_t count,            \
-                            const std::uint32_t* xy_limit, std::uint32_t z_limit, std::uint32_t* index);  \
+  std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,               \
+                         const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);                  \
   }
 
 #ifdef REMOTE_TOUCH_LEVEL
