@@ -39,6 +39,7 @@ class Hdf5Writer {
              Storage storage);
   // Makes a dataset the scale of its own dimension.
   void scale(const std::string& path);
+  std::size_t size();  // of the file as it is now, in bytes
   // Throws InputError naming the file when it cannot be written.
   void save(const std::filesystem::path& target);
 

@@ -193,12 +193,16 @@ void Hdf5Writer::array(const std::string& group, const Column& column, const std
   for (unsigned i = 0; i < axes.size(); ++i) attach(file_, path, group + "/" + axes[i], i);
 }
 
-void Hdf5Writer::save(const std::filesystem::path& target) {
+std::size_t Hdf5Writer::size() {
   check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
   if (size < 0) throw std::runtime_error("the HDF5 library gave no file image");
-  std::vector<char> image(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file_, image.data(), image.size()) != size)
+  return static_cast<std::size_t>(size);
+}
+
+void Hdf5Writer::save(const std::filesystem::path& target) {
+  std::vector<char> image(size());
+  if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
     throw std::runtime_error("the HDF5 library gave no file image");
   write_whole_file(target, image.data(), image.size());
 }

@@ -25,6 +25,18 @@ int write_and_flush(int file, const char* data, std::size_t size) {
   return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& target) {
+  return target.has_parent_path() ? target.parent_path() : ".";
+}
+
+// The new name outlasts a power cut, where the file system can promise that.
+void flush_folder(const std::filesystem::path& target) {
+  const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
   throw InputError(target.string(),
                    std::string("cannot be written (") + std::strerror(error) + "); allowed " + allowed);
@@ -37,7 +49,7 @@ void require_writable(const std::filesystem::path& target) {
   const auto there = std::filesystem::status(target, unreachable);
   if (std::filesystem::is_directory(there)) refuse(target, EISDIR, "a file");
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return;  // a device or pipe
-  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const std::filesystem::path folder = folder_of(target);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
 }
 
@@ -67,6 +79,7 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
     ::unlink(temporary.c_str());
     give_up(error);
   }
+  flush_folder(target);
 }
 
 }  // namespace remote_touch

@@ -1,10 +1,7 @@
 #include "runners/experiment.h"
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "runners/json_parameters.h"
 
@@ -50,14 +47,6 @@ Json part_json(const std::string& name, const Blueprint& blueprint) {
   return json;
 }
 
-std::string file_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw InputError(file,
-                     "cannot be read; allowed an experiment's name (see remote-touch list) or a JSON file");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 }  // namespace
 
 Experiment Experiment::from_json(const std::string& text, const std::string& label,
@@ -65,6 +54,10 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
   Json configuration = parse_json(text, label);
   if (!configuration.is_object()) throw InputError(label, "not an object; allowed {\"scenario\": ..., ...}");
   for (const std::string& assignment : overrides) apply_override(configuration, assignment);
+  return from_json(std::move(configuration));
+}
+
+Experiment Experiment::from_json(Json configuration) {
   Experiment experiment;
   experiment.scenario_ = read_part(configuration, scenarios(), "scenario", experiment.scenario_name_);
   experiment.renderer_ = read_part(configuration, renderers(), "renderer", experiment.renderer_name_);
@@ -76,9 +69,8 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
 }
 
 Experiment Experiment::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
-  for (const StoredExperiment& stored : stored_experiments())
-    if (name_or_file == stored.name) return from_json(stored.json, name_or_file, overrides);
-  return from_json(file_text(name_or_file), name_or_file, overrides);
+  return from_json(stored_or_file(stored_experiments(), name_or_file, "an experiment's"), name_or_file,
+                   overrides);
 }
 
 std::string Experiment::to_json() const {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "runners/catalog.h"
+#include "runners/stored.h"
 
 namespace remote_touch {
 
@@ -26,6 +28,7 @@ class Experiment {
   // InputError for anything that cannot be run, so that nothing starts that would fail for its configuration.
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
+  static Experiment from_json(nlohmann::ordered_json configuration);
   // A name of data/experiments, or a JSON file.
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
@@ -43,12 +46,5 @@ class Experiment {
   decltype(RendererEntry{}.make()) renderer_;
   decltype(TrajectoryEntry{}.make()) trajectory_;
 };
-
-// The experiments that come with the program (data/experiments), by name.
-struct StoredExperiment {
-  const char* name;
-  const char* json;
-};
-std::span<const StoredExperiment> stored_experiments();
 
 }  // namespace remote_touch

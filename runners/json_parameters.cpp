@@ -1,6 +1,7 @@
 #include "runners/json_parameters.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -223,12 +224,32 @@ void apply_override(Json& configuration, const std::string& assignment) {
     value = text;
   }
 
+  set_value(configuration, assignment.substr(0, equals), value, "--set " + assignment);
+}
+
+namespace {
+
+Json& element(Json& list, const std::string& key, const std::string& subject) {
+  std::size_t i = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
+  if (error != std::errc() || end != key.data() + key.size() || i >= list.size())
+    throw InputError(subject, "allowed 0 to " + std::to_string(list.size() - 1) + " for its place in a list");
+  return list[i];
+}
+
+}  // namespace
+
+void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject) {
   Json* place = &configuration;
-  std::stringstream path(assignment.substr(0, equals));
-  for (std::string key; std::getline(path, key, '.');) {
-    if (!place->is_object()) throw InputError("--set " + assignment, "the path leads through a value");
+  std::stringstream keys(path);
+  for (std::string key; std::getline(keys, key, '.');) {
+    if (place->is_array() && !place->empty()) {
+      place = &element(*place, key, subject);
+      continue;
+    }
+    if (!place->is_object()) throw InputError(subject, "the path leads through a value");
     place = &(*place)[key];
-    if (place->is_null() && !path.eof()) *place = Json::object();
+    if (place->is_null() && !keys.eof()) *place = Json::object();
   }
   *place = value;
 }

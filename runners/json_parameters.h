@@ -26,6 +26,10 @@ std::string value_text(const Parameter& parameter);
 // Parses a text that a user gave; label names it in the InputError.
 Json parse_json(const std::string& text, const std::string& label);
 
+// Sets what a path like "renderer.r1_m" or "axes.0.count" leads to; objects on the way are made. Throws
+// InputError, about the subject, where the path leads through a value or past the end of a list.
+void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
+
 // Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON, and as plain text where it is
 // none.
 void apply_override(Json& configuration, const std::string& assignment);

@@ -1,4 +1,6 @@
 // remote-touch: the command line.
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -52,7 +54,7 @@ int run_command_line(int argc, char** argv) {
   line.stop = &stop_requested;
   app.add_flag("-q,--quiet", line.quiet, "no progress");
 
-  app.add_subcommand("list", "scenarios, renderers, trajectories, experiments, figures, measures");
+  app.add_subcommand("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures");
   std::string name;
   auto* describe = app.add_subcommand("describe", "every parameter: range, default, meaning");
   describe->add_option("name", name, "a scenario, renderer, trajectory, experiment or figure")->required();
@@ -70,6 +72,34 @@ int run_command_line(int argc, char** argv) {
   figure_command->add_option("names", figure.names, "figures of the list, or all")->required();
   figure_command->add_option("-o,--output", figure.folder, "the folder to write into")->required();
 
+  SweepRequest sweep;
+  auto* sweep_command =
+      app.add_subcommand("sweep", "run an experiment over a grid of parameters; resumes by itself");
+  sweep_command->add_option("sweep", sweep.sweep, "a name of the list, or a JSON file")->required();
+  sweep_command->add_option("--set", sweep.overrides, "parameter=value of the experiment, or of the sweep")
+      ->allow_extra_args(false);
+  auto* sweep_output = sweep_command->add_option(
+      "-o,--output", sweep.output, "the HDF5 file to write or to go on with; {shard} stands for the shard");
+  sweep_command->add_option("--threads", sweep.threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+  sweep_command->add_option("--shard", sweep.shard,
+                            "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
+  auto* dry_run = sweep_command->add_flag("--dry-run", sweep.dry_run,
+                                          "check every cell, estimate time and file size, write nothing");
+
+  MergeRequest merge;
+  auto* merge_command = app.add_subcommand("merge", "put the shards of a sweep together");
+  merge_command->add_option("shards", merge.shards, "the files of all shards")->required();
+  merge_command->add_option("-o,--output", merge.output, "the HDF5 file to write")->required();
+
+  ReplayRequest replay;
+  auto* replay_command = app.add_subcommand("replay", "run one cell of a sweep again and store its trace");
+  replay_command->add_option("map", replay.map, "the result of a sweep")->required();
+  replay_command->add_option("--cell", replay.cell, "place on each axis, counted from 0, for example 3,40")
+      ->required();
+  replay_command->add_option("--replicate", replay.replicate, "counted from 0");
+  replay_command->add_option("-o,--output", replay.output, "the HDF5 file to write")->required();
+
   std::string file;
   app.add_subcommand("inspect", "what is in a result file")
       ->add_option("file", file, "an HDF5 file")
@@ -81,11 +111,16 @@ int run_command_line(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     throw usage_error(app, error);
   }
+  if (sweep_command->parsed() && sweep_output->empty() && dry_run->empty())
+    throw InputError("--output", "is required; see remote-touch sweep --help");
   line.kernels = &chosen_kernels();
   const std::string chosen = app.get_subcommands().front()->get_name();
   if (chosen == "list") return command_list();
   if (chosen == "describe") return command_describe(name);
   if (chosen == "run") return command_run(line, run);
+  if (chosen == "sweep") return command_sweep(line, sweep);
+  if (chosen == "merge") return command_merge(merge);
+  if (chosen == "replay") return command_replay(line, replay);
   if (chosen == "figure") return command_figure(line, figure);
   return command_inspect(file);
 }
@@ -99,6 +134,9 @@ void complain(std::string problem) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   try {

@@ -9,14 +9,15 @@ std::string version() {
 }
 
 TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa) {
-  return {{"config", config},
-          {"command", command},
-          {"version", REMOTE_TOUCH_VERSION},
-          {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
-          {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
-          {"compiler", REMOTE_TOUCH_COMPILER},
-          {"flags", REMOTE_TOUCH_FLAGS},
-          {"isa", isa}};
+  TextAttributes list = {{"config", config},
+                         {"command", command},
+                         {"version", REMOTE_TOUCH_VERSION},
+                         {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
+                         {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
+                         {"compiler", REMOTE_TOUCH_COMPILER},
+                         {"flags", REMOTE_TOUCH_FLAGS}};
+  if (!isa.empty()) list.emplace_back("isa", isa);
+  return list;
 }
 
 }  // namespace remote_touch

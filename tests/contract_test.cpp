@@ -215,7 +215,7 @@ TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
 
 TEST(Catalog, EveryStoredExperimentCanBeReadAndIsCompleteWhenWritten) {
   ASSERT_FALSE(stored_experiments().empty());
-  for (const StoredExperiment& stored : stored_experiments()) {
+  for (const StoredText& stored : stored_experiments()) {
     const Experiment experiment = Experiment::load(stored.name);
     EXPECT_FALSE(experiment.settings().title.empty()) << stored.name;
     const std::string resolved = experiment.to_json();

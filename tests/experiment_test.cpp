@@ -23,7 +23,7 @@ TEST(Experiments, AllFilesAreStored) {
     ++files;
     const auto stored = std::find_if(
         stored_experiments().begin(), stored_experiments().end(),
-        [&](const StoredExperiment& s) { return entry.path().filename() == std::string(s.name) + ".json"; });
+        [&](const StoredText& s) { return entry.path().filename() == std::string(s.name) + ".json"; });
     ASSERT_NE(stored, stored_experiments().end()) << entry.path();
     EXPECT_EQ(stored->json, bytes_of(entry.path()));
   }
@@ -31,7 +31,7 @@ TEST(Experiments, AllFilesAreStored) {
 }
 
 TEST(Experiments, SurviveARoundTrip) {
-  for (const StoredExperiment& stored : stored_experiments()) {
+  for (const StoredText& stored : stored_experiments()) {
     SCOPED_TRACE(stored.name);
     const Experiment experiment = Experiment::load(stored.name);
     const std::string text = experiment.to_json();

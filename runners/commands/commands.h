@@ -35,6 +35,30 @@ struct FigureRequest {
 };
 int command_figure(const CommandLine& line, const FigureRequest& request);
 
+struct SweepRequest {
+  std::string sweep;
+  std::vector<std::string> overrides;
+  std::string output;  // {shard} in it stands for the shard, "3of7"
+  std::string shard;   // empty: as the environment says, else the whole sweep
+  int threads = 0;     // 0: as OpenMP decides
+  bool dry_run = false;
+};
+int command_sweep(const CommandLine& line, const SweepRequest& request);
+
+struct MergeRequest {
+  std::vector<std::string> shards;
+  std::string output;
+};
+int command_merge(const MergeRequest& request);
+
+struct ReplayRequest {
+  std::string map;
+  std::string cell;  // "3,4"
+  int replicate = 0;
+  std::string output;
+};
+int command_replay(const CommandLine& line, const ReplayRequest& request);
+
 int command_inspect(const std::string& file);
 
 }  // namespace remote_touch

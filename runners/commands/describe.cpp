@@ -7,6 +7,7 @@
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
 #include "runners/json_parameters.h"
+#include "runners/sweep.h"
 
 namespace remote_touch {
 
@@ -31,7 +32,7 @@ bool describe_entry(std::span<const Entry> entries, const char* kind, const std:
 }
 
 bool describe_experiment(const std::string& name) {
-  for (const StoredExperiment& stored : stored_experiments()) {
+  for (const StoredText& stored : stored_experiments()) {
     if (name != stored.name) continue;
     const Experiment experiment = Experiment::load(name);
     std::printf("%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
@@ -44,6 +45,22 @@ bool describe_experiment(const std::string& name) {
   return false;
 }
 
+bool describe_sweep(const std::string& name) {
+  for (const StoredText& stored : stored_sweeps()) {
+    if (name != stored.name) continue;
+    const Sweep sweep = Sweep::load(name);
+    const SweepResult plan = sweep.plan();
+    std::printf("%s: a sweep: %s\n%s\n", stored.name, sweep.title().c_str(),
+                parse_json(sweep.to_json(), name).dump(2).c_str());
+    std::printf("Axes: %zu cells; %zu runs in the first round\n", plan.cell_count(),
+                plan.runs_in(RunState::pending).size());
+    for (const Column& axis : plan.axes)
+      std::printf("  %-24s %zu values of %s\n", axis.name.c_str(), axis.length(), axis.long_name.c_str());
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int command_describe(const std::string& name) {
@@ -51,6 +68,7 @@ int command_describe(const std::string& name) {
   found |= describe_entry(renderers(), "renderer", name);
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);
+  found |= describe_sweep(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())

@@ -5,6 +5,7 @@
 #include "runners/commands/commands.h"
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
+#include "runners/sweep.h"
 
 namespace remote_touch {
 
@@ -24,6 +25,8 @@ int command_list() {
   std::puts("experiments");
   for (const auto& stored : stored_experiments())
     row(stored.name, Experiment::load(stored.name).settings().title);
+  std::puts("sweeps");
+  for (const auto& stored : stored_sweeps()) row(stored.name, Sweep::load(stored.name).title());
   std::puts("figures");
   for (const auto& entry : figures()) row(entry.name, entry.summary);
   std::puts("measures");

@@ -13,8 +13,12 @@ class Progress {
   Progress(std::string what, bool quiet);
   ~Progress();
   void update(double share);  // 0 to 1
+  // Counted things, earlier ones of them done before this program began.
+  void update(std::size_t done, std::size_t total, std::size_t earlier, const char* things);
 
  private:
+  bool is_due();
+  void show(const std::string& text);
   std::string what_;
   bool quiet_, terminal_, shown_ = false;
   std::chrono::steady_clock::time_point start_, last_;

@@ -1,0 +1,93 @@
+#include <bit>
+#include <charconv>
+#include <cstdio>
+
+#include "analysis/result_file.h"
+#include "analysis/sweep_file.h"
+#include "analysis/whole_file.h"
+#include "core/input_error.h"
+#include "runners/commands/commands.h"
+#include "runners/commands/progress.h"
+#include "runners/provenance.h"
+#include "runners/simulation.h"
+#include "runners/sweep.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string attribute(const StoredSweep& stored, const std::string& name) {
+  for (const auto& [known, value] : stored.attributes)
+    if (known == name) return value;
+  return {};
+}
+
+// "3,4": the place on each axis, counted from 0.
+std::size_t cell_of(const std::string& text, const SweepResult& result) {
+  std::string allowed;
+  for (const Column& axis : result.axes)
+    allowed += (allowed.empty() ? "" : ",") + std::string("0..") + std::to_string(axis.length() - 1);
+  std::vector<std::size_t> place;
+  const char *next = text.data(), *end = text.data() + text.size();
+  while (next <= end && place.size() <= result.axes.size()) {
+    std::size_t number = 0;
+    const auto [stop, error] = std::from_chars(next, end, number);
+    if (error != std::errc() || (stop != end && *stop != ',')) break;
+    place.push_back(number);
+    next = stop + 1;
+  }
+  bool fits = next == end + 1 && place.size() == result.axes.size();
+  for (std::size_t i = 0; fits && i < place.size(); ++i) fits = place[i] < result.axes[i].length();
+  if (!fits) throw InputError("--cell " + text, "allowed " + allowed);
+  return result.cell_at(place);
+}
+
+// Prints each measure beside the stored one. True when they agree bit for bit, or nothing is stored.
+bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
+  const bool stored = result.state[run] == RunState::done;
+  bool same = true;
+  for (std::size_t i = 0; i < result.measures.size(); ++i) {
+    const double now = sweep.measures()[i].of(trace);
+    const double then = std::get<std::vector<double>>(result.measures[i].values)[run];
+    const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
+    same &= equal || !stored;
+    std::printf("  %-20s %12.6g %-6s %s", result.measures[i].name.c_str(), now,
+                result.measures[i].units.c_str(), stored ? equal ? "as stored\n" : "" : "not stored\n");
+    if (stored && !equal) std::printf("stored %.17g, now %.17g\n", then, now);
+  }
+  return same;
+}
+
+}  // namespace
+
+int command_replay(const CommandLine& line, const ReplayRequest& request) {
+  const StoredSweep stored = read_sweep(request.map);
+  const Sweep sweep = Sweep::from_json(attribute(stored, "config"), request.map + " config");
+  const SweepResult& result = stored.result;
+  const SweepResult planned = sweep.plan();
+  if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())
+    throw InputError(request.map, "damaged (its arrays do not fit its configuration)");
+  const std::size_t cell = cell_of(request.cell, result);
+  if (request.replicate < 0 || request.replicate >= result.replicates)
+    throw InputError("--replicate " + std::to_string(request.replicate),
+                     "allowed 0 to " + std::to_string(result.replicates - 1));
+  require_writable(request.output);
+
+  const Experiment experiment = sweep.experiment(cell, request.replicate);
+  Progress progress("replay", line.quiet);
+  SimulationOptions options;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  options.progress = [&](double share) { progress.update(share); };
+  const Trace trace = simulate(experiment, options);
+  const std::string command = attribute(stored, "command") + "; remote-touch replay --cell " + request.cell +
+                              " --replicate " + std::to_string(request.replicate);
+  const std::string sum =
+      write_trace(request.output, trace, provenance(experiment.to_json(), command, line.kernels->isa), {});
+  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
+  if (agrees(sweep, result, result.run(cell, request.replicate), trace)) return kDone;
+  std::printf("  the sweep was made by git_commit %s\n", attribute(stored, "git_commit").c_str());
+  return kCheckFailed;
+}
+
+}  // namespace remote_touch

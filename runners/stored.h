@@ -1,0 +1,21 @@
+// What comes with the program: experiments and sweeps of data/, compiled in.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace remote_touch {
+
+struct StoredText {
+  const char* name;
+  const char* json;
+};
+
+std::span<const StoredText> stored_experiments();
+std::span<const StoredText> stored_sweeps();
+
+// The text of that name, or of that file. kind: "an experiment's", for the InputError when there is neither.
+std::string stored_or_file(std::span<const StoredText> stored, const std::string& name_or_file,
+                           const std::string& kind);
+
+}  // namespace remote_touch

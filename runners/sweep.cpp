@@ -1,0 +1,278 @@
+#include "runners/sweep.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/input_error.h"
+#include "runners/json_parameters.h"
+#include "runners/sweep_axis.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMostRuns = 100000000;
+
+struct Refine {
+  std::string measure = "popped_through";
+  double above = 0.5;
+  std::uint64_t budget = 10000;
+  int most_replicates = 20;
+  int levels = 0;
+};
+
+Parameters parameters(Refine& r) {
+  return {
+      {"measure", &r.measure, 0, 0, "the measure whose probability is wanted"},
+      {"above", &r.above, -1e12, 1e12, "the event: the measure is above this"},
+      {"budget", &r.budget, 1, static_cast<double>(kMostRuns), "runs in all, the first round included"},
+      {"most_replicates", &r.most_replicates, 1, 100000, "runs of a cell at most"},
+      {"levels", &r.levels, 0, 10, "how often the steps of the axes may be halved"},
+  };
+}
+
+}  // namespace
+
+struct Sweep::Definition {
+  std::string title;
+  Json experiment;  // complete
+  std::vector<SweepAxis> axes;
+  int replicates = 1;
+  std::vector<Measure> measures;
+  std::optional<Refine> refine;
+
+  Json cell(const std::vector<std::size_t>& place) const;
+  void check_axes(const std::string& label) const;
+  void check_cells(const std::string& label) const;
+};
+
+namespace {
+
+Parameters parameters(std::string& title, int& replicates) {
+  return {{"title", &title, 0, 0, "one line for lists"},
+          {"replicates", &replicates, 1, 1e6, "runs of each cell, each with its own noise"}};
+}
+
+constexpr const char* kParts[] = {"title", "experiment", "set", "axes", "replicates", "measures", "refine"};
+
+bool is_of_sweep(const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find_first_of(".="));
+  return std::find(std::begin(kParts), std::end(kParts), key) != std::end(kParts);
+}
+
+// A path in a sweep's file is meant from the file's own folder.
+std::string beside(const std::string& sweep_file, const std::string& experiment) {
+  const auto there = std::filesystem::path(sweep_file).parent_path() / experiment;
+  std::error_code unreachable;
+  return std::filesystem::is_regular_file(there, unreachable) ? there.string() : experiment;
+}
+
+Json read_experiment(const Json& json, const std::string& label, const std::vector<std::string>& overrides) {
+  const auto found = json.find("experiment");
+  if (found == json.end() || !(found->is_string() || found->is_object()))
+    throw InputError(label + ": experiment", "missing; allowed a name, a file or an experiment itself");
+  std::vector<std::string> settings;
+  if (const auto set = json.find("set"); set != json.end()) {
+    if (!set->is_object()) throw InputError(label + ": set", "allowed {\"path\": value, ...}");
+    for (const auto& item : set->items()) settings.push_back(item.key() + "=" + item.value().dump());
+  }
+  settings.insert(settings.end(), overrides.begin(), overrides.end());
+  const Experiment experiment = found->is_string()
+                                    ? Experiment::load(beside(label, found->get<std::string>()), settings)
+                                    : Experiment::from_json(found->dump(), label + ": experiment", settings);
+  return parse_json(experiment.to_json(), label);
+}
+
+std::vector<Measure> read_measures(const Json& json, const std::string& label) {
+  const auto found = json.find("measures");
+  if (found == json.end()) return {measures().begin(), measures().end()};
+  std::vector<Measure> chosen;
+  std::string known;
+  for (const Measure& measure : measures()) known += (known.empty() ? "" : ", ") + std::string(measure.name);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(label + ": measures", what + "; allowed a list of different names of " + known);
+  };
+  if (!found->is_array() || found->empty()) refuse("no list");
+  for (const Json& name : *found) {
+    const auto is_it = [&](const Measure& measure) { return name == measure.name; };
+    const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
+    if (measure == measures().end()) refuse(name.dump() + " is unknown");
+    if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " comes twice");
+    chosen.push_back(*measure);
+  }
+  return chosen;
+}
+
+std::optional<Refine> read_refine(const Json& json, const std::vector<Measure>& chosen, int replicates,
+                                  const std::string& label) {
+  const auto found = json.find("refine");
+  if (found == json.end() || found->is_null()) return std::nullopt;
+  Refine refine;
+  read_parameters(*found, parameters(refine), "refine", false);
+  const auto is_it = [&](const Measure& measure) { return refine.measure == measure.name; };
+  if (std::none_of(chosen.begin(), chosen.end(), is_it))
+    throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",
+                     "allowed one of the sweep's measures");
+  if (refine.most_replicates < replicates)
+    throw InputError(label + ": refine.most_replicates", "allowed at least replicates");
+  return refine;
+}
+
+}  // namespace
+
+Json Sweep::Definition::cell(const std::vector<std::size_t>& place) const {
+  Json json = experiment;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
+  return json;
+}
+
+void Sweep::Definition::check_axes(const std::string& label) const {
+  std::set<std::string> names = {"replicate", "state", "round", "error", "checksum"};
+  for (const Measure& measure : measures) names.insert(measure.name);
+  std::size_t runs = static_cast<std::size_t>(refine ? refine->most_replicates : replicates);
+  for (const SweepAxis& axis : axes) {
+    if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
+      throw InputError(label + ": axis " + axis.parameter,
+                       "the sweep sets it itself; allowed another parameter");
+    if (!names.insert(axis.name()).second)
+      throw InputError(label + ": axis " + axis.parameter,
+                       "its name " + axis.name() + " is taken; allowed once");
+    runs *= axis.values.size();
+    if (runs > kMostRuns)
+      throw InputError(
+          label, "more than " + std::to_string(kMostRuns) + " runs; allowed fewer values or replicates");
+  }
+}
+
+// In parallel, because a large map has many; the first cell in order is the one that is named.
+void Sweep::Definition::check_cells(const std::string& label) const {
+  SweepResult grid;
+  for (const SweepAxis& axis : axes) grid.axes.push_back(axis.column());
+  const auto cells = static_cast<long>(grid.cell_count());
+  long first_wrong = cells;
+  std::string problem;
+#pragma omp parallel for schedule(static, 64)
+  for (long i = 0; i < cells; ++i) {
+    try {
+      Experiment::from_json(cell(grid.place(static_cast<std::size_t>(i))));
+    } catch (const std::exception& error) {
+#pragma omp critical(sweep_check)
+      if (i < first_wrong) first_wrong = i, problem = error.what();
+    }
+  }
+  if (first_wrong == cells) return;
+  std::string where;
+  for (const std::size_t k : grid.place(static_cast<std::size_t>(first_wrong)))
+    where += (where.empty() ? "" : ",") + std::to_string(k);
+  throw InputError(label + ": cell " + where, problem);
+}
+
+Sweep Sweep::from_json(const std::string& text, const std::string& label,
+                       const std::vector<std::string>& overrides) {
+  Json json = parse_json(text, label);
+  if (!json.is_object())
+    throw InputError(label, "not an object; allowed {\"experiment\": ..., \"axes\": [...]}");
+  std::vector<std::string> of_experiment;
+  for (const std::string& assignment : overrides)
+    if (is_of_sweep(assignment))
+      apply_override(json, assignment);
+    else
+      of_experiment.push_back(assignment);
+
+  auto definition = std::make_shared<Definition>();
+  Json plain = json;
+  for (const char* part : {"experiment", "set", "axes", "measures", "refine"}) plain.erase(part);
+  read_parameters(plain, parameters(definition->title, definition->replicates), "", false);
+  definition->measures = read_measures(json, label);
+  definition->refine = read_refine(json, definition->measures, definition->replicates, label);
+  const auto axes = json.find("axes");
+  if (axes == json.end() || !axes->is_array() || axes->empty() || axes->size() > 8)
+    throw InputError(label + ": axes", "allowed a list of 1 to 8 axes");
+  const int levels = definition->refine ? definition->refine->levels : 0;
+  for (std::size_t i = 0; i < axes->size(); ++i)
+    definition->axes.push_back(read_axis((*axes)[i], label + ": axes." + std::to_string(i), levels));
+  for (const SweepAxis& axis : definition->axes)
+    for (const std::string& assignment : of_experiment)
+      if (assignment.rfind(axis.parameter + "=", 0) == 0)
+        throw InputError("--set " + assignment,
+                         "an axis of this sweep; allowed another parameter, or --set axes...");
+  definition->experiment = read_experiment(json, label, of_experiment);
+  definition->check_axes(label);
+  definition->check_cells(label);
+  Sweep sweep;
+  sweep.definition_ = std::move(definition);
+  return sweep;
+}
+
+Sweep Sweep::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
+  return from_json(stored_or_file(stored_sweeps(), name_or_file, "a sweep's"), name_or_file, overrides);
+}
+
+const std::string& Sweep::title() const {
+  return definition_->title;
+}
+
+SweepResult Sweep::plan(const Shard& shard) const {
+  SweepResult result;
+  for (const SweepAxis& axis : definition_->axes) result.axes.push_back(axis.column());
+  result.replicates = definition_->refine ? definition_->refine->most_replicates : definition_->replicates;
+  for (const Measure& measure : definition_->measures)
+    result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
+  result.start(definition_->refine.has_value());
+  std::size_t number = 0;
+  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
+    const std::vector<std::size_t> place = result.place(cell);
+    bool is_first = true;
+    for (std::size_t i = 0; i < place.size(); ++i) is_first &= place[i] % definition_->axes[i].stride == 0;
+    if (!is_first) continue;
+    const RunState state = shard.has(number++) ? RunState::pending : RunState::elsewhere;
+    for (int replicate = 0; replicate < definition_->replicates; ++replicate) {
+      result.state[result.run(cell, replicate)] = state;
+      if (!result.round.empty()) result.round[result.run(cell, replicate)] = 0;
+    }
+  }
+  return result;
+}
+
+Experiment Sweep::experiment(std::size_t cell, int replicate) const {
+  std::vector<std::size_t> place(definition_->axes.size());
+  std::size_t rest = cell;
+  for (std::size_t i = place.size(); i-- > 0; rest /= definition_->axes[i].values.size())
+    place[i] = rest % definition_->axes[i].values.size();
+  Json json = definition_->cell(place);
+  json["cell"] = cell;
+  json["replicate"] = static_cast<std::uint64_t>(replicate);
+  return Experiment::from_json(std::move(json));
+}
+
+const std::vector<Measure>& Sweep::measures() const {
+  return definition_->measures;
+}
+
+std::optional<RefinementRule> Sweep::refinement() const {
+  if (!definition_->refine) return std::nullopt;
+  const Refine& refine = *definition_->refine;
+  RefinementRule rule{refine.measure, refine.above, refine.budget, definition_->replicates, {}};
+  for (const SweepAxis& axis : definition_->axes) rule.strides.push_back(axis.stride);
+  return rule;
+}
+
+std::string Sweep::to_json() const {
+  Json json = {{"title", definition_->title}, {"experiment", definition_->experiment}};
+  for (const SweepAxis& axis : definition_->axes)
+    json["axes"].push_back(parse_json(axis.definition, axis.parameter));
+  json["replicates"] = definition_->replicates;
+  for (const Measure& measure : definition_->measures) json["measures"].push_back(measure.name);
+  if (definition_->refine) {
+    Refine refine = *definition_->refine;
+    json["refine"] = Json::object();
+    write_parameters(parameters(refine), json["refine"]);
+  }
+  return json.dump();
+}
+
+}  // namespace remote_touch
