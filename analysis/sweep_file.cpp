@@ -59,11 +59,34 @@ std::vector<std::int32_t> checksums(const SweepResult& result) {
   return sums;
 }
 
-// The attributes by name, as they come back when the file is read: whoever wrote it last, it has the same bytes.
+// Of all that the finished file tells.
+std::string digest_of(const SweepResult& result) {
+  std::vector<Column> columns = result.axes;
+  columns.insert(columns.end(), result.measures.begin(), result.measures.end());
+  columns.push_back(state_column(result));
+  columns.push_back(error_column(result));
+  if (!result.round.empty()) columns.push_back(round_column(result));
+  return digest(columns);
+}
+
+// Of what stays as it is while the sweep runs; the rest has a checksum for each run.
+std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
+  std::sort(attributes.begin(), attributes.end());
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : attributes) texts.push_back(name), texts.push_back(value);
+  std::vector<Column> columns = result.axes;
+  columns.push_back({"attributes", "1", "", texts, 1, {}});
+  if (!result.round.empty()) columns.push_back(round_column(result));
+  return digest(columns);
+}
+
+// The attributes by name, as they come back when the file is read: whoever wrote it last, it has the same
+// bytes.
 void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attributes, Storage storage) {
   std::sort(attributes.begin(), attributes.end());
   hdf5.attribute("/", "schema", kSweepSchema);
   hdf5.attributes("/", attributes);
+  if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
   hdf5.attributes("/", {{"axes", joined(result.axes)}, {"measures", joined(result.measures)}});
   hdf5.attribute("/", "default", "sweep");  // NeXus: what a viewer opens first
   hdf5.group("/sweep");
@@ -102,12 +125,7 @@ std::int32_t checksum(const SweepResult& result, std::size_t run) {
 
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
                         const TextAttributes& attributes) {
-  std::vector<Column> columns = result.axes;
-  columns.insert(columns.end(), result.measures.begin(), result.measures.end());
-  columns.push_back(state_column(result));
-  columns.push_back(error_column(result));
-  if (!result.round.empty()) columns.push_back(round_column(result));
-  const std::string sum = digest(columns);
+  const std::string sum = digest_of(result);
   Hdf5Writer hdf5;
   build(hdf5, result, attributes, Storage::compact);
   hdf5.attribute("/", "digest", sum);
@@ -147,7 +165,7 @@ class SweepReader {
   TextAttributes provenance() const {
     TextAttributes kept;
     for (const auto& [name, value] : content_.attributes)
-      if (!is_one_of(name, {"schema", "digest", "default", "axes", "measures"}))
+      if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures"}))
         kept.emplace_back(name, value);
     return kept;
   }
@@ -186,7 +204,8 @@ class SweepReader {
 void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result) {
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     if (sums[run] == checksum(result, run)) continue;
-    result.state[run] = RunState::pending;
+    const bool asked_for = result.round.empty() || result.round[run] >= 0;
+    result.state[run] = asked_for ? RunState::pending : RunState::not_sampled;
     for (Column& measure : result.measures)
       std::get<std::vector<double>>(measure.values)[run] = std::numeric_limits<double>::quiet_NaN();
   }
@@ -219,9 +238,12 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   if (reader.find("round")) result.round = reader.values<std::int32_t>("round", runs);
   if (stored.in_progress) {
     result.error.resize(runs);
+    if (reader.attribute("plan_digest") != plan_digest(result, stored.attributes))
+      reader.damaged("its plan has changed");
     take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
+    if (reader.attribute("digest") != digest_of(result)) reader.damaged("its digest is another");
   }
   return stored;
 }

@@ -19,7 +19,7 @@ std::string write_sweep(const std::filesystem::path& file, const SweepResult& re
                         const TextAttributes& attributes);
 
 // What a file holds, finished or not. Runs of which only a part was written come as pending. Throws
-// InputError for a file that is no sweep.
+// InputError for a file that is no sweep, or is not as it was written.
 struct StoredSweep {
   SweepResult result;
   TextAttributes attributes;  // without schema and digest

@@ -18,7 +18,6 @@ class SweepInProgress {
   // it cannot be written or another process holds it.
   SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
                   const TextAttributes& attributes, bool already_there);
-  ~SweepInProgress();
   SweepInProgress(const SweepInProgress&) = delete;
   SweepInProgress& operator=(const SweepInProgress&) = delete;
 
@@ -28,11 +27,15 @@ class SweepInProgress {
   void flush();
 
  private:
-  void open_and_lock();
+  struct Held {
+    int descriptor = -1;
+    ~Held();  // lets go of the lock
+  };
+  void lock(Held& held);
   void put(std::int64_t offset, const void* value, std::size_t size);
 
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  Held held_;
   std::vector<std::int64_t> measure_offsets_;
   std::int64_t state_offset_ = 0, checksum_offset_ = 0;
 };

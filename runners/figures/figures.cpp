@@ -2,6 +2,8 @@
 
 #include <exception>
 
+#include "runners/sweep_run.h"
+
 namespace remote_touch {
 
 namespace {
@@ -10,6 +12,9 @@ constexpr FigureEntry kFigures[] = {
     {"4.11", "a flat grid touched from above: proxy height, and the ripple of the contact point",
      figure_4_11},
     {"4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12},
+    {"4.13", "5396 lifts, noise against acceleration: which popped through", figure_4_13},
+    {"4.13-replicated", "the same with 20 lifts a cell: probability of pop-through", figure_4_13_replicated},
+    {"bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds},
     {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14},
     {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15},
     {"4.16", "ramp and box seen by a simulated depth camera: proxy path and force", figure_4_16},
@@ -38,31 +43,36 @@ std::string Laboratory::configurations() const {
   return list.empty() ? "[]" : list + "]";
 }
 
-std::vector<double> Laboratory::measure(const std::vector<Experiment>& experiments,
-                                        const std::function<double(const Trace&)>& of) const {
-  const int count = static_cast<int>(experiments.size());
-  std::vector<double> values(experiments.size());
-  std::vector<std::exception_ptr> failures(experiments.size());
-  if (!experiments.empty()) configurations_.push_back(experiments.front().to_json());
-  int done = 0;
+Trace Laboratory::simulated(const Experiment& experiment) const {
+  SimulationOptions options;
+  options.kernels = &kernels_;
+  options.stop = stop_;
+  return simulate(experiment, options);
+}
+
+void Laboratory::for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
+  std::vector<std::exception_ptr> failures(count);
+  std::size_t done = 0;
   // Run i writes slot i; an exception must not leave the loop, it would end the program.
 #pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < count; ++i) {
-    const auto slot = static_cast<std::size_t>(i);
+  for (std::size_t i = 0; i < count; ++i) {
     try {
-      SimulationOptions options;
-      options.kernels = &kernels_;
-      options.stop = stop_;
-      values[slot] = of(simulate(experiments[slot], options));
+      work(i);
     } catch (...) {
-      failures[slot] = std::current_exception();
+      failures[i] = std::current_exception();
     }
 #pragma omp critical(laboratory_progress)
-    progress_(static_cast<double>(++done) / count);
+    progress_(static_cast<double>(++done) / static_cast<double>(count));
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
-  return values;
+}
+
+SweepResult Laboratory::sweep(const Sweep& sweep) const {
+  note(sweep.to_json());
+  const double runs = static_cast<double>(sweep.plan().runs_in(RunState::pending).size());
+  double done = 0;
+  return run_sweep(sweep, {&kernels_, stop_, [&](std::size_t) { progress_(++done / runs); }});
 }
 
 }  // namespace remote_touch

@@ -4,12 +4,14 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/figure.h"
 #include "analysis/trace.h"
 #include "runners/experiment.h"
 #include "runners/simulation.h"
+#include "runners/sweep.h"
 
 namespace remote_touch {
 
@@ -20,14 +22,36 @@ class Laboratory {
       : kernels_(kernels), stop_(stop), progress_(std::move(progress)) {}
 
   Trace run(const Experiment& experiment) const;
-  // One number from each run. Every experiment is resolved before the first runs; the first failure is thrown
-  // after all have ended.
-  std::vector<double> measure(const std::vector<Experiment>& experiments,
-                              const std::function<double(const Trace&)>& of) const;
-  // The resolved configuration of every run() and of the first experiment of every measure(), as a JSON list.
+  // What of(trace) gives for each run, side by side. The first failure is thrown after all have ended.
+  template <class Of>
+  auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
+    std::vector<decltype(of(std::declval<const Trace&>()))> results(experiments.size());
+    if (!experiments.empty()) note(experiments.front().to_json());
+    for_each(experiments.size(), [&](std::size_t i) { results[i] = of(simulated(experiments[i])); });
+    return results;
+  }
+  // Every run of a sweep; throws InputError when one failed.
+  SweepResult sweep(const Sweep& sweep) const;
+  // What of(trace) gives for each run of a sweep's plan, in its order.
+  template <class Of>
+  auto measure(const Sweep& sweep, Of&& of) const {
+    const SweepResult plan = sweep.plan();
+    std::vector<decltype(of(std::declval<const Trace&>()))> results(plan.run_count());
+    note(sweep.to_json());
+    for_each(plan.run_count(), [&](std::size_t run) {
+      results[run] = of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
+    });
+    return results;
+  }
+  // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
+  // JSON list.
   std::string configurations() const;
 
  private:
+  Trace simulated(const Experiment& experiment) const;
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
+  void note(const std::string& configuration) const { configurations_.push_back(configuration); }
+
   mutable std::vector<std::string> configurations_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
@@ -45,9 +69,12 @@ std::span<const FigureEntry> figures();
 
 Figure figure_4_11(const Laboratory& laboratory);
 Figure figure_4_12(const Laboratory& laboratory);
+Figure figure_4_13(const Laboratory& laboratory);
+Figure figure_4_13_replicated(const Laboratory& laboratory);
 Figure figure_4_14(const Laboratory& laboratory);
 Figure figure_4_16(const Laboratory& laboratory);
 Figure figure_4_16_recorded(const Laboratory& laboratory);
+Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
 
 }  // namespace remote_touch

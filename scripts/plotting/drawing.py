@@ -209,7 +209,10 @@ def add_legend(axes, panel):
     handles, labels = axes.get_legend_handles_labels()
     if not handles:
         return
-    legend = axes.legend(handles, [textwrap.fill(label, 24) for label in labels], **legend_place(axes, panel))
+    entries = dict(zip(reversed(labels), reversed(handles)))  # the two edges of an interval have one label
+    labels = list(dict.fromkeys(labels))
+    legend = axes.legend([entries[label] for label in labels], [textwrap.fill(label, 24) for label in labels],
+                         **legend_place(axes, panel))
     for line in legend.get_lines():  # small dots are hard to tell apart there
         line.set_markersize(max(5, line.get_markersize()))
 

@@ -1,0 +1,95 @@
+#include "runners/figures/bound_agreement.h"
+
+#include <map>
+
+#include "analysis/proportion.h"
+#include "runners/figures/pop_through_map.h"
+
+namespace remote_touch {
+
+Criterion criterion_of(const std::vector<LiftUpdates>& lifts) {
+  Criterion count;
+  for (const LiftUpdates& lift : lifts)
+    for (const LiftUpdate& update : lift) {
+      if (update.frame <= kRiseFrames || !update.above_before) continue;
+      const bool holds = update.margin_m(kLift.r1_m, kLift.frame_rate_hz) > 0;
+      ++(holds                ? update.above_after ? count.holds_stays : count.holds_pops
+         : update.above_after ? count.fails_stays
+                              : count.fails_pops);
+    }
+  return count;
+}
+
+Table criterion_table(const Criterion& count) {
+  Table table{"criterion", "(4.17) at each of the ten updates of every lift, and what happened"};
+  table.add("holds_and_stays", "1", "(4.17) holds and the proxy stays above", {count.holds_stays});
+  table.add("holds_but_pops", "1", "(4.17) holds but the proxy pops through", {count.holds_pops});
+  table.add("fails_but_stays", "1", "(4.17) does not hold but the proxy stays above", {count.fails_stays});
+  table.add("fails_and_pops", "1", "(4.17) does not hold and the proxy pops through", {count.fails_pops});
+  table.add("agreement", "1", "share in which they agree", {count.agreement()});
+  return table;
+}
+
+std::vector<Bound> bounds(const MeasuredNoise& noise) {
+  const auto printed = [](double noise_m, double less) {
+    return bound_acceleration(kLift, printed_thickness().at(noise_m) - less,
+                              printed_normal_error().at(noise_m));
+  };
+  const auto refitted = [&noise](double noise_m, double less) {
+    return bound_acceleration(kLift, noise.thickness.at(noise_m) - less, noise.normal_error.at(noise_m));
+  };
+  // How far the proxy goes wrong when the velocity estimate is off by one standard deviation.
+  const auto deviation = [&noise](double noise_m) {
+    return noise.at(noise_m).velocity_sd_m_per_s / kLift.frame_rate_hz;
+  };
+  return {{"printed", "(4.25) as printed", [=](double s) { return printed(s, 0); }},
+          {"printed_less", "(4.25) as printed, less one deviation of v_hat",
+           [=](double s) { return printed(s, deviation(s)); }},
+          {"refitted", "(4.25) refitted", [=](double s) { return refitted(s, 0); }},
+          {"refitted_less", "(4.25) refitted, less one deviation of v_hat",
+           [=](double s) { return refitted(s, deviation(s)); }},
+          {"scatter", "with scatter, ten updates",
+           [&noise](double s) { return scatter_bound(kLift, noise.at(s)); }}};
+}
+
+Agreement agreement_of(const Bound& bound, const Table& map) {
+  const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
+             &survived = numbers(map, "survived");
+  std::map<double, double> limit;
+  for (const double x : noise) limit.try_emplace(x, bound.at(x * kContactRadius_m) / kContactRadius_m);
+  int safe = 0, safe_popped = 0, unsafe_survived = 0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const bool is_safe = acceleration[i]<limit.at(noise[i]), stays = survived[i]> 0.5;
+    safe += is_safe ? 1 : 0;
+    safe_popped += is_safe && !stays ? 1 : 0;
+    unsafe_survived += !is_safe && stays ? 1 : 0;
+  }
+  const int cells = static_cast<int>(noise.size());
+  return {cells, cells - safe_popped - unsafe_survived, static_cast<double>(safe_popped) / safe,
+          static_cast<double>(unsafe_survived) / (cells - safe)};
+}
+
+Table agreement_table(const std::vector<Bound>& bounds, const std::vector<Agreement>& agreements) {
+  Table table{"agreement", "bounds against the outcome of 5396 lifts"};
+  Column names{"bound", "1", "which bound", {}, 1, {}};
+  std::vector<std::int32_t> number;
+  std::vector<double> cells, low, high, safe, unsafe;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    number.push_back(static_cast<std::int32_t>(i));
+    names.value_names.push_back(bounds[i].name);
+    cells.push_back(agreements[i].share());
+    const auto interval = wilson_interval(agreements[i].agree, agreements[i].cells);
+    low.push_back(interval.first), high.push_back(interval.second);
+    safe.push_back(agreements[i].safe_popped), unsafe.push_back(agreements[i].unsafe_survived);
+  }
+  names.values = number;
+  table.columns.push_back(names);
+  table.add("cells", "1", "share of cells in which bound and outcome agree", cells);
+  table.add("cells_low", "1", "lower end of its 95 % Wilson interval", low);
+  table.add("cells_high", "1", "upper end of its 95 % Wilson interval", high);
+  table.add("safe_popped", "1", "share of the bound's safe cells that popped through", safe);
+  table.add("unsafe_survived", "1", "share of the bound's unsafe cells that survived", unsafe);
+  return table;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,39 @@
+// How far the bounds of 4.4 agree with what happens.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runners/figures/lift_measurements.h"
+
+namespace remote_touch {
+
+// How often (4.17) at an update and what then happened go together. (4.18) is the same, rewritten for a cloud
+// that moves along its normal.
+struct Criterion {
+  double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
+  double agreement() const {
+    return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
+  }
+};
+// Of the updates of the acceleration, until the proxy is below.
+Criterion criterion_of(const std::vector<LiftUpdates>& lifts);
+Table criterion_table(const Criterion& count);
+
+// A bound as a function of the noise, m/s^2. It keeps a reference to what it was made from.
+struct Bound {
+  std::string name, meaning;
+  std::function<double(double noise_m)> at;
+};
+std::vector<Bound> bounds(const MeasuredNoise& noise);
+
+struct Agreement {
+  int cells = 0, agree = 0;
+  double safe_popped = 0, unsafe_survived = 0;  // shares of the bound's safe and unsafe cells
+  double share() const { return static_cast<double>(agree) / cells; }
+};
+Agreement agreement_of(const Bound& bound, const Table& map);
+Table agreement_table(const std::vector<Bound>& bounds, const std::vector<Agreement>& agreements);
+
+}  // namespace remote_touch

@@ -1,0 +1,102 @@
+// Fig 4.13 with replicates: probabilities and where they cross one half, with confidence.
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/falling_curve.h"
+#include "runners/figures/figures.h"
+#include "runners/figures/pop_through_map.h"
+
+namespace remote_touch {
+
+namespace {
+
+// For each noise strength the acceleration at which half of the lifts survive, from the falling curve nearest
+// to the shares; and where the ends of their Wilson intervals cross one half.
+Table contour(const std::string& name, const Table& map, std::size_t columns) {
+  const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration");
+  const std::size_t rows = noise.size() / columns;  // the map runs through the accelerations first
+  const auto crossings = [&](const std::string& column) {
+    const auto &values = numbers(map, column), &runs = numbers(map, "runs");
+    std::vector<double> list;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const auto from = static_cast<std::ptrdiff_t>(row * columns),
+                 to = from + static_cast<std::ptrdiff_t>(columns);
+      const std::vector<double> x(acceleration.begin() + from, acceleration.begin() + to);
+      const std::vector<double> share(values.begin() + from, values.begin() + to);
+      const std::vector<double> weight(runs.begin() + from, runs.begin() + to);
+      list.push_back(crossing(x, nearest_falling(share, weight), 0.5));
+    }
+    return list;
+  };
+  std::vector<double> strengths;
+  for (std::size_t row = 0; row < rows; ++row) strengths.push_back(noise[row * columns]);
+  Table table{name, "acceleration at which half of the lifts survive"};
+  table.add("noise", "r_c", "standard deviation of the noise", strengths);
+  table.add("acceleration", "r_c/s^2", "half of the lifts survive", crossings("survived"));
+  table.add("low", "r_c/s^2", "lower end of the intervals crosses one half", crossings("survived_low"));
+  table.add("high", "r_c/s^2", "upper end of the intervals crosses one half", crossings("survived_high"));
+  add_bound(table, "printed_bound", "(4.25) as printed", printed_bound);
+  return table;
+}
+
+// The contour of an independent implementation at six noise strengths, read against ours by interpolation.
+double largest_contour_deviation(const Table& contour) {
+  constexpr double kReference[][2] = {{0.08, 840}, {0.68, 960}, {1.08, 740},
+                                      {1.48, 600}, {1.88, 500}, {2.48, 300}};
+  const auto &noise = numbers(contour, "noise"), &acceleration = numbers(contour, "acceleration");
+  double largest = 0;
+  for (const auto& [x, expected] : kReference) {
+    const auto next = static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(std::upper_bound(noise.begin(), noise.end(), x) - noise.begin(), 1,
+                                   static_cast<std::ptrdiff_t>(noise.size()) - 1));
+    const double share = (x - noise[next - 1]) / (noise[next] - noise[next - 1]);
+    const double ours = acceleration[next - 1] + share * (acceleration[next] - acceleration[next - 1]);
+    largest = std::max(largest, std::abs(ours - expected));
+  }
+  return largest;
+}
+
+Panel probability_panel(const std::string& title, const std::string& map, const std::string& contour) {
+  return map_panel(title, {{map, "noise", "acceleration", CurveStyle::map, "", 0, "survived"},
+                           {contour, "noise", "acceleration", CurveStyle::line, "half survive"},
+                           {contour, "noise", "low", CurveStyle::dashed, "95 % interval"},
+                           {contour, "noise", "high", CurveStyle::dashed, "95 % interval"},
+                           {contour, "noise", "printed_bound", CurveStyle::line, "bound (4.25) as printed"}});
+}
+
+}  // namespace
+
+Figure figure_4_13_replicated(const Laboratory& laboratory) {
+  const Sweep sweep = Sweep::load("fig4.13-replicated");
+  const SweepResult result = laboratory.sweep(sweep);
+  const std::size_t columns = result.axes.at(1).length();
+  const Table map = map_table("map", result);
+  const Table without =
+      map_table("map_without_estimate",
+                laboratory.sweep(Sweep::load("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
+  const Table half = contour("contour", map, columns);
+  Figure figure{
+      "4.13-replicated",
+      "Probability of pop-through",
+      "Every second node of the map of Fig 4.13, 20 lifts each, 1000 proxy steps per frame: share of lifts that "
+      "did not pop through, and where it crosses one half, with 95 % Wilson intervals.",
+      {map, without, half, contour("contour_without_estimate", without, columns)}};
+  figure.panels = {probability_panel("With the velocity estimate", "map", "contour"),
+                   probability_panel("Without", "map_without_estimate", "contour_without_estimate")};
+  figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
+  const auto& runs = numbers(map, "runs");
+  figure.claims = {
+      claim_at_least("4.13-replicated", "lifts of each cell", "1",
+                     *std::min_element(runs.begin(), runs.end()), 20, "lifts"),
+      claim_between("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")), 0.395,
+                    0.455, "share"),
+      claim_between("4.13-replicated", "success over the map without the velocity estimate", "-",
+                    mean(numbers(without, "survived")), 0.03, 0.09, "share"),
+      claim_at_most("4.13-replicated",
+                    "largest difference of the 50 % contour from the reference, six noise levels", "-",
+                    largest_contour_deviation(half), 100, "r_c/s^2"),
+  };
+  return figure;
+}
+
+}  // namespace remote_touch

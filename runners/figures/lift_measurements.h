@@ -1,0 +1,42 @@
+// What figure bounds measures over lifts.
+#pragma once
+
+#include <vector>
+
+#include "analysis/lift_noise.h"
+#include "analysis/polynomial_fit.h"
+#include "runners/figures/figures.h"
+
+namespace remote_touch {
+
+using LiftUpdates = std::vector<LiftUpdate>;
+
+// (4.14): critical accelerations without noise, by bisection between two, over 8 x 8 positions of the grid
+// under the proxy; and the shares that survived at the two ends.
+struct Phases {
+  static constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
+  Table table{"phases", "critical acceleration without noise, by position of the grid"};
+  double survived_low = 0, survived_high = 0;
+};
+Phases critical_over_phases(const Laboratory& laboratory);
+
+// (4.19) to (4.24): what noise does, from lifts without acceleration, and fits up to kFitted_m.
+inline constexpr double kFitted_m = 0.01;
+struct MeasuredNoise {
+  std::vector<double> sigma_m;
+  std::vector<NoiseEffect> effect;  // of each strength
+  PolynomialFit thickness, normal_error;
+
+  NoiseEffect at(double noise_m) const;  // linear between the measured strengths
+};
+MeasuredNoise measured_noise(const Laboratory& laboratory);
+Table effect_table(const MeasuredNoise& noise);
+
+// The map of Fig 4.13 with noise of another seed: every update of every lift, and whether the lift survived.
+struct LiftMap {
+  Table map{"map", "lifts that did not pop through"};  // noise, acceleration, survived
+  std::vector<LiftUpdates> updates;
+};
+LiftMap lift_map(const Laboratory& laboratory, int seed);
+
+}  // namespace remote_touch

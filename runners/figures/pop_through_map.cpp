@@ -1,0 +1,76 @@
+#include "runners/figures/pop_through_map.h"
+
+#include <numeric>
+#include <stdexcept>
+
+#include "analysis/proportion.h"
+
+namespace remote_touch {
+
+Table map_table(const std::string& name, const SweepResult& result) {
+  const auto& sigma = std::get<std::vector<double>>(result.axes.at(0).values);
+  const auto& acceleration = std::get<std::vector<double>>(result.axes.at(1).values);
+  const std::vector<double>& popped = result.measure("popped_through");
+  std::vector<double> x, y, survived, low, high, runs;
+  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
+    const Tally t = tally(result, popped, cell);
+    const auto place = result.place(cell);
+    const auto interval = wilson_interval(t.runs - t.events, t.runs);
+    x.push_back(sigma[place[0]] / kContactRadius_m);
+    y.push_back(acceleration[place[1]] / kContactRadius_m);
+    survived.push_back(1 - static_cast<double>(t.events) / t.runs);
+    low.push_back(interval.first), high.push_back(interval.second);
+    runs.push_back(t.runs);
+  }
+  Table table{name, "lifts that did not pop through"};
+  table.add("noise", "r_c", "standard deviation of the noise", x);
+  table.add("acceleration", "r_c/s^2", "acceleration of the lift", y);
+  table.add("survived", "1", "share of lifts that did not pop through", survived);
+  table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
+  table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
+  table.add("runs", "1", "lifts", runs);
+  return table;
+}
+
+Table survivors(const std::string& name, const Table& map) {
+  const auto &x = numbers(map, "noise"), &y = numbers(map, "acceleration"),
+             &survived = numbers(map, "survived");
+  std::vector<double> filled_x, filled_y;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (survived[i] > 0.5) filled_x.push_back(x[i]), filled_y.push_back(y[i]);
+  Table table{name, "cells whose lift did not pop through"};
+  table.add("noise", "r_c", "standard deviation of the noise", filled_x);
+  table.add("acceleration", "r_c/s^2", "acceleration of the lift", filled_y);
+  return table;
+}
+
+void add_bound(Table& table, const std::string& column, const std::string& meaning,
+               const std::function<double(double noise_m)>& bound_m_per_s2) {
+  std::vector<double> bound;
+  for (const double noise : numbers(table, "noise"))
+    bound.push_back(bound_m_per_s2(noise * kContactRadius_m) / kContactRadius_m);
+  table.add(column, "r_c/s^2", meaning, bound);
+}
+
+double printed_bound(double noise_m) {
+  return bound_acceleration(kLift, printed_thickness().at(noise_m), printed_normal_error().at(noise_m));
+}
+
+Panel map_panel(const std::string& title, std::vector<Curve> curves) {
+  Panel panel{title, "noise (r_c)", "acceleration (r_c/s^2)", false, std::move(curves)};
+  panel.x_range = {-0.02, 3.02};
+  panel.y_range = {-10, 1410};
+  return panel;
+}
+
+const std::vector<double>& numbers(const Table& table, const std::string& column) {
+  for (const Column& candidate : table.columns)
+    if (candidate.name == column) return std::get<std::vector<double>>(candidate.values);
+  throw std::out_of_range(table.name + " has no column " + column);
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,36 @@
+// Maps of lifts, noise against acceleration, in units of r_c: what figures 4.13, 4.13-replicated and bounds
+// share.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/figure.h"
+#include "analysis/pop_through_bound.h"
+#include "analysis/sweep_result.h"
+
+namespace remote_touch {
+
+// Of fig4.12 and the sweeps on it: Table 4.2, 4.3.2.
+inline constexpr double kContactRadius_m = 0.005;
+inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
+inline constexpr int kRiseFrames = 15;
+
+// One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (share), its Wilson interval, runs.
+Table map_table(const std::string& name, const SweepResult& result);
+// The cells in which more than half of the lifts survived.
+Table survivors(const std::string& name, const Table& map);
+
+// Noise in r_c against a bound in r_c/s^2, as a column of a table that begins with noise.
+void add_bound(Table& table, const std::string& column, const std::string& meaning,
+               const std::function<double(double noise_m)>& bound_m_per_s2);
+double printed_bound(double noise_m);  // (4.25) with (4.23), (4.24), m/s^2
+
+// A map's panel: x noise, y acceleration, the same ranges in all figures.
+Panel map_panel(const std::string& title, std::vector<Curve> curves);
+
+const std::vector<double>& numbers(const Table& table, const std::string& column);
+double mean(const std::vector<double>& values);
+
+}  // namespace remote_touch
