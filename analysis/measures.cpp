@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/contact_point.h"
 
@@ -21,6 +22,8 @@ constexpr Measure kMeasures[] = {
     {"popped_through", "1", "1 when the proxy's centre ended below the true surface", popped_through},
     {"largest_penetration", "m", "how far the centre was at most behind the true surface",
      largest_penetration_m},
+    {"rms_surface_error", "m", "rms distance between the rendered surface and the true one, in contact",
+     rms_surface_error_m},
     {"largest_force_jump", "N", "largest change of the force at a frame update", largest_force_jump_N},
     {"largest_force", "N", "largest force", largest_force_N},
     {"mean_steps", "1", "proxy steps per tick", mean_steps},
@@ -43,6 +46,20 @@ double largest_penetration_m(const Trace& trace) {
   double deepest = 0;
   for (const double distance : trace.signed_distance_m) deepest = std::max(deepest, -distance);  // NaN loses
   return deepest;
+}
+
+double rms_surface_error_m(const Trace& trace) {
+  double squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const double error = trace.signed_distance_m[i] - trace.nearest_m[i];
+    if (trace.state[i] != static_cast<std::int32_t>(ContactState::contact) || !std::isfinite(error)) continue;
+    squares += error * error;
+    ++count;
+  }
+  if (count == 0)
+    return std::numeric_limits<double>::quiet_NaN();  // not 0 / 0: its sign is the machine's choice
+  return std::sqrt(squares / static_cast<double>(count));
 }
 
 double largest_force_jump_N(const Trace& trace) {

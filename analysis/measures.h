@@ -13,6 +13,10 @@ double popped_through(const Trace& trace);
 // How far the centre was at most behind the true surface, m; 0 when never. Ticks without a known truth do not
 // count.
 double largest_penetration_m(const Trace& trace);
+// How far the rendered surface is from the true one: rms difference of the centre's distance to the true
+// surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without
+// any.
+double rms_surface_error_m(const Trace& trace);
 // Largest change of the force between two ticks where a new frame came in while force was rendered on both
 // sides, N.
 double largest_force_jump_N(const Trace& trace);

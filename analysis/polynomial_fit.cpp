@@ -9,17 +9,27 @@
 namespace remote_touch {
 
 namespace {
+double power(double x, int exponent) {
+  double product = 1;
+  for (int i = 0; i < exponent; ++i) product *= x;
+  return product;
+}
+
 Eigen::VectorXd terms(double x, const std::vector<int>& powers) {
   Eigen::VectorXd row(static_cast<Eigen::Index>(powers.size()));
-  for (std::size_t k = 0; k < powers.size(); ++k) row[static_cast<Eigen::Index>(k)] = std::pow(x, powers[k]);
+  for (std::size_t k = 0; k < powers.size(); ++k) row[static_cast<Eigen::Index>(k)] = power(x, powers[k]);
   return row;
 }
 }  // namespace
 
-double PolynomialFit::at(double x) const {
+double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x) {
   double sum = 0;
-  for (std::size_t k = 0; k < powers.size(); ++k) sum += coefficients[k] * std::pow(x, powers[k]);
+  for (std::size_t k = 0; k < powers.size(); ++k) sum += coefficients[k] * power(x, powers[k]);
   return sum;
+}
+
+double PolynomialFit::at(double x) const {
+  return polynomial(coefficients, powers, x);
 }
 
 double PolynomialFit::half_width(double x) const {
@@ -49,7 +59,7 @@ PolynomialFit fit_polynomial(const std::vector<double>& x, const std::vector<dou
   Eigen::MatrixXd spread = correction * inverse * scatter * inverse;
   PolynomialFit fit;
   for (Eigen::Index k = 0; k < columns; ++k) {
-    const double unit = std::pow(scale, -powers[static_cast<std::size_t>(k)]);
+    const double unit = 1 / power(scale, powers[static_cast<std::size_t>(k)]);
     fit.coefficients.push_back(scaled[k] * unit);
     spread.row(k) *= unit, spread.col(k) *= unit;
   }

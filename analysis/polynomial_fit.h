@@ -6,6 +6,9 @@
 
 namespace remote_touch {
 
+// sum of c_k x^power_k, powers from 0. By multiplication: the C library's pow may differ in its last bit.
+double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x);
+
 struct PolynomialFit {
   std::vector<int> powers;
   std::vector<double> coefficients;

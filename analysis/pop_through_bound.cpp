@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/polynomial_fit.h"
+
 namespace remote_touch {
 
 double critical_acceleration(const Lift& lift) {
@@ -20,15 +22,11 @@ double bound_acceleration(const Lift& lift, double thickness_m, double normal_er
 }
 
 double PrintedFit::at(double sigma_m) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < powers.size(); ++i) sum += coefficients[i] * std::pow(sigma_m, powers[i]);
-  return sum;
+  return polynomial(coefficients, powers, sigma_m);
 }
 
 double PrintedFit::digits_band(double sigma_m) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < powers.size(); ++i) sum += half_digits[i] * std::pow(sigma_m, powers[i]);
-  return sum;
+  return polynomial(half_digits, powers, sigma_m);
 }
 
 const PrintedFit& printed_thickness() {
@@ -49,9 +47,10 @@ double survival_probability(const Lift& lift, const NoiseEffect& noise, double a
   for (int j = 1; j <= lift.updates; ++j) {
     const double velocity = lift.start_velocity_m_per_s + j * acceleration / f;
     const double margin = lift.r1_m + noise.thickness_m + (estimate * upright - velocity) / f;
-    const double variance = 2 * noise.thickness_sd_m * noise.thickness_sd_m +
-                            std::pow(noise.velocity_sd_m_per_s * upright / f, 2) +
-                            std::pow(estimate * noise.normal_error_sd / f, 2);
+    const double of_thickness = noise.thickness_sd_m, of_velocity = noise.velocity_sd_m_per_s * upright / f,
+                 of_normal = estimate * noise.normal_error_sd / f;
+    const double variance =
+        2 * of_thickness * of_thickness + of_velocity * of_velocity + of_normal * of_normal;
     // Without noise a step from 0 to 1; the rounding of (4.14) is left to decide nothing.
     probability *= variance > 0 ? 0.5 * std::erfc(-margin / std::sqrt(2 * variance)) : margin > 0 ? 1 : 0;
     estimate += noise.gain * (velocity - estimate);

@@ -59,16 +59,6 @@ std::vector<std::int32_t> checksums(const SweepResult& result) {
   return sums;
 }
 
-// Of all that the finished file tells.
-std::string digest_of(const SweepResult& result) {
-  std::vector<Column> columns = result.axes;
-  columns.insert(columns.end(), result.measures.begin(), result.measures.end());
-  columns.push_back(state_column(result));
-  columns.push_back(error_column(result));
-  if (!result.round.empty()) columns.push_back(round_column(result));
-  return digest(columns);
-}
-
 // Of what stays as it is while the sweep runs; the rest has a checksum for each run.
 std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   std::sort(attributes.begin(), attributes.end());
@@ -123,9 +113,18 @@ std::int32_t checksum(const SweepResult& result, std::size_t run) {
   return static_cast<std::int32_t>(hash);
 }
 
+std::string digest(const SweepResult& result) {
+  std::vector<Column> columns = result.axes;
+  columns.insert(columns.end(), result.measures.begin(), result.measures.end());
+  columns.push_back(state_column(result));
+  columns.push_back(error_column(result));
+  if (!result.round.empty()) columns.push_back(round_column(result));
+  return digest(columns);
+}
+
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
                         const TextAttributes& attributes) {
-  const std::string sum = digest_of(result);
+  const std::string sum = digest(result);
   Hdf5Writer hdf5;
   build(hdf5, result, attributes, Storage::compact);
   hdf5.attribute("/", "digest", sum);
@@ -243,7 +242,7 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
     take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
-    if (reader.attribute("digest") != digest_of(result)) reader.damaged("its digest is another");
+    if (reader.attribute("digest") != digest(result)) reader.damaged("its digest is another");
   }
   return stored;
 }

@@ -13,6 +13,9 @@ namespace remote_touch {
 
 inline constexpr const char* kSweepSchema = "remote-touch-sweep/1";
 
+// Of axes, measures, states and errors.
+std::string digest(const SweepResult& result);
+
 // The finished file: equal results are equal bytes. attributes: configuration, provenance and shard; schema
 // and digest are added. Returns the digest. Throws InputError when it cannot be written.
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,

@@ -46,6 +46,7 @@ struct Sweep::Definition {
 
   Json cell(const std::vector<std::size_t>& place) const;
   void check_axes(const std::string& label) const;
+  void check_budget(const std::string& label) const;
   void check_cells(const std::string& label) const;
 };
 
@@ -61,6 +62,13 @@ constexpr const char* kParts[] = {"title", "experiment", "set", "axes", "replica
 bool is_of_sweep(const std::string& assignment) {
   const std::string key = assignment.substr(0, assignment.find_first_of(".="));
   return std::find(std::begin(kParts), std::end(kParts), key) != std::end(kParts);
+}
+
+void refuse_unknown_part(const Json& json, const std::string& label) {
+  std::string known;
+  for (const char* part : kParts) known += (known.empty() ? "" : ", ") + std::string(part);
+  for (const auto& item : json.items())
+    if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
 }
 
 // A path in a sweep's file is meant from the file's own folder.
@@ -83,6 +91,9 @@ Json read_experiment(const Json& json, const std::string& label, const std::vect
   const Experiment experiment = found->is_string()
                                     ? Experiment::load(beside(label, found->get<std::string>()), settings)
                                     : Experiment::from_json(found->dump(), label + ": experiment", settings);
+  if (experiment.settings().key.cell != 0 || experiment.settings().key.replicate != 0)
+    throw InputError(label + ": experiment",
+                     "cell or replicate is set; allowed 0, the sweep sets them itself");
   return parse_json(experiment.to_json(), label);
 }
 
@@ -148,6 +159,15 @@ void Sweep::Definition::check_axes(const std::string& label) const {
   }
 }
 
+void Sweep::Definition::check_budget(const std::string& label) const {
+  if (!refine) return;
+  auto first_round = static_cast<std::uint64_t>(replicates);
+  for (const SweepAxis& axis : axes) first_round *= (axis.values.size() - 1) / axis.stride + 1;
+  if (refine->budget < first_round)
+    throw InputError(label + ": refine.budget = " + std::to_string(refine->budget),
+                     "allowed at least the " + std::to_string(first_round) + " runs of the first round");
+}
+
 // In parallel, because a large map has many; the first cell in order is the one that is named.
 void Sweep::Definition::check_cells(const std::string& label) const {
   SweepResult grid;
@@ -183,6 +203,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
     else
       of_experiment.push_back(assignment);
 
+  refuse_unknown_part(json, label);
+
   auto definition = std::make_shared<Definition>();
   Json plain = json;
   for (const char* part : {"experiment", "set", "axes", "measures", "refine"}) plain.erase(part);
@@ -202,6 +224,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
                          "an axis of this sweep; allowed another parameter, or --set axes...");
   definition->experiment = read_experiment(json, label, of_experiment);
   definition->check_axes(label);
+  definition->check_budget(label);
   definition->check_cells(label);
   Sweep sweep;
   sweep.definition_ = std::move(definition);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/input_error.h"
 
@@ -70,7 +71,12 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   if (count > kMostValues)
     throw InputError(label + ".count",
                      "more than " + std::to_string(kMostValues) + " values after refinement");
-  for (std::size_t i = 0; i < count; ++i) result.values.push_back(value_of(axis, i, count));
+  for (std::size_t i = 0; i < count; ++i) {
+    result.values.push_back(value_of(axis, i, count));
+    if (i > 0 && result.values[i] == result.values[i - 1])
+      throw InputError(label + ".count = " + std::to_string(axis.count),
+                       "neighbouring values are equal; allowed fewer between from and to");
+  }
   Json definition = Json::object();
   write_parameters(parameters(axis), definition);
   result.definition = definition.dump();
@@ -86,10 +92,10 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   const Json& values = json["values"];
   if (!values.is_array() || values.empty() || values.size() > kMostValues)
     throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMostValues) + " values");
-  for (std::size_t i = 0; i < values.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (values[i] == values[k])
-        throw InputError(label + ".values", values[i].dump() + " comes twice; allowed once");
+  std::set<Json> different;
+  for (const Json& value : values)
+    if (!different.insert(value).second)
+      throw InputError(label + ".values", value.dump() + " comes twice; allowed once");
   const Json definition = {{"parameter", parameter}, {"values", values}};
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }

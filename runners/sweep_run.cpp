@@ -44,7 +44,7 @@ void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOpti
     try {
       do_run(sweep, options, run, result);
       const std::lock_guard lock(one_at_a_time);
-      if (!ends && options.finished) options.finished(run);
+      if (options.finished) options.finished(run);
     } catch (...) {
       const std::lock_guard lock(one_at_a_time);
       if (!ends.exchange(true)) failure = std::current_exception();

@@ -1,6 +1,7 @@
 #include <bit>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 
 #include "analysis/result_file.h"
 #include "analysis/sweep_file.h"
@@ -61,6 +62,9 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
+  std::error_code absent;
+  if (std::filesystem::equivalent(request.map, request.output, absent))
+    throw InputError(request.output, "is the sweep itself; allowed another file");
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = Sweep::from_json(attribute(stored, "config"), request.map + " config");
   const SweepResult& result = stored.result;

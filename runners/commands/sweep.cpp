@@ -108,14 +108,24 @@ int dry_run(const Sweep& sweep, const SweepResult& result, const TextAttributes&
   return kDone;
 }
 
-// What an earlier call left in the file goes on; failed runs are tried again.
+// What an earlier call left in the file goes on; failed runs are tried again. Only what runs gave is taken
+// from it: the rest is known.
 bool take_over(const std::string& file, const TextAttributes& attributes, SweepResult& result,
                TextAttributes& kept) {
   std::error_code unreachable;
   if (!std::filesystem::is_regular_file(file, unreachable)) return false;
   StoredSweep stored = read_sweep(file);
   require_same(file, stored.attributes, attributes);
-  result = std::move(stored.result);
+  SweepResult& earlier = stored.result;
+  if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
+      earlier.round.size() != result.round.size())
+    throw InputError(file, "damaged (its arrays do not fit its configuration); allowed a new file");
+  for (std::size_t i = 0; i < result.measures.size(); ++i)
+    result.measures[i].values = std::move(earlier.measures[i].values);
+  for (std::size_t run = 0; run < result.run_count(); ++run)
+    if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
+  result.round = std::move(earlier.round);
+  result.error = std::move(earlier.error);
   kept = std::move(stored.attributes);
   const auto failed = result.runs_in(RunState::failed);
   for (const std::size_t run : failed) result.state[run] = RunState::pending, result.error[run].clear();
@@ -157,12 +167,15 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
   require_writable(file);
   bool already_there = take_over(file, attributes, result, attributes);
   // Shards do the first round; refinement looks at all of them, so it begins on the merged file.
-  const auto more = [&] { return shard.count == 1 && add_round(sweep, result); };
+  const auto more = [&] {
+    if (shard.count > 1 || !add_round(sweep, result)) return false;
+    already_there = false;  // the file knows nothing of the new round
+    return true;
+  };
   bool any = false;
   try {
     while (!result.runs_in(RunState::pending).empty() || more()) {
       do_round(sweep, file, attributes, already_there, line, result);
-      already_there = false;
       any = true;
     }
   } catch (const Interrupted&) {
@@ -171,7 +184,8 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
         result.runs_in(RunState::done).size(), file.c_str());
     return kInterrupted;
   }
-  if (any || already_there)
+  std::error_code unreachable;  // a shard without cells is a file too
+  if (any || already_there || !std::filesystem::exists(file, unreachable))
     write_sweep(file, result, attributes);
   else
     std::printf("%s: nothing left to do\n", file.c_str());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "analysis/sweep_file.h"
 #include "runners/commands/commands.h"
 
 namespace remote_touch {
@@ -38,7 +39,7 @@ int print_summary(const std::string& file, const SweepResult& result) {
               result.runs_in(RunState::done).size(), failed.size());
   if (const auto elsewhere = result.runs_in(RunState::elsewhere).size(); elsewhere > 0)
     std::printf(", %zu in other shards", elsewhere);
-  std::puts("");
+  std::printf(", digest %s\n", digest(result).c_str());
   for (const Column& measure : result.measures) print_measure(measure);
   if (failed.empty()) return kDone;
   std::printf("  the first failure: %s\n", result.error[failed.front()].c_str());

@@ -1,5 +1,6 @@
 #include "runners/figures/bound_agreement.h"
 
+#include <iterator>
 #include <map>
 
 #include "analysis/proportion.h"
@@ -7,26 +8,48 @@
 
 namespace remote_touch {
 
-Criterion criterion_of(const std::vector<LiftUpdates>& lifts) {
+namespace {
+
+void count_updates(const LiftUpdates& lift, Criterion& count) {
+  for (const LiftUpdate& update : lift) {
+    if (update.frame <= kRiseFrames) continue;
+    if (!update.above_before) return;
+    const bool holds = update.margin_m(kLift.r1_m, kLift.frame_rate_hz) > 0;
+    if (holds)
+      ++(update.above_after ? count.holds_stays : count.holds_pops);
+    else
+      ++(update.above_after ? count.fails_stays : count.fails_pops);
+  }
+}
+
+}  // namespace
+
+Criterion criterion_of(const LiftMap& lifts, double low, double high) {
+  const std::vector<double>& noise = numbers(lifts.map, "noise");
   Criterion count;
-  for (const LiftUpdates& lift : lifts)
-    for (const LiftUpdate& update : lift) {
-      if (update.frame <= kRiseFrames || !update.above_before) continue;
-      const bool holds = update.margin_m(kLift.r1_m, kLift.frame_rate_hz) > 0;
-      ++(holds                ? update.above_after ? count.holds_stays : count.holds_pops
-         : update.above_after ? count.fails_stays
-                              : count.fails_pops);
-    }
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    if (noise[i] >= low && noise[i] < high) count_updates(lifts.updates[i], count);
   return count;
 }
 
-Table criterion_table(const Criterion& count) {
+Table criterion_table(const LiftMap& lifts) {
+  // Noise-free, and steps of half an r_c; no node lies on an edge.
+  constexpr double kEdges[] = {0, 0.01, 0.51, 1.01, 1.51, 2.01, 2.51, 3.01};
+  std::vector<double> from, holds_stays, holds_pops, fails_stays, fails_pops, agreement;
+  for (std::size_t i = 0; i + 1 < std::size(kEdges); ++i) {
+    const Criterion count = criterion_of(lifts, kEdges[i], kEdges[i + 1]);
+    from.push_back(kEdges[i]);
+    holds_stays.push_back(count.holds_stays), holds_pops.push_back(count.holds_pops);
+    fails_stays.push_back(count.fails_stays), fails_pops.push_back(count.fails_pops);
+    agreement.push_back(count.agreement());
+  }
   Table table{"criterion", "(4.17) at each of the ten updates of every lift, and what happened"};
-  table.add("holds_and_stays", "1", "(4.17) holds and the proxy stays above", {count.holds_stays});
-  table.add("holds_but_pops", "1", "(4.17) holds but the proxy pops through", {count.holds_pops});
-  table.add("fails_but_stays", "1", "(4.17) does not hold but the proxy stays above", {count.fails_stays});
-  table.add("fails_and_pops", "1", "(4.17) does not hold and the proxy pops through", {count.fails_pops});
-  table.add("agreement", "1", "share in which they agree", {count.agreement()});
+  table.add("noise_from", "r_c", "lower edge of the range of noise", from);
+  table.add("holds_and_stays", "1", "(4.17) holds and the proxy stays above", holds_stays);
+  table.add("holds_but_pops", "1", "(4.17) holds but the proxy pops through", holds_pops);
+  table.add("fails_but_stays", "1", "(4.17) does not hold but the proxy stays above", fails_stays);
+  table.add("fails_and_pops", "1", "(4.17) does not hold and the proxy pops through", fails_pops);
+  table.add("agreement", "1", "share in which they agree", agreement);
   return table;
 }
 

@@ -17,9 +17,11 @@ struct Criterion {
     return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
   }
 };
-// Of the updates of the acceleration, until the proxy is below.
-Criterion criterion_of(const std::vector<LiftUpdates>& lifts);
-Table criterion_table(const Criterion& count);
+// Of the updates with acceleration until the proxy is below, in lifts with noise from low up to below high
+// (r_c).
+Criterion criterion_of(const LiftMap& lifts, double low, double high);
+// By ranges of noise.
+Table criterion_table(const LiftMap& lifts);
 
 // A bound as a function of the noise, m/s^2. It keeps a reference to what it was made from.
 struct Bound {

@@ -140,7 +140,7 @@ Figure figure_bounds(const Laboratory& laboratory) {
   const Phases phases = critical_over_phases(laboratory);
   const MeasuredNoise noise = measured_noise(laboratory);
   const LiftMap lifts = lift_map(laboratory, kSeed);
-  const Criterion criterion = criterion_of(lifts.updates);
+  const Criterion criterion = criterion_of(lifts, 0, 4);
   const std::vector<Bound> list = bounds(noise);
   std::vector<Agreement> agreements;
   for (const Bound& bound : list) agreements.push_back(agreement_of(bound, lifts.map));
@@ -154,7 +154,7 @@ Figure figure_bounds(const Laboratory& laboratory) {
       {phases.table, effect_table(noise), thickness, normal_error,
        coefficient_table("thickness_coefficients", noise.thickness, printed_thickness()),
        coefficient_table("normal_error_coefficients", noise.normal_error, printed_normal_error()),
-       criterion_table(criterion), lifts.map, survivors("survived", lifts.map), bound_table(list),
+       criterion_table(lifts), lifts.map, survivors("survived", lifts.map), bound_table(list),
        agreement_table(list, agreements)},
       panels(list),
       claims(phases, thickness, normal_error, criterion, agreements)};

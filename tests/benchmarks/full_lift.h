@@ -1,0 +1,28 @@
+// Lifts with every point of every frame made, on the loop and the renderer of the real ones.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "analysis/trace.h"
+#include "core/neighbour_search.h"
+#include "runners/experiment.h"
+#include "scenarios/moving_lift.h"
+
+namespace remote_touch::benchmarks {
+
+// What the renderer gets instead of scenario.points(frame).
+using MakeFrame = std::function<std::shared_ptr<const NeighbourSearch>(const Scenario& scenario, int frame)>;
+
+// The trace of simulate(), bit for bit, where make_frame gives the same points. pre: no latency; duration_s
+// is set.
+Trace simulate_with(const Experiment& experiment, const Kernels& kernels, const MakeFrame& make_frame);
+
+// The reference: the frame's whole cloud, searched point by point.
+std::shared_ptr<const NeighbourSearch> whole_cloud(const Scenario& scenario, int frame);
+
+// What NoisyGridSearch would be without its laziness: all noise of the lift made in place by the same
+// generator, and no more stored than the points.
+MakeFrame all_noise(const MovingLift::Settings& scene, const NoiseKey& key, const Kernels& kernels);
+
+}  // namespace remote_touch::benchmarks

@@ -1,0 +1,35 @@
+// A lift of Fig 4.12 written plainly from its equations, over all points, with the standard library's noise:
+// what the map of Fig 4.13 is measured against.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/proxy_parameters.h"
+#include "core/vector.h"
+#include "scenarios/moving_lift.h"
+
+namespace remote_touch::naive {
+
+struct Lift {
+  MovingLift::Settings scene;
+  ProxyParameters proxy;
+  int steps_per_frame = 30;
+  int press_frame = 15;   // with it the HIP begins to press
+  double depth_m = 0.03;  // how far below the plane
+};
+
+// Fills in the points of a frame, whose plane lies at that height; what they were before may be anything.
+using MakePoints = std::function<void(int frame, double height_m, std::vector<Vec3>& points)>;
+
+// Every point of the scene's grid with three normals of its own, drawn anew for each frame.
+MakePoints standard_noise(const MovingLift::Settings& scene, std::uint64_t seed);
+
+// The proxy after every step. One step a tick, with frame correction (4.3) and velocity estimate (4.13).
+std::vector<Vec3> proxies(const Lift& lift, const MakePoints& make_points);
+
+// Whether the last proxy lies below the plane of the last frame.
+bool popped_through(const Lift& lift, const std::vector<Vec3>& proxies);
+
+}  // namespace remote_touch::naive
