@@ -1,4 +1,4 @@
-// HDF5 files, written whole or not at all. The only place that knows the HDF5 library.
+// HDF5 files, written whole or not at all. Only analysis/hdf5_* know the HDF5 library.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,8 @@
 namespace remote_touch {
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+// The attribute of that name; empty where there is none.
+std::string attribute(const TextAttributes& attributes, const std::string& name);
 
 // Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
 // part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.

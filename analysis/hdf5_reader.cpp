@@ -10,6 +10,12 @@
 
 namespace remote_touch {
 
+std::string attribute(const TextAttributes& attributes, const std::string& name) {
+  for (const auto& [known, value] : attributes)
+    if (known == name) return value;
+  return {};
+}
+
 namespace {
 
 std::string read_text(hid_t attribute) {

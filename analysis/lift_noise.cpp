@@ -48,22 +48,20 @@ double gain(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settl
 
 }  // namespace
 
-NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled) {
-  Moments thickness, normal_error, velocity;
+NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
+                         double frame_rate_hz) {
+  Moments thickness, normal_error, velocity, margin;
   for (const std::vector<LiftUpdate>& lift : lifts)
     for (const LiftUpdate& update : lift) {
       if (!counts(update, settled)) continue;
       thickness.add(update.thickness_m);
       normal_error.add(update.normal_error);
       velocity.add(velocity_error(update));
+      margin.add(update.margin_m(r1_m, frame_rate_hz));
     }
-  return {thickness.mean(),
-          thickness.deviation(),
-          normal_error.mean(),
-          normal_error.deviation(),
-          velocity.mean(),
-          velocity.deviation(),
-          gain(lifts, settled, velocity.mean())};
+  return {
+      thickness.mean(), thickness.deviation(), normal_error.mean(), normal_error.deviation(),
+      velocity.mean(),  velocity.deviation(),  margin.deviation(),  gain(lifts, settled, velocity.mean())};
 }
 
 LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled) {

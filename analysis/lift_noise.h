@@ -14,7 +14,8 @@ struct SettledFrom {
 };
 
 // Over the updates of all lifts of one noise strength in which the proxy was still above the plane.
-NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled);
+NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
+                         double frame_rate_hz);
 
 // Means of one lift, an observation that is independent of other lifts'. NaN when no update counts.
 struct LiftMeans {

@@ -11,10 +11,6 @@ double critical_acceleration(const Lift& lift) {
   return lift.r1_m * lift.frame_rate_hz * lift.frame_rate_hz;
 }
 
-double highest_velocity(const Lift& lift, double acceleration) {
-  return lift.start_velocity_m_per_s + (lift.updates - 1) * acceleration / lift.frame_rate_hz;
-}
-
 double bound_acceleration(const Lift& lift, double thickness_m, double normal_error) {
   const double f = lift.frame_rate_hz;
   const double room = lift.r1_m + thickness_m - lift.start_velocity_m_per_s * normal_error / f;
@@ -47,10 +43,10 @@ double survival_probability(const Lift& lift, const NoiseEffect& noise, double a
   for (int j = 1; j <= lift.updates; ++j) {
     const double velocity = lift.start_velocity_m_per_s + j * acceleration / f;
     const double margin = lift.r1_m + noise.thickness_m + (estimate * upright - velocity) / f;
-    const double of_thickness = noise.thickness_sd_m, of_velocity = noise.velocity_sd_m_per_s * upright / f,
-                 of_normal = estimate * noise.normal_error_sd / f;
+    const auto square = [](double x) { return x * x; };
     const double variance =
-        2 * of_thickness * of_thickness + of_velocity * of_velocity + of_normal * of_normal;
+        square(noise.margin_sd_m) + square(noise.thickness_sd_m) +
+        (square(estimate) - square(lift.start_velocity_m_per_s)) * square(noise.normal_error_sd / f);
     // Without noise a step from 0 to 1; the rounding of (4.14) is left to decide nothing.
     probability *= variance > 0 ? 0.5 * std::erfc(-margin / std::sqrt(2 * variance)) : margin > 0 ? 1 : 0;
     estimate += noise.gain * (velocity - estimate);

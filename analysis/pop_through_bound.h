@@ -19,9 +19,8 @@ struct Lift {
 
 // (4.14), noise-free: no pop-through below this acceleration, r_1 f_c^2.
 double critical_acceleration(const Lift& lift);
-// (4.20): the velocity estimate at the last update, v_0 + (updates - 1) a / f_c.
-double highest_velocity(const Lift& lift, double acceleration);
-// (4.21), (4.25) solved for a: the acceleration at which r_1 + h = a / f_c^2 + v_hat e_n / f_c, with (4.20).
+// (4.21), (4.25) solved for a: the acceleration at which r_1 + h = a / f_c^2 + v_hat e_n / f_c, with the
+// estimate at the last update, v_hat = v_0 + (updates - 1) a / f_c (4.20).
 double bound_acceleration(const Lift& lift, double thickness_m, double normal_error);
 
 // The printed fits for sigma from 0 to 2 r_c, and how far they may be off because their coefficients are
@@ -41,19 +40,32 @@ struct NoiseEffect {
   double thickness_m = 0, thickness_sd_m = 0;
   double normal_error = 0, normal_error_sd = 0;
   double velocity_bias_m_per_s = 0, velocity_sd_m_per_s = 0;  // of v_hat_j - v_{j-1}
-  double gain = 1;  // the share of a velocity error that one update corrects: 1 - autocorrelation of v_hat
+  double margin_sd_m = 0;  // of the margin of (4.17), in which the parts above are correlated
+  double gain = 1;         // the share of a velocity error that one update corrects, see below
 };
 
-// The bound that accounts for scatter. (4.18) asks at every update for a margin above 0. Written with its
-// random parts, the margin at update j is
+// A bound that accounts for scatter. (4.18) asks at every update for a margin above 0:
 //   G_j = r_1 + h + v_hat_j (1 - e_n) / f_c - v_j / f_c,
-// where h, e_n and v_hat_j scatter. As in (4.19) v_hat is taken to be unbiased, but it follows the true
-// velocity with the measured gain g: E v_hat_{j+1} = E v_hat_j + g (v_j - E v_hat_j). Whether the proxy stays
-// above is decided by the points of the frame that comes, whose height scatters as h does. With independent
-// parts
-//   Var G_j = 2 Var h + (1 - e_n)^2 Var v_hat / f_c^2 + (E v_hat_j)^2 Var e_n / f_c^2,
-// and with G_j taken as normal and the updates as independent, the lift survives with probability
-//   prod_j Phi(E G_j / sqrt(Var G_j)).
+// and h, e_n and v_hat_j scatter. With the mean and variance of G_j at every update, a lift survives with
+// probability prod_j Phi(E G_j / sqrt(Var G_j)). What goes in, all from lifts without acceleration:
+//
+// - E v_hat_j follows the velocity with a gain g: E v_hat_{j+1} = E v_hat_j + g (v_j - E v_hat_j). g is 1
+// minus
+//   the correlation of the error of v_hat between updates, which is right if that error is autoregressive of
+//   first order; its correlations over one and two updates agree with that.
+// - As in (4.19), v_hat is right in the mean when the velocity is constant. It is not: in noise it is too
+// high by
+//   velocity_bias, as much as its scatter. The bound takes no credit for that.
+// - Var G_j = Var G at rest + Var h + ((E v_hat_j)^2 - v_0^2) Var e_n / f_c^2. The second term is the scatter
+// of
+//   the frame that comes: whether the proxy stays above is decided by its points, not by the true plane. The
+//   third is what the scatter of the normal does at higher velocity.
+// - e_n is taken to be the same at every velocity, G_j to be normal, and updates to be independent. Lifts
+// near
+//   pop-through have two to three times larger e_n at high noise, and updates share the error of v_hat.
+//
+// The credit not taken makes the bound too low at little noise; at much, the growth of e_n outweighs it.
+// Figure bounds shows predicted beside observed survival.
 double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration);
 // The acceleration at which that is one half.
 double scatter_bound(const Lift& lift, const NoiseEffect& noise);

@@ -22,7 +22,9 @@ struct RefinementRule {
 // same ones. A cell is uncertain while the Wilson interval of its probability holds 0.5: it gets more
 // replicates, as long as it has room. Between two neighbouring cells of which one is uncertain, or which lie
 // on different sides of 0.5, the cell half way is sampled. Cells with the fewest runs come first. Empty:
-// nothing is left to be asked, or the budget is spent. pre: no run is pending.
+// nothing is left to be asked, or the budget is spent.
+// Runs are added because of what earlier ones showed, so the intervals then cover a little less than they
+// say. pre: no run is pending.
 std::vector<std::size_t> next_round(const SweepResult& result, const RefinementRule& rule);
 
 }  // namespace remote_touch

@@ -152,15 +152,11 @@ namespace {
 class SweepReader {
  public:
   explicit SweepReader(const std::filesystem::path& file) : file_(file.string()), content_(read_hdf5(file)) {
-    if (attribute("schema") != kSweepSchema)
+    if (text("schema") != kSweepSchema)
       throw InputError(file_, "no sweep; allowed the result of remote-touch sweep or merge");
   }
 
-  std::string attribute(const std::string& name) const {
-    for (const auto& [known, value] : content_.attributes)
-      if (known == name) return value;
-    return {};
-  }
+  std::string text(const std::string& name) const { return attribute(content_.attributes, name); }
   TextAttributes provenance() const {
     TextAttributes kept;
     for (const auto& [name, value] : content_.attributes)
@@ -218,7 +214,7 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   SweepResult& result = stored.result;
   stored.attributes = reader.provenance();
   stored.in_progress = reader.find("checksum") != nullptr;
-  for (const std::string& name : split(reader.attribute("axes"))) {
+  for (const std::string& name : split(reader.text("axes"))) {
     const Column* axis = reader.find(name);
     if (axis == nullptr) reader.damaged("/sweep/" + name + " is missing");
     result.axes.push_back(*axis);
@@ -226,7 +222,7 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   if (const Column* replicate = reader.find("replicate"))
     result.replicates = static_cast<int>(replicate->length());
   const std::size_t runs = result.run_count();
-  for (const std::string& name : split(reader.attribute("measures")))
+  for (const std::string& name : split(reader.text("measures")))
     result.measures.push_back(reader.column<double>(name, runs));
   if (result.axes.empty() || result.measures.empty()) reader.damaged("it names no axes or no measures");
   for (const std::int32_t state : reader.values<std::int32_t>("state", runs)) {
@@ -237,13 +233,16 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   if (reader.find("round")) result.round = reader.values<std::int32_t>("round", runs);
   if (stored.in_progress) {
     result.error.resize(runs);
-    if (reader.attribute("plan_digest") != plan_digest(result, stored.attributes))
+    if (reader.text("plan_digest") != plan_digest(result, stored.attributes))
       reader.damaged("its plan has changed");
     take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
-    if (reader.attribute("digest") != digest(result)) reader.damaged("its digest is another");
+    if (reader.text("digest") != digest(result)) reader.damaged("its digest is another");
   }
+  for (std::size_t run = 0; run < result.round.size(); ++run)
+    if ((result.round[run] < 0) != (result.state[run] == RunState::not_sampled))
+      reader.damaged("a run belongs to no round");
   return stored;
 }
 

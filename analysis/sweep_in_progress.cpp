@@ -21,33 +21,18 @@ namespace {
 SweepInProgress::SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
                                  const TextAttributes& attributes, bool already_there)
     : file_(file) {
-  if (!already_there) {
-    Held replaced;  // by nobody who still writes it
-    std::error_code unreachable;
-    if (std::filesystem::is_regular_file(file, unreachable)) lock(replaced);
-    write_sweep_in_progress(file, result, attributes);
-  }
+  if (!already_there) write_sweep_in_progress(file, result, attributes);
   for (const Column& measure : result.measures)
     measure_offsets_.push_back(offset_of(file, "/sweep/" + measure.name));
   state_offset_ = offset_of(file, "/sweep/state");
   checksum_offset_ = offset_of(file, "/sweep/checksum");
-  lock(held_);
-}
-
-SweepInProgress::Held::~Held() {
-  if (descriptor >= 0) ::close(descriptor);
-}
-
-// Not by flock: the HDF5 library takes that to read, and the file can be read at any time.
-void SweepInProgress::lock(Held& held) {
-  held.descriptor = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
-  if (held.descriptor < 0)
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor_ < 0)
     refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "); allowed a writable file");
-  struct flock whole = {};
-  whole.l_type = F_WRLCK, whole.l_whence = SEEK_SET;
-  const bool locked = ::fcntl(held.descriptor, F_OFD_SETLK, &whole) == 0;
-  if (!locked && (errno == EAGAIN || errno == EACCES))  // else a file system without locks, which cannot tell
-    refuse(file_, "another process is writing it; allowed one at a time");
+}
+
+SweepInProgress::~SweepInProgress() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void SweepInProgress::record(const SweepResult& result, std::size_t run) {
@@ -65,7 +50,7 @@ void SweepInProgress::record(const SweepResult& result, std::size_t run) {
 void SweepInProgress::put(std::int64_t offset, const void* value, std::size_t size) {
   ssize_t written;
   do {
-    written = ::pwrite(held_.descriptor, value, size, offset);
+    written = ::pwrite(descriptor_, value, size, offset);
   } while (written < 0 && errno == EINTR);
   if (written == static_cast<ssize_t>(size)) return;
   refuse(file_, std::string("cannot be written (") + std::strerror(written < 0 ? errno : ENOSPC) +
@@ -73,12 +58,12 @@ void SweepInProgress::put(std::int64_t offset, const void* value, std::size_t si
 }
 
 void SweepInProgress::flush() {
-  if (::fdatasync(held_.descriptor) != 0 && errno != EINVAL)
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL)
     refuse(file_, std::string("cannot be written (") + std::strerror(errno) +
                       "); what is finished is kept in it; make room and repeat the command");
   struct stat ours = {}, there = {};
-  if (::fstat(held_.descriptor, &ours) != 0 || ::stat(file_.c_str(), &there) != 0 ||
-      ours.st_ino != there.st_ino || ours.st_dev != there.st_dev)
+  if (::fstat(descriptor_, &ours) != 0 || ::stat(file_.c_str(), &there) != 0 || ours.st_ino != there.st_ino ||
+      ours.st_dev != there.st_dev)
     refuse(file_, "was replaced or removed while it was written; allowed one process at a time");
 }
 

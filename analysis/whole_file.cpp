@@ -13,6 +13,15 @@ namespace remote_touch {
 
 namespace {
 
+constexpr const char* kTemporary = ".partial-";
+
+// Where a chain of links ends.
+std::filesystem::path linked(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  const auto end = std::filesystem::canonical(target, unreachable);
+  return unreachable ? target : end;
+}
+
 // 0 or the errno of what failed.
 int write_and_flush(int file, const char* data, std::size_t size) {
   while (size > 0) {
@@ -69,17 +78,26 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
     if (error != 0) give_up(error);
     return;
   }
-  const std::filesystem::path temporary = target.string() + ".partial-" + std::to_string(::getpid());
+  const std::filesystem::path place = std::filesystem::is_regular_file(there) ? linked(target) : target;
+  const std::filesystem::path temporary = place.string() + kTemporary + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) give_up(errno);
   int error = write_and_flush(file, static_cast<const char*>(data), size);
   if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(temporary.c_str());
     give_up(error);
   }
-  flush_folder(target);
+  flush_folder(place);
+}
+
+void remove_leftovers(const std::filesystem::path& target) {
+  const std::string start = target.filename().string() + kTemporary;
+  std::error_code unreachable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), unreachable))
+    if (entry.path().filename().string().rfind(start, 0) == 0)
+      std::filesystem::remove(entry.path(), unreachable);
 }
 
 }  // namespace remote_touch

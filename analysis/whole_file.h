@@ -6,13 +6,16 @@
 
 namespace remote_touch {
 
-// Writes to a temporary name in the same folder, flushes to the disk and renames over the target. On failure
-// (missing folder, no permission, full disk) throws InputError naming the target, and leaves neither a part
-// nor a temporary.
+// Writes to a temporary name in the same folder, flushes to the disk and renames over the target, or over
+// what it links to. On failure (missing folder, no permission, full disk) throws InputError naming the
+// target, and leaves neither a part nor a temporary.
 void write_whole_file(const std::filesystem::path& target, const void* data, std::size_t size);
 
 // Throws as write_whole_file would for a folder that is missing or not writable, before any work is done for
 // the file.
 void require_writable(const std::filesystem::path& target);
+
+// Removes what killed programs left of the target under temporary names. pre: nobody else writes it now.
+void remove_leftovers(const std::filesystem::path& target);
 
 }  // namespace remote_touch

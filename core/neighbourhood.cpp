@@ -30,16 +30,14 @@ void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {
   const Vec3 centre = (p / pitch_).array().round().matrix() * pitch_;
-  if (present_->valid && centre == present_->centre) return present_->points;
-  for (Kept& kept : kept_)
-    if (kept.valid && centre == kept.centre) {
-      present_ = &kept;
-      return kept.points;
-    }
-  present_ = present_ == &kept_.back() ? kept_.data() : present_ + 1;
-  present_->centre = centre;
-  gather(*present_);
-  return present_->points;
+  const auto holds = [&](const Kept& kept) { return kept.valid && centre == kept.centre; };
+  if (holds(kept_[present_])) return kept_[present_].points;
+  for (std::size_t i = 0; i < kept_.size(); ++i)
+    if (holds(kept_[i])) return kept_[present_ = i].points;
+  present_ = (present_ + 1) % kept_.size();
+  kept_[present_].centre = centre;
+  gather(kept_[present_]);
+  return kept_[present_].points;
 }
 
 void Neighbourhood::gather(Kept& kept) {
@@ -52,7 +50,7 @@ void Neighbourhood::gather(Kept& kept) {
 
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
   const double girth = radius + points_->largest_fixture_radius();
-  const Kept& here = *present_;
+  const Kept& here = kept_[present_];
   const bool covered = here.valid && (p - here.centre).norm() + limit + girth <= list_radius_;
   if (covered) return std::min(limit, kernels_.first_hit(here.points.view(), p.data(), u.data(), radius));
 

@@ -26,7 +26,7 @@ class Neighbourhood {
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
 
   // M of kernels.h for sums over the present list.
-  double sum_grid() const { return present_->sum_grid; }
+  double sum_grid() const { return kept_[present_].sum_grid; }
 
  private:
   struct Kept {
@@ -43,7 +43,7 @@ class Neighbourhood {
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> points_;
   std::array<Kept, 4> kept_;
-  Kept* present_ = kept_.data();
+  std::size_t present_ = 0;
   GatheredPoints tube_;
 };
 

@@ -45,6 +45,72 @@ InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   return InputError(left.front(), "unknown; allowed " + known);
 }
 
+// What the command line can hold. Each add_... describes one subcommand and returns it.
+struct Requests {
+  std::string name;  // of describe
+  RunRequest run;
+  SweepRequest sweep;
+  MergeRequest merge;
+  ReplayRequest replay;
+  FigureRequest figure;
+  std::string file;  // of inspect
+};
+
+void add_run(CLI::App& app, RunRequest& run) {
+  auto* command = app.add_subcommand("run", "run one experiment and store its trace");
+  command->add_option("experiment", run.experiment, "a name of the list, or a JSON file")->required();
+  command->add_option("--set", run.overrides, "parameter=value, for example renderer.r1_m=0.004")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", run.output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run.timing, "also store the wall clock of each tick");
+}
+
+void add_sweep(CLI::App& app, SweepRequest& sweep) {
+  auto* command =
+      app.add_subcommand("sweep", "run an experiment over a grid of parameters; resumes by itself");
+  command->add_option("sweep", sweep.sweep, "a name of the list, or a JSON file")->required();
+  command->add_option("--set", sweep.overrides, "parameter=value of the experiment, or of the sweep")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", sweep.output,
+                      "the HDF5 file to write or to go on with; {shard} stands for the shard, 2of7");
+  command->add_option("--threads", sweep.threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--shard", sweep.shard,
+                      "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
+  command->add_flag("--dry-run", sweep.dry_run,
+                    "check every cell, estimate time and file size, write nothing");
+}
+
+void add_merge_and_replay(CLI::App& app, MergeRequest& merge, ReplayRequest& replay) {
+  auto* command = app.add_subcommand("merge", "put the shards of a sweep together");
+  command->add_option("shards", merge.shards, "the files of all shards")->required();
+  command->add_option("-o,--output", merge.output, "the HDF5 file to write")->required();
+
+  command = app.add_subcommand("replay", "run one cell of a sweep again and store its trace");
+  command->add_option("map", replay.map, "the result of a sweep")->required();
+  command->add_option("--cell", replay.cell, "place on each axis, counted from 0, for example 3,40")
+      ->required();
+  command->add_option("--replicate", replay.replicate, "counted from 0");
+  command->add_option("-o,--output", replay.output, "the HDF5 file to write")->required();
+}
+
+void add_figure(CLI::App& app, FigureRequest& figure) {
+  auto* command = app.add_subcommand("figure", "reproduce figures: HDF5 and claims.json");
+  command->add_option("names", figure.names, "figures of the list, or all")->required();
+  command->add_option("-o,--output", figure.folder, "the folder to write into")->required();
+}
+
+int dispatch(const std::string& command, const CommandLine& line, const Requests& requests) {
+  if (command == "list") return command_list();
+  if (command == "describe") return command_describe(requests.name);
+  if (command == "run") return command_run(line, requests.run);
+  if (command == "sweep") return command_sweep(line, requests.sweep);
+  if (command == "merge") return command_merge(requests.merge);
+  if (command == "replay") return command_replay(line, requests.replay);
+  if (command == "figure") return command_figure(line, requests.figure);
+  return command_inspect(requests.file);
+}
+
 int run_command_line(int argc, char** argv) {
   CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
   app.require_subcommand(1);
@@ -54,75 +120,26 @@ int run_command_line(int argc, char** argv) {
   line.stop = &stop_requested;
   app.add_flag("-q,--quiet", line.quiet, "no progress");
 
+  Requests requests;
   app.add_subcommand("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures");
-  std::string name;
-  auto* describe = app.add_subcommand("describe", "every parameter: range, default, meaning");
-  describe->add_option("name", name, "a scenario, renderer, trajectory, experiment or figure")->required();
-
-  RunRequest run;
-  auto* run_command = app.add_subcommand("run", "run one experiment and store its trace");
-  run_command->add_option("experiment", run.experiment, "a name of the list, or a JSON file")->required();
-  run_command->add_option("--set", run.overrides, "parameter=value, for example renderer.r1_m=0.004")
-      ->allow_extra_args(false);
-  run_command->add_option("-o,--output", run.output, "the HDF5 file to write")->required();
-  run_command->add_flag("--timing", run.timing, "also store the wall clock of each tick");
-
-  FigureRequest figure;
-  auto* figure_command = app.add_subcommand("figure", "reproduce figures: HDF5 and claims.json");
-  figure_command->add_option("names", figure.names, "figures of the list, or all")->required();
-  figure_command->add_option("-o,--output", figure.folder, "the folder to write into")->required();
-
-  SweepRequest sweep;
-  auto* sweep_command =
-      app.add_subcommand("sweep", "run an experiment over a grid of parameters; resumes by itself");
-  sweep_command->add_option("sweep", sweep.sweep, "a name of the list, or a JSON file")->required();
-  sweep_command->add_option("--set", sweep.overrides, "parameter=value of the experiment, or of the sweep")
-      ->allow_extra_args(false);
-  auto* sweep_output = sweep_command->add_option(
-      "-o,--output", sweep.output, "the HDF5 file to write or to go on with; {shard} stands for the shard");
-  sweep_command->add_option("--threads", sweep.threads, "how many threads (default: OMP_NUM_THREADS, or all)")
-      ->check(CLI::Range(1, 4096));
-  sweep_command->add_option("--shard", sweep.shard,
-                            "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
-  auto* dry_run = sweep_command->add_flag("--dry-run", sweep.dry_run,
-                                          "check every cell, estimate time and file size, write nothing");
-
-  MergeRequest merge;
-  auto* merge_command = app.add_subcommand("merge", "put the shards of a sweep together");
-  merge_command->add_option("shards", merge.shards, "the files of all shards")->required();
-  merge_command->add_option("-o,--output", merge.output, "the HDF5 file to write")->required();
-
-  ReplayRequest replay;
-  auto* replay_command = app.add_subcommand("replay", "run one cell of a sweep again and store its trace");
-  replay_command->add_option("map", replay.map, "the result of a sweep")->required();
-  replay_command->add_option("--cell", replay.cell, "place on each axis, counted from 0, for example 3,40")
+  app.add_subcommand("describe", "every parameter: range, default, meaning")
+      ->add_option("name", requests.name, "a name of the list")
       ->required();
-  replay_command->add_option("--replicate", replay.replicate, "counted from 0");
-  replay_command->add_option("-o,--output", replay.output, "the HDF5 file to write")->required();
-
-  std::string file;
+  add_run(app, requests.run);
+  add_sweep(app, requests.sweep);
+  add_merge_and_replay(app, requests.merge, requests.replay);
+  add_figure(app, requests.figure);
   app.add_subcommand("inspect", "what is in a result file")
-      ->add_option("file", file, "an HDF5 file")
+      ->add_option("file", requests.file, "an HDF5 file")
       ->required();
-
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     throw usage_error(app, error);
   }
-  if (sweep_command->parsed() && sweep_output->empty() && dry_run->empty())
-    throw InputError("--output", "is required; see remote-touch sweep --help");
   line.kernels = &chosen_kernels();
-  const std::string chosen = app.get_subcommands().front()->get_name();
-  if (chosen == "list") return command_list();
-  if (chosen == "describe") return command_describe(name);
-  if (chosen == "run") return command_run(line, run);
-  if (chosen == "sweep") return command_sweep(line, sweep);
-  if (chosen == "merge") return command_merge(merge);
-  if (chosen == "replay") return command_replay(line, replay);
-  if (chosen == "figure") return command_figure(line, figure);
-  return command_inspect(file);
+  return dispatch(app.get_subcommands().front()->get_name(), line, requests);
 }
 
 // One line, whatever the user's names contain.

@@ -14,7 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostRuns = 100000000;
+constexpr std::size_t kMostRuns = 10000000;
 
 struct Refine {
   std::string measure = "popped_through";
@@ -223,6 +223,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
         throw InputError("--set " + assignment,
                          "an axis of this sweep; allowed another parameter, or --set axes...");
   definition->experiment = read_experiment(json, label, of_experiment);
+  if (definition->title.empty()) definition->title = definition->experiment.value("title", std::string());
+  if (definition->title.empty()) definition->title = label;
   definition->check_axes(label);
   definition->check_budget(label);
   definition->check_cells(label);

@@ -83,6 +83,10 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   return result;
 }
 
+std::string text_of(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
 SweepAxis list_axis(const Json& json, const std::string& label) {
   std::string parameter;
   Json rest = json;
@@ -92,10 +96,12 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   const Json& values = json["values"];
   if (!values.is_array() || values.empty() || values.size() > kMostValues)
     throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMostValues) + " values");
-  std::set<Json> different;
+  std::set<std::string> different;  // as they are named in a result
   for (const Json& value : values)
-    if (!different.insert(value).second)
-      throw InputError(label + ".values", value.dump() + " comes twice; allowed once");
+    if (text_of(value).empty() || !different.insert(text_of(value)).second)
+      throw InputError(label + ".values",
+                       value.dump() + (text_of(value).empty() ? " is empty; allowed names"
+                                                              : " comes twice; allowed once"));
   const Json definition = {{"parameter", parameter}, {"values", values}};
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }
@@ -124,7 +130,7 @@ Column SweepAxis::column() const {
   std::vector<std::int32_t> places;
   for (const Json& value : values) {
     places.push_back(static_cast<std::int32_t>(places.size()));
-    column.value_names.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+    column.value_names.push_back(text_of(value));
   }
   column.values = places;
   return column;

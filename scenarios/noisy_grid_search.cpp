@@ -19,7 +19,7 @@ NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma
 }
 
 bool NoisyGridSearch::Cylinder::holds(const Ball& ball) const {
-  return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius <= radius_m;
+  return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius + kRounding_m <= radius_m;
 }
 
 // The columns or rows whose undisturbed coordinate lies within reach of the centre.
@@ -87,8 +87,7 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   const double reach = ball.radius + kLargestNormal * sigma_m_ + kRounding_m;
   if (std::abs(ball.centre.y() - height_m_) > reach) return;
-  if (!made_.holds(ball))
-    make({ball.centre.x(), ball.centre.z(), ball.radius + kSpareMargin_m + kRounding_m}, kernels);
+  if (!made_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + kSpareMargin_m}, kernels);
   out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
 }
 

@@ -7,6 +7,7 @@
 #include "analysis/lift_noise.h"
 #include "analysis/measures.h"
 #include "runners/experiment.h"
+#include "runners/figures/pop_through_map.h"
 #include "runners/simulation.h"
 
 namespace remote_touch {
@@ -81,7 +82,7 @@ TEST(LiftNoise, FindsTheMomentsOfSyntheticLifts) {
       error = (1 - 0.3) * error + 0.1 * std::sqrt(1 - 0.7 * 0.7) * normal(random);
     }
   }
-  const NoiseEffect effect = noise_effect(lifts, {20});
+  const NoiseEffect effect = noise_effect(lifts, {20}, 0.00499, 30);
   EXPECT_NEAR(effect.thickness_m, 0.004, 5e-5);
   EXPECT_NEAR(effect.thickness_sd_m, 0.001, 3e-5);
   EXPECT_NEAR(effect.normal_error, 0.2, 2e-3);
@@ -89,8 +90,22 @@ TEST(LiftNoise, FindsTheMomentsOfSyntheticLifts) {
   EXPECT_NEAR(effect.velocity_bias_m_per_s, 0.05, 0.005);
   EXPECT_NEAR(effect.velocity_sd_m_per_s, 0.1, 0.004);
   EXPECT_NEAR(effect.gain, 0.3, 0.03);
+  EXPECT_NEAR(effect.margin_sd_m, 0.001, 3e-5);  // carried_m is 0 here: only the thickness scatters
   EXPECT_NEAR(lift_means(lifts.front(), {20}).thickness_m, 0.004, 1e-3);
   EXPECT_TRUE(std::isnan(lift_means(lifts.front(), {50}).thickness_m));
+}
+
+// The figures on lifts state the experiment's numbers; they must be those of the experiment.
+TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
+  const std::string json = Experiment::load("fig4.12").to_json();
+  const auto holds = [&](const std::string& part) { return json.find(part) != std::string::npos; };
+  EXPECT_TRUE(holds("\"r1_m\":0.00499,") && holds("\"r2_m\":0.00501,")) << json;
+  EXPECT_EQ(kLift.r1_m, 0.00499);
+  EXPECT_EQ(kContactRadius_m, 0.005);
+  EXPECT_TRUE(holds("\"frame_rate_hz\":30.0,") && kLift.frame_rate_hz == 30) << json;
+  EXPECT_TRUE(holds("\"start_velocity_m_per_s\":0.1,") && kLift.start_velocity_m_per_s == 0.1) << json;
+  EXPECT_TRUE(holds("\"acceleration_frames\":10}") && kLift.updates == 10) << json;
+  EXPECT_TRUE(holds("\"rise_frames\":15,") && kRiseFrames == 15) << json;
 }
 
 }  // namespace

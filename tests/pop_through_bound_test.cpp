@@ -11,8 +11,7 @@ namespace {
 constexpr Lift kLift{0.00499, 30, 0.1, 10};
 
 TEST(Bound, CriticalAccelerationIsThatOfTheText) {
-  EXPECT_NEAR(critical_acceleration(kLift), 4.491, 1e-12);             // r_1 f_c^2
-  EXPECT_NEAR(highest_velocity(kLift, 3), 0.1 + 9 * 3 / 30.0, 1e-12);  // (4.20)
+  EXPECT_NEAR(critical_acceleration(kLift), 4.491, 1e-12);  // r_1 f_c^2
 }
 
 // At the bound, both sides of (4.25) are equal.
@@ -20,7 +19,7 @@ TEST(Bound, SolvesTheInequality) {
   for (const double h : {0.0, 0.002, 0.01})
     for (const double e : {0.0, 0.05, 0.5}) {
       const double a = bound_acceleration(kLift, h, e);
-      const double right = a / 900 + highest_velocity(kLift, a) / 30 * e;
+      const double right = a / 900 + (0.1 + 9 * a / 30) / 30 * e;
       EXPECT_NEAR(kLift.r1_m + h, right, 1e-12);
     }
   EXPECT_EQ(bound_acceleration(kLift, -1, 0), 0);
@@ -49,11 +48,13 @@ TEST(ScatterBound, WithoutNoiseIsTheBoundWithoutNoise) {
   EXPECT_EQ(survival_probability(kLift, {}, 4.6), 0);
 }
 
-// The formula against what it is derived from: draws of independent parts at ten updates.
+constexpr NoiseEffect kNoise{0.006, 0.002, 0.05, 0.02, 0.09, 0.07, 0.0035, 0.6};
+
+// The formula against what it is derived from: draws at ten updates, of a margin whose scatter at rest is
+// given.
 TEST(ScatterBound, ProbabilityIsThatOfDraws) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  const NoiseEffect noise{0.006, 0.002, 0.05, 0.02, 0, 0.07, 0.6};
   for (const double a : {2.0, 3.5, 4.5}) {
     int survived = 0;
     constexpr int kLifts = 20000;
@@ -62,23 +63,24 @@ TEST(ScatterBound, ProbabilityIsThatOfDraws) {
       bool above = true;
       for (int j = 1; j <= 10 && above; ++j) {
         const double velocity = 0.1 + j * a / 30;
-        const double before = noise.thickness_m + noise.thickness_sd_m * normal(random);
-        const double arriving = noise.thickness_sd_m * normal(random);
-        const double upright = 1 - noise.normal_error - noise.normal_error_sd * normal(random);
-        const double drawn = estimate + noise.velocity_sd_m_per_s * normal(random);
-        above = kLift.r1_m + before - arriving + drawn * upright / 30 - velocity / 30 > 0;
-        estimate += noise.gain * (velocity - estimate);
+        const double more_normal_error =
+            std::sqrt(estimate * estimate - 0.1 * 0.1) * kNoise.normal_error_sd * normal(random);
+        const double margin = kLift.r1_m + kNoise.thickness_m + kNoise.margin_sd_m * normal(random) +
+                              (estimate * (1 - kNoise.normal_error) + more_normal_error - velocity) / 30;
+        above = margin > kNoise.thickness_sd_m * normal(random);  // the frame that comes
+        estimate += kNoise.gain * (velocity - estimate);
       }
       survived += above ? 1 : 0;
     }
-    EXPECT_NEAR(survived / double{kLifts}, survival_probability(kLift, noise, a), 0.015) << a;
+    EXPECT_NEAR(survived / double{kLifts}, survival_probability(kLift, kNoise, a), 0.015) << a;
   }
 }
 
 TEST(ScatterBound, HalfSurviveAtIt) {
-  const NoiseEffect noise{0.006, 0.002, 0.05, 0.02, 0, 0.07, 0.6};
-  EXPECT_NEAR(survival_probability(kLift, noise, scatter_bound(kLift, noise)), 0.5, 1e-9);
-  EXPECT_EQ(scatter_bound(kLift, {-0.01, 0.001, 0, 0, 0, 0, 1}), 0);  // pops through at rest
+  EXPECT_NEAR(survival_probability(kLift, kNoise, scatter_bound(kLift, kNoise)), 0.5, 1e-9);
+  NoiseEffect sunk;
+  sunk.thickness_m = -0.01, sunk.margin_sd_m = 0.001;
+  EXPECT_EQ(scatter_bound(kLift, sunk), 0);  // pops through at rest
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/file_lock.h"
 #include "analysis/result_file.h"
 #include "analysis/sweep_in_progress.h"
 #include "tests/result_files.h"
@@ -165,21 +166,29 @@ TEST(SweepInProgress, DamageAsksForNoRuns) {
   EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
 }
 
-TEST(SweepInProgress, OneProcessAtATime) {
+TEST(FileLock, OneHolderAtATime) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  folder.write("x.h5.partial-123", "left by a killed program");
+  {
+    const FileLock first(file);
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.partial-123"));
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing it");
+    EXPECT_NO_THROW(FileLock(folder / "y.h5"));
+    write_sweep(file, awkward(), kAttributes);  // the file may be replaced under the lock
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing it");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.lock"));
+  folder.write("x.h5.lock", "");  // of a killed process
+  EXPECT_NO_THROW(FileLock{file});
+  EXPECT_HAS(refusal([&] { FileLock lock(folder / "nowhere" / "x.h5"); }), "x.h5: cannot be written");
+}
+
+TEST(SweepInProgress, NoticesThatItsFileIsGone) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
   const SweepResult result = awkward();
-  {
-    SweepInProgress first(file, result, kAttributes, false);
-    const std::string before = bytes_of(file);
-    for (const bool already_there : {true, false}) {
-      const std::string why = refusal([&] { SweepInProgress(file, result, kAttributes, already_there); });
-      EXPECT_HAS(why, "x.h5: another process is writing it");
-      EXPECT_EQ(bytes_of(file), before);
-    }
-    EXPECT_NO_THROW(first.flush());
-    EXPECT_NO_THROW(read_sweep(file));
-  }
+  write_sweep_in_progress(file, result, kAttributes);
   SweepInProgress second(file, result, kAttributes, true);
   std::filesystem::rename(file, folder / "elsewhere.h5");
   EXPECT_HAS(refusal([&] { second.flush(); }), "was replaced or removed");

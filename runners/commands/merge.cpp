@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 
+#include "analysis/file_lock.h"
 #include "analysis/sweep_file.h"
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
@@ -42,8 +43,9 @@ void require_complete(const std::vector<Part>& parts) {
       throw InputError(part.file, "is shard " + part.shard.text() + "; allowed shards of " +
                                       std::to_string(first.shard.count) + ", as " + first.file);
     for (const auto& mine : part.stored.attributes)
-      if (std::find(first.stored.attributes.begin(), first.stored.attributes.end(), mine) ==
-          first.stored.attributes.end())
+      if (mine.first != "command" &&  // the way to one file may be written differently
+          std::find(first.stored.attributes.begin(), first.stored.attributes.end(), mine) ==
+              first.stored.attributes.end())
         throw InputError(part.file, "has another " + mine.first + " than " + first.file +
                                         "; allowed shards of one sweep, made by one build");
     if (const auto [twin, is_new] = seen.emplace(part.shard.index, part.file); !is_new)
@@ -72,6 +74,21 @@ void add(const Part& part, SweepResult& whole) {
 
 }  // namespace
 
+namespace {
+
+// A map that was refined, or gone on with, holds more than its shards: it is not replaced.
+void require_nothing_more(const std::string& file, const SweepResult& whole) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(file, unreachable)) return;
+  const StoredSweep there = read_sweep(file);
+  for (std::size_t run = 0; run < there.result.run_count(); ++run)
+    if (there.result.state[run] == RunState::done &&
+        (run >= whole.run_count() || whole.state[run] != RunState::done))
+      throw InputError(file, "holds runs that the shards do not; allowed another file");
+}
+
+}  // namespace
+
 int command_merge(const MergeRequest& request) {
   std::vector<Part> parts;
   for (const std::string& file : request.shards) {
@@ -89,6 +106,8 @@ int command_merge(const MergeRequest& request) {
   }
   if (!whole.runs_in(RunState::elsewhere).empty())
     throw InputError(parts.front().file, "damaged (runs are missing)");
+  const FileLock lock(request.output);
+  require_nothing_more(request.output, whole);
   write_sweep(request.output, whole, parts.front().stored.attributes);
   return print_summary(request.output, whole);
 }

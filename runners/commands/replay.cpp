@@ -17,12 +17,6 @@ namespace remote_touch {
 
 namespace {
 
-std::string attribute(const StoredSweep& stored, const std::string& name) {
-  for (const auto& [known, value] : stored.attributes)
-    if (known == name) return value;
-  return {};
-}
-
 // "3,4": the place on each axis, counted from 0.
 std::size_t cell_of(const std::string& text, const SweepResult& result) {
   std::string allowed;
@@ -66,7 +60,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   if (std::filesystem::equivalent(request.map, request.output, absent))
     throw InputError(request.output, "is the sweep itself; allowed another file");
   const StoredSweep stored = read_sweep(request.map);
-  const Sweep sweep = Sweep::from_json(attribute(stored, "config"), request.map + " config");
+  const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
   const SweepResult& result = stored.result;
   const SweepResult planned = sweep.plan();
   if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())
@@ -84,13 +78,13 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   options.stop = line.stop;
   options.progress = [&](double share) { progress.update(share); };
   const Trace trace = simulate(experiment, options);
-  const std::string command = attribute(stored, "command") + "; remote-touch replay --cell " + request.cell +
-                              " --replicate " + std::to_string(request.replicate);
+  const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
+                              request.cell + " --replicate " + std::to_string(request.replicate);
   const std::string sum =
       write_trace(request.output, trace, provenance(experiment.to_json(), command, line.kernels->isa), {});
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   if (agrees(sweep, result, result.run(cell, request.replicate), trace)) return kDone;
-  std::printf("  the sweep was made by git_commit %s\n", attribute(stored, "git_commit").c_str());
+  std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
   return kCheckFailed;
 }
 

@@ -37,6 +37,8 @@ int print_summary(const std::string& file, const SweepResult& result) {
   const auto failed = result.runs_in(RunState::failed);
   std::printf("%s: %s cells, %zu runs done, %zu failed", file.c_str(), extent_text(result).c_str(),
               result.runs_in(RunState::done).size(), failed.size());
+  if (!result.round.empty())
+    std::printf(" in %d rounds", 1 + *std::max_element(result.round.begin(), result.round.end()));
   if (const auto elsewhere = result.runs_in(RunState::elsewhere).size(); elsewhere > 0)
     std::printf(", %zu in other shards", elsewhere);
   std::printf(", digest %s\n", digest(result).c_str());

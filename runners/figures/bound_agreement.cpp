@@ -1,5 +1,6 @@
 #include "runners/figures/bound_agreement.h"
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 
@@ -68,50 +69,86 @@ std::vector<Bound> bounds(const MeasuredNoise& noise) {
   return {{"printed", "(4.25) as printed", [=](double s) { return printed(s, 0); }},
           {"printed_less", "(4.25) as printed, less one deviation of v_hat",
            [=](double s) { return printed(s, deviation(s)); }},
-          {"refitted", "(4.25) refitted", [=](double s) { return refitted(s, 0); }},
+          {"refitted", "(4.25) refitted", [=](double s) { return refitted(s, 0); }, kFitted_m},
           {"refitted_less", "(4.25) refitted, less one deviation of v_hat",
-           [=](double s) { return refitted(s, deviation(s)); }},
+           [=](double s) { return refitted(s, deviation(s)); }, kFitted_m},
           {"scatter", "with scatter, ten updates",
            [&noise](double s) { return scatter_bound(kLift, noise.at(s)); }}};
 }
 
-Agreement agreement_of(const Bound& bound, const Table& map) {
+Agreement agreement_of(const Bound& bound, const Table& map, double most_noise) {
   const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
   std::map<double, double> limit;
   for (const double x : noise) limit.try_emplace(x, bound.at(x * kContactRadius_m) / kContactRadius_m);
-  int safe = 0, safe_popped = 0, unsafe_survived = 0;
+  int cells = 0, safe = 0, safe_popped = 0, unsafe_survived = 0;
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    const bool is_safe = acceleration[i]<limit.at(noise[i]), stays = survived[i]> 0.5;
+    if (noise[i] > most_noise) continue;
+    const bool is_safe = acceleration[i] < limit[noise[i]];
+    const bool stays = survived[i] > 0.5;
+    ++cells;
     safe += is_safe ? 1 : 0;
     safe_popped += is_safe && !stays ? 1 : 0;
     unsafe_survived += !is_safe && stays ? 1 : 0;
   }
-  const int cells = static_cast<int>(noise.size());
   return {cells, cells - safe_popped - unsafe_survived, static_cast<double>(safe_popped) / safe,
           static_cast<double>(unsafe_survived) / (cells - safe)};
 }
 
-Table agreement_table(const std::vector<Bound>& bounds, const std::vector<Agreement>& agreements) {
-  Table table{"agreement", "bounds against the outcome of 5396 lifts"};
+Table agreement_table(const std::vector<Bound>& bounds, const Table& map) {
+  constexpr double kFittedNoise = kFitted_m / kContactRadius_m + 0.01;
   Column names{"bound", "1", "which bound", {}, 1, {}};
   std::vector<std::int32_t> number;
-  std::vector<double> cells, low, high, safe, unsafe;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    number.push_back(static_cast<std::int32_t>(i));
-    names.value_names.push_back(bounds[i].name);
-    cells.push_back(agreements[i].share());
-    const auto interval = wilson_interval(agreements[i].agree, agreements[i].cells);
-    low.push_back(interval.first), high.push_back(interval.second);
-    safe.push_back(agreements[i].safe_popped), unsafe.push_back(agreements[i].unsafe_survived);
+  std::vector<double> cells, low, high, safe, unsafe, fitted, fitted_safe;
+  for (const Bound& bound : bounds) {
+    number.push_back(static_cast<std::int32_t>(number.size()));
+    names.value_names.push_back(bound.name);
+    const Agreement all = agreement_of(bound, map), inside = agreement_of(bound, map, kFittedNoise);
+    const auto interval = wilson_interval(all.agree, all.cells);
+    cells.push_back(all.share()), low.push_back(interval.first), high.push_back(interval.second);
+    safe.push_back(all.safe_popped), unsafe.push_back(all.unsafe_survived);
+    fitted.push_back(inside.share()), fitted_safe.push_back(inside.safe_popped);
   }
   names.values = number;
-  table.columns.push_back(names);
+  Table table{"agreement", "bounds against the outcome of 5396 lifts", {names}};
   table.add("cells", "1", "share of cells in which bound and outcome agree", cells);
   table.add("cells_low", "1", "lower end of its 95 % Wilson interval", low);
   table.add("cells_high", "1", "upper end of its 95 % Wilson interval", high);
   table.add("safe_popped", "1", "share of the bound's safe cells that popped through", safe);
   table.add("unsafe_survived", "1", "share of the bound's unsafe cells that survived", unsafe);
+  table.add("fitted_cells", "1", "share that agrees up to 2 r_c of noise, where the fits are meant", fitted);
+  table.add("fitted_safe_popped", "1", "share of the safe cells there that popped through", fitted_safe);
+  return table;
+}
+
+Table calibration_table(const MeasuredNoise& noise, const Table& map) {
+  constexpr int kRanges = 3, kBins = 10;
+  const auto &x = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
+             &survived = numbers(map, "survived");
+  std::vector<double> predicted(kRanges * kBins), observed(kRanges * kBins), cells(kRanges * kBins);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double p =
+        survival_probability(kLift, noise.at(x[i] * kContactRadius_m), acceleration[i] * kContactRadius_m);
+    const int range = std::min(kRanges - 1, static_cast<int>(x[i])),
+              bin = std::min(kBins - 1, static_cast<int>(kBins * p));
+    const auto slot = static_cast<std::size_t>(range * kBins + bin);
+    predicted[slot] += p, observed[slot] += survived[i], ++cells[slot];
+  }
+  Table table{"calibration", "survival as the bound with scatter predicts it, and as observed"};
+  const char* const names[kRanges] = {"to_1_rc", "to_2_rc", "to_3_rc"};
+  for (int range = 0; range < kRanges; ++range) {
+    std::vector<double> mean_predicted, mean_observed, count;
+    for (int bin = 0; bin < kBins; ++bin) {
+      const auto slot = static_cast<std::size_t>(range * kBins + bin);
+      mean_predicted.push_back(predicted[slot] / cells[slot]);  // NaN where there is none
+      mean_observed.push_back(observed[slot] / cells[slot]);
+      count.push_back(cells[slot]);
+    }
+    const std::string name = names[range];
+    table.add("predicted_" + name, "1", "mean prediction of the cells", mean_predicted);
+    table.add("observed_" + name, "1", "share of them that survived", mean_observed);
+    table.add("cells_" + name, "1", "cells", count);
+  }
   return table;
 }
 

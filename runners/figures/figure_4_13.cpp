@@ -93,8 +93,8 @@ Figure figure_4_13(const Laboratory& laboratory) {
                     mean(numbers(map, "survived")), 0.395, 0.455, "share"),
       claim_at_most("4.13", "largest difference from the reference in the 25 regions of the map", "-",
                     largest_deviation(regions), 0.1, "share"),
-      claim_between("4.13", "success over the whole map without the velocity estimate",
-                    "pop-through above 0.08 m/s", mean(numbers(without, "survived")), 0.03, 0.09, "share"),
+      claim_between("4.13", "success over the whole map without the velocity estimate", "-",
+                    mean(numbers(without, "survived")), 0.03, 0.09, "share"),
   };
   return figure;
 }

@@ -58,13 +58,10 @@ NoiseEffect MeasuredNoise::at(double noise_m) const {
   const auto between = [&](double NoiseEffect::*part) {
     return effect[i - 1].*part + t * (effect[i].*part - effect[i - 1].*part);
   };
-  return {between(&NoiseEffect::thickness_m),
-          between(&NoiseEffect::thickness_sd_m),
-          between(&NoiseEffect::normal_error),
-          between(&NoiseEffect::normal_error_sd),
-          between(&NoiseEffect::velocity_bias_m_per_s),
-          between(&NoiseEffect::velocity_sd_m_per_s),
-          between(&NoiseEffect::gain)};
+  return {between(&NoiseEffect::thickness_m),           between(&NoiseEffect::thickness_sd_m),
+          between(&NoiseEffect::normal_error),          between(&NoiseEffect::normal_error_sd),
+          between(&NoiseEffect::velocity_bias_m_per_s), between(&NoiseEffect::velocity_sd_m_per_s),
+          between(&NoiseEffect::margin_sd_m),           between(&NoiseEffect::gain)};
 }
 
 MeasuredNoise measured_noise(const Laboratory& laboratory) {
@@ -77,7 +74,7 @@ MeasuredNoise measured_noise(const Laboratory& laboratory) {
   for (std::size_t cell = 0; cell < noise.sigma_m.size(); ++cell) {
     const auto first = lifts.begin() + static_cast<std::ptrdiff_t>(plan.run(cell, 0));
     const std::vector<LiftUpdates> of_cell(first, first + plan.replicates);
-    noise.effect.push_back(noise_effect(of_cell, kSettled));
+    noise.effect.push_back(noise_effect(of_cell, kSettled, kLift.r1_m, kLift.frame_rate_hz));
     if (noise.sigma_m[cell] > kFitted_m * (1 + 1e-9)) continue;
     for (const LiftUpdates& lift : of_cell) {
       const LiftMeans means = lift_means(lift, kSettled);
@@ -107,6 +104,7 @@ Table effect_table(const MeasuredNoise& noise) {
   add("normal_error_sd", "1", "e_n, standard deviation", &NoiseEffect::normal_error_sd);
   add("velocity_bias", "m/s", "velocity estimate minus velocity, mean", &NoiseEffect::velocity_bias_m_per_s);
   add("velocity_sd", "m/s", "velocity estimate, standard deviation", &NoiseEffect::velocity_sd_m_per_s);
+  add("margin_sd", "m", "margin of (4.17), standard deviation", &NoiseEffect::margin_sd_m);
   add("gain", "1", "share of a velocity error that one update corrects", &NoiseEffect::gain);
   return table;
 }

@@ -1,0 +1,120 @@
+#include "runners/sweep_session.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "analysis/sweep_in_progress.h"
+#include "core/input_error.h"
+#include "runners/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The first place where two configurations differ.
+std::string difference(const std::string& theirs, const std::string& ours) {
+  const Json changes = Json::diff(parse_json(theirs, "config"), parse_json(ours, "config"));
+  return changes.empty() ? "" : changes.front()["path"].get<std::string>();
+}
+
+// A file of another sweep, another shard or another build is not touched.
+void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
+                  const TextAttributes& ours) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(file.string(),
+                     what + "; allowed a file of the same sweep, shard and build, or a new file");
+  };
+  if (attribute(theirs, "config") != attribute(ours, "config"))
+    refuse("is of another configuration, first at " +
+           difference(attribute(theirs, "config"), attribute(ours, "config")));
+  for (const char* name : {"shard", "version", "git_commit", "git_dirty", "compiler", "flags"})
+    if (attribute(theirs, name) != attribute(ours, name))
+      refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
+             attribute(ours, name) + "\"");
+}
+
+// The runs of the earlier call. Only what they gave is taken: the rest is known.
+void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
+  if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
+      earlier.round.size() != result.round.size())
+    throw InputError(file.string(), "damaged (its arrays do not fit its configuration); allowed a new file");
+  for (std::size_t i = 0; i < result.measures.size(); ++i)
+    result.measures[i].values = std::move(earlier.measures[i].values);
+  for (std::size_t run = 0; run < result.run_count(); ++run)
+    if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
+  result.round = std::move(earlier.round);
+  result.error = std::move(earlier.error);
+}
+
+std::filesystem::path linked(const std::filesystem::path& file) {
+  std::error_code unreachable;
+  return std::filesystem::is_symlink(file, unreachable) ? std::filesystem::weakly_canonical(file, unreachable)
+                                                        : file;
+}
+
+}  // namespace
+
+SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                       const std::filesystem::path& file) {
+  SweepPlan plan{sweep.plan(shard), attributes};
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(file, unreachable)) return plan;
+  StoredSweep stored = read_sweep(file);
+  require_same(file, stored.attributes, attributes);
+  take_over(std::move(stored.result), file, plan.result);
+  const auto failed = plan.result.runs_in(RunState::failed);
+  for (const std::size_t run : failed)
+    plan.result.state[run] = RunState::pending, plan.result.error[run].clear();
+  plan.attributes = std::move(stored.attributes);
+  plan.in_progress = stored.in_progress && failed.empty();
+  plan.is_there = true;
+  return plan;
+}
+
+SweepSession::SweepSession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                           const std::filesystem::path& file)
+    : sweep_(sweep),
+      shard_(shard),
+      file_(linked(file)),
+      lock_(file_),
+      plan_(plan_in_file(sweep, shard, attributes, file_)) {}
+
+// Shards do the first round; refinement looks at all of them, so it begins on the merged file.
+bool SweepSession::add_round_if_whole() {
+  if (shard_.count > 1 || !add_round(sweep_, plan_.result)) return false;
+  plan_.in_progress = false;  // the file knows nothing of the new round
+  return true;
+}
+
+bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  bool is_finished = plan_.is_there && !plan_.in_progress;
+  while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
+    is_finished = false;
+    do_round(kernels, stop, progress);
+  }
+  if (is_finished) return false;
+  write_sweep(file_, plan_.result, plan_.attributes);
+  return true;
+}
+
+void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kBetweenFlushes{1};
+  SweepInProgress storage(file_, plan_.result, plan_.attributes, plan_.in_progress);
+  plan_.in_progress = true;
+  const std::size_t earlier = plan_.result.runs_in(RunState::done).size();
+  const std::size_t total = earlier + plan_.result.runs_in(RunState::pending).size();
+  std::size_t done = earlier;
+  auto flushed = Clock::now();
+  const auto finished = [&](std::size_t run) {
+    storage.record(plan_.result, run);
+    progress(++done, total, earlier);
+    if (Clock::now() - flushed < kBetweenFlushes) return;
+    storage.flush();
+    flushed = Clock::now();
+  };
+  do_pending_runs(sweep_, plan_.result, {&kernels, stop, finished});
+  storage.flush();
+}
+
+}  // namespace remote_touch
