@@ -8,6 +8,7 @@
 
 #include "core/input_error.h"
 #include "runners/json_parameters.h"
+#include "runners/refine_settings.h"
 #include "runners/sweep_axis.h"
 
 namespace remote_touch {
@@ -15,24 +16,6 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMostRuns = 10000000;
-
-struct Refine {
-  std::string measure = "popped_through";
-  double above = 0.5;
-  std::uint64_t budget = 10000;
-  int most_replicates = 20;
-  int levels = 0;
-};
-
-Parameters parameters(Refine& r) {
-  return {
-      {"measure", &r.measure, 0, 0, "the measure whose probability is wanted"},
-      {"above", &r.above, -1e12, 1e12, "the event: the measure is above this"},
-      {"budget", &r.budget, 1, static_cast<double>(kMostRuns), "runs in all, the first round included"},
-      {"most_replicates", &r.most_replicates, 1, 100000, "runs of a cell at most"},
-      {"levels", &r.levels, 0, 10, "how often the steps of the axes may be halved"},
-  };
-}
 
 }  // namespace
 
@@ -42,7 +25,7 @@ struct Sweep::Definition {
   std::vector<SweepAxis> axes;
   int replicates = 1;
   std::vector<Measure> measures;
-  std::optional<Refine> refine;
+  std::optional<RefineSettings> refine;
 
   Json cell(const std::vector<std::size_t>& place) const;
   void check_axes(const std::string& label) const;
@@ -97,6 +80,24 @@ Json read_experiment(const Json& json, const std::string& label, const std::vect
   return parse_json(experiment.to_json(), label);
 }
 
+std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int levels) {
+  const auto found = json.find("axes");
+  if (found == json.end() || !found->is_array() || found->empty() || found->size() > 8)
+    throw InputError(label + ": axes", "allowed a list of 1 to 8 axes");
+  std::vector<SweepAxis> axes;
+  for (std::size_t i = 0; i < found->size(); ++i)
+    axes.push_back(read_axis((*found)[i], label + ": axes." + std::to_string(i), levels));
+  return axes;
+}
+
+void refuse_axes_among(const std::vector<std::string>& assignments, const std::vector<SweepAxis>& axes) {
+  for (const SweepAxis& axis : axes)
+    for (const std::string& assignment : assignments)
+      if (assignment.rfind(axis.parameter + "=", 0) == 0)
+        throw InputError("--set " + assignment,
+                         "an axis of this sweep; allowed another parameter, or --set axes...");
+}
+
 std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   const auto found = json.find("measures");
   if (found == json.end()) return {measures().begin(), measures().end()};
@@ -115,21 +116,6 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
     chosen.push_back(*measure);
   }
   return chosen;
-}
-
-std::optional<Refine> read_refine(const Json& json, const std::vector<Measure>& chosen, int replicates,
-                                  const std::string& label) {
-  const auto found = json.find("refine");
-  if (found == json.end() || found->is_null()) return std::nullopt;
-  Refine refine;
-  read_parameters(*found, parameters(refine), "refine", false);
-  const auto is_it = [&](const Measure& measure) { return refine.measure == measure.name; };
-  if (std::none_of(chosen.begin(), chosen.end(), is_it))
-    throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",
-                     "allowed one of the sweep's measures");
-  if (refine.most_replicates < replicates)
-    throw InputError(label + ": refine.most_replicates", "allowed at least replicates");
-  return refine;
 }
 
 }  // namespace
@@ -211,17 +197,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   read_parameters(plain, parameters(definition->title, definition->replicates), "", false);
   definition->measures = read_measures(json, label);
   definition->refine = read_refine(json, definition->measures, definition->replicates, label);
-  const auto axes = json.find("axes");
-  if (axes == json.end() || !axes->is_array() || axes->empty() || axes->size() > 8)
-    throw InputError(label + ": axes", "allowed a list of 1 to 8 axes");
-  const int levels = definition->refine ? definition->refine->levels : 0;
-  for (std::size_t i = 0; i < axes->size(); ++i)
-    definition->axes.push_back(read_axis((*axes)[i], label + ": axes." + std::to_string(i), levels));
-  for (const SweepAxis& axis : definition->axes)
-    for (const std::string& assignment : of_experiment)
-      if (assignment.rfind(axis.parameter + "=", 0) == 0)
-        throw InputError("--set " + assignment,
-                         "an axis of this sweep; allowed another parameter, or --set axes...");
+  definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);
+  refuse_axes_among(of_experiment, definition->axes);
   definition->experiment = read_experiment(json, label, of_experiment);
   if (definition->title.empty()) definition->title = definition->experiment.value("title", std::string());
   if (definition->title.empty()) definition->title = label;
@@ -280,7 +257,7 @@ const std::vector<Measure>& Sweep::measures() const {
 
 std::optional<RefinementRule> Sweep::refinement() const {
   if (!definition_->refine) return std::nullopt;
-  const Refine& refine = *definition_->refine;
+  const RefineSettings& refine = *definition_->refine;
   RefinementRule rule{refine.measure, refine.above, refine.budget, definition_->replicates, {}};
   for (const SweepAxis& axis : definition_->axes) rule.strides.push_back(axis.stride);
   return rule;
@@ -293,7 +270,7 @@ std::string Sweep::to_json() const {
   json["replicates"] = definition_->replicates;
   for (const Measure& measure : definition_->measures) json["measures"].push_back(measure.name);
   if (definition_->refine) {
-    Refine refine = *definition_->refine;
+    RefineSettings refine = *definition_->refine;
     json["refine"] = Json::object();
     write_parameters(parameters(refine), json["refine"]);
   }
