@@ -139,7 +139,14 @@ TEST(Axes, LinearAndLogarithmic) {
   const auto steps =
       numbers(along(R"({"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 76})"));
   for (std::size_t i = 0; i < 76; ++i) EXPECT_NEAR(steps[i], 0.0002 * static_cast<double>(i), 1e-17);
-  EXPECT_EQ(steps.back(), 0.015);
+  for (const char* scale : {"linear", "log"})
+    for (const char* count : {"3", "4", "6", "7", "11", "49"}) {
+      const auto range =
+          numbers(along(R"({"parameter": "frame_latency_s", "from": 0.1, "to": 0.3, "count": )" +
+                        std::string(count) + R"(, "scale": ")" + scale + "\"}"));
+      EXPECT_EQ(range.front(), 0.1);
+      EXPECT_EQ(range.back(), 0.3) << count << " " << scale;
+    }
 }
 
 // Refinement halves the steps; the values of the first round stay what they were, bit for bit.
