@@ -52,7 +52,7 @@ struct NoiseEffect {
 // - E v_hat_j follows the velocity with a gain g: E v_hat_{j+1} = E v_hat_j + g (v_j - E v_hat_j). g is 1
 // minus
 //   the correlation of the error of v_hat between updates, which is right if that error is autoregressive of
-//   first order; its correlations over one and two updates agree with that.
+//   first order.
 // - As in (4.19), v_hat is right in the mean when the velocity is constant. It is not: in noise it is too
 // high by
 //   velocity_bias, as much as its scatter. The bound takes no credit for that.
@@ -60,11 +60,10 @@ struct NoiseEffect {
 // of
 //   the frame that comes: whether the proxy stays above is decided by its points, not by the true plane. The
 //   third is what the scatter of the normal does at higher velocity.
-// - e_n is taken to be the same at every velocity, G_j to be normal, and updates to be independent. Lifts
-// near
-//   pop-through have two to three times larger e_n at high noise, and updates share the error of v_hat.
+// - e_n is taken to be the same at every velocity, G_j to be normal, and updates to be independent. In
+//   accelerating lifts with much noise e_n is larger, and updates share the error of v_hat.
 //
-// The credit not taken makes the bound too low at little noise; at much, the growth of e_n outweighs it.
+// The credit not taken makes the bound too low at little noise; at much, where e_n grows, it is about right.
 // Figure bounds shows predicted beside observed survival.
 double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration);
 // The acceleration at which that is one half.

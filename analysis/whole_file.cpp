@@ -15,13 +15,6 @@ namespace {
 
 constexpr const char* kTemporary = ".partial-";
 
-// Where a chain of links ends.
-std::filesystem::path linked(const std::filesystem::path& target) {
-  std::error_code unreachable;
-  const auto end = std::filesystem::canonical(target, unreachable);
-  return unreachable ? target : end;
-}
-
 // 0 or the errno of what failed.
 int write_and_flush(int file, const char* data, std::size_t size) {
   while (size > 0) {
@@ -53,6 +46,13 @@ void flush_folder(const std::filesystem::path& target) {
 
 }  // namespace
 
+std::filesystem::path linked(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_symlink(target, unreachable)) return target;
+  const auto end = std::filesystem::canonical(target, unreachable);
+  return unreachable ? target : end;
+}
+
 void require_writable(const std::filesystem::path& target) {
   std::error_code unreachable;
   const auto there = std::filesystem::status(target, unreachable);
@@ -78,7 +78,7 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
     if (error != 0) give_up(error);
     return;
   }
-  const std::filesystem::path place = std::filesystem::is_regular_file(there) ? linked(target) : target;
+  const std::filesystem::path place = linked(target);
   const std::filesystem::path temporary = place.string() + kTemporary + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) give_up(errno);

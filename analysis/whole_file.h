@@ -15,6 +15,9 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
 // the file.
 void require_writable(const std::filesystem::path& target);
 
+// What a name that is a link leads to, if that is there; any other name as it is.
+std::filesystem::path linked(const std::filesystem::path& target);
+
 // Removes what killed programs left of the target under temporary names. pre: nobody else writes it now.
 void remove_leftovers(const std::filesystem::path& target);
 

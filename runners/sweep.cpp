@@ -23,11 +23,12 @@ struct Sweep::Definition {
   std::string title;
   Json experiment;  // complete
   std::vector<SweepAxis> axes;
+  SweepResult grid;  // of the axes, without runs
   int replicates = 1;
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
 
-  Json cell(const std::vector<std::size_t>& place) const;
+  Json cell(std::size_t number) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
   void check_cells(const std::string& label) const;
@@ -120,7 +121,8 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
 
 }  // namespace
 
-Json Sweep::Definition::cell(const std::vector<std::size_t>& place) const {
+Json Sweep::Definition::cell(std::size_t number) const {
+  const std::vector<std::size_t> place = grid.place(number);
   Json json = experiment;
   for (std::size_t i = 0; i < axes.size(); ++i)
     set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
@@ -156,15 +158,13 @@ void Sweep::Definition::check_budget(const std::string& label) const {
 
 // In parallel, because a large map has many; the first cell in order is the one that is named.
 void Sweep::Definition::check_cells(const std::string& label) const {
-  SweepResult grid;
-  for (const SweepAxis& axis : axes) grid.axes.push_back(axis.column());
   const auto cells = static_cast<long>(grid.cell_count());
   long first_wrong = cells;
   std::string problem;
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
     try {
-      Experiment::from_json(cell(grid.place(static_cast<std::size_t>(i))));
+      Experiment::from_json(cell(static_cast<std::size_t>(i)));
     } catch (const std::exception& error) {
 #pragma omp critical(sweep_check)
       if (i < first_wrong) first_wrong = i, problem = error.what();
@@ -204,6 +204,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   if (definition->title.empty()) definition->title = label;
   definition->check_axes(label);
   definition->check_budget(label);
+  for (const SweepAxis& axis : definition->axes) definition->grid.axes.push_back(axis.column());
   definition->check_cells(label);
   Sweep sweep;
   sweep.definition_ = std::move(definition);
@@ -219,8 +220,7 @@ const std::string& Sweep::title() const {
 }
 
 SweepResult Sweep::plan(const Shard& shard) const {
-  SweepResult result;
-  for (const SweepAxis& axis : definition_->axes) result.axes.push_back(axis.column());
+  SweepResult result = definition_->grid;
   result.replicates = definition_->refine ? definition_->refine->most_replicates : definition_->replicates;
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
@@ -241,11 +241,7 @@ SweepResult Sweep::plan(const Shard& shard) const {
 }
 
 Experiment Sweep::experiment(std::size_t cell, int replicate) const {
-  std::vector<std::size_t> place(definition_->axes.size());
-  std::size_t rest = cell;
-  for (std::size_t i = place.size(); i-- > 0; rest /= definition_->axes[i].values.size())
-    place[i] = rest % definition_->axes[i].values.size();
-  Json json = definition_->cell(place);
+  Json json = definition_->cell(cell);
   json["cell"] = cell;
   json["replicate"] = static_cast<std::uint64_t>(replicate);
   return Experiment::from_json(std::move(json));

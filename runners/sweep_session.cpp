@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/sweep_in_progress.h"
+#include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/json_parameters.h"
 
@@ -44,12 +45,6 @@ void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepRe
     if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
   result.round = std::move(earlier.round);
   result.error = std::move(earlier.error);
-}
-
-std::filesystem::path linked(const std::filesystem::path& file) {
-  std::error_code unreachable;
-  return std::filesystem::is_symlink(file, unreachable) ? std::filesystem::weakly_canonical(file, unreachable)
-                                                        : file;
 }
 
 }  // namespace

@@ -58,10 +58,7 @@ double largest_deviation(const Table& regions) {
 }
 
 Table bound_table() {
-  std::vector<double> noise;
-  for (int i = 0; i <= 150; ++i) noise.push_back(0.02 * i);
-  Table table{"bound", "bound on pop-through"};
-  table.add("noise", "r_c", "standard deviation of the noise", noise);
+  Table table = noise_table("bound", "bound on pop-through");
   add_bound(table, "printed", "(4.25) with (4.23) and (4.24) as printed", printed_bound);
   return table;
 }

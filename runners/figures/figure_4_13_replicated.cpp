@@ -79,8 +79,8 @@ Figure figure_4_13_replicated(const Laboratory& laboratory) {
   Figure figure{
       "4.13-replicated",
       "Probability of pop-through",
-      "Every third noise and second acceleration of Fig 4.13, 20 lifts each, 1000 proxy steps per frame: share of lifts that "
-      "did not pop through, and where it crosses one half, with 95 % Wilson intervals.",
+      "Every third noise and second acceleration of Fig 4.13, 20 lifts each, 1000 proxy steps per frame: "
+      "share of lifts that did not pop through, and where it crosses one half, with 95 % Wilson intervals.",
       {map, without, half, contour("contour_without_estimate", without, columns)}};
   figure.panels = {probability_panel("With the velocity estimate", "map", "contour"),
                    probability_panel("Without", "map_without_estimate", "contour_without_estimate")};

@@ -68,10 +68,7 @@ double largest_factor_from_print(const Table& fit) {
 }
 
 Table bound_table(const std::vector<Bound>& bounds) {
-  std::vector<double> noise;
-  for (int i = 0; i <= 150; ++i) noise.push_back(0.02 * i);
-  Table table{"bounds", "bounds on pop-through"};
-  table.add("noise", "r_c", "standard deviation of the noise", noise);
+  Table table = noise_table("bounds", "bounds on pop-through");
   for (const Bound& bound : bounds)
     add_bound(table, bound.name, bound.meaning, [&](double noise_m) {
       const bool is_meant = noise_m <= bound.most_noise_m * (1 + 1e-9);

@@ -28,12 +28,8 @@ std::span<const FigureEntry> figures() {
 }
 
 Trace Laboratory::run(const Experiment& experiment) const {
-  configurations_.push_back(experiment.to_json());
-  SimulationOptions options;
-  options.kernels = &kernels_;
-  options.stop = stop_;
-  options.progress = progress_;
-  return simulate(experiment, options);
+  note(experiment.to_json());
+  return simulated(experiment, progress_);
 }
 
 std::string Laboratory::configurations() const {
@@ -43,10 +39,11 @@ std::string Laboratory::configurations() const {
   return list.empty() ? "[]" : list + "]";
 }
 
-Trace Laboratory::simulated(const Experiment& experiment) const {
+Trace Laboratory::simulated(const Experiment& experiment, std::function<void(double)> progress) const {
   SimulationOptions options;
   options.kernels = &kernels_;
   options.stop = stop_;
+  options.progress = std::move(progress);
   return simulate(experiment, options);
 }
 

@@ -25,10 +25,8 @@ class Laboratory {
   // What of(trace) gives for each run, side by side. The first failure is thrown after all have ended.
   template <class Of>
   auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
-    std::vector<decltype(of(std::declval<const Trace&>()))> results(experiments.size());
     if (!experiments.empty()) note(experiments.front().to_json());
-    for_each(experiments.size(), [&](std::size_t i) { results[i] = of(simulated(experiments[i])); });
-    return results;
+    return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
   }
   // Every run of a sweep; throws InputError when one failed.
   SweepResult sweep(const Sweep& sweep) const;
@@ -36,19 +34,23 @@ class Laboratory {
   template <class Of>
   auto measure(const Sweep& sweep, Of&& of) const {
     const SweepResult plan = sweep.plan();
-    std::vector<decltype(of(std::declval<const Trace&>()))> results(plan.run_count());
     note(sweep.to_json());
-    for_each(plan.run_count(), [&](std::size_t run) {
-      results[run] = of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
+    return collect(plan.run_count(), [&](std::size_t run) {
+      return of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
     });
-    return results;
   }
   // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
   // JSON list.
   std::string configurations() const;
 
  private:
-  Trace simulated(const Experiment& experiment) const;
+  Trace simulated(const Experiment& experiment, std::function<void(double)> progress = {}) const;
+  template <class Work>
+  auto collect(std::size_t count, Work&& work) const {
+    std::vector<decltype(work(std::size_t{}))> results(count);
+    for_each(count, [&](std::size_t i) { results[i] = work(i); });
+    return results;
+  }
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
   void note(const std::string& configuration) const { configurations_.push_back(configuration); }
 

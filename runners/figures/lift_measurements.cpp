@@ -121,8 +121,7 @@ LiftMap lift_map(const Laboratory& laboratory, int seed) {
     acceleration.push_back(std::get<std::vector<double>>(plan.axes[1].values)[place[1]] / kContactRadius_m);
     survived.push_back(result.updates[cell].back().above_after ? 1 : 0);
   }
-  result.map.add("noise", "r_c", "standard deviation of the noise", noise);
-  result.map.add("acceleration", "r_c/s^2", "acceleration of the lift", acceleration);
+  result.map = cell_table("map", "lifts that did not pop through", noise, acceleration);
   result.map.add("survived", "1", "1 when the lift did not pop through", survived);
   return result;
 }

@@ -34,7 +34,7 @@ Table effect_table(const MeasuredNoise& noise);
 
 // The map of Fig 4.13 with noise of another seed: every update of every lift, and whether the lift survived.
 struct LiftMap {
-  Table map{"map", "lifts that did not pop through"};  // noise, acceleration, survived
+  Table map;  // noise, acceleration, survived
   std::vector<LiftUpdates> updates;
 };
 LiftMap lift_map(const Laboratory& laboratory, int seed);

@@ -2,10 +2,27 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/proportion.h"
 
 namespace remote_touch {
+
+Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
+                 std::vector<double> acceleration) {
+  Table table{name, title};
+  table.add("noise", "r_c", "standard deviation of the noise", std::move(noise));
+  table.add("acceleration", "r_c/s^2", "acceleration of the lift", std::move(acceleration));
+  return table;
+}
+
+Table noise_table(const std::string& name, const std::string& title) {
+  std::vector<double> noise;
+  for (int i = 0; i <= 150; ++i) noise.push_back(0.02 * i);
+  Table table{name, title};
+  table.add("noise", "r_c", "standard deviation of the noise", noise);
+  return table;
+}
 
 Table map_table(const std::string& name, const SweepResult& result) {
   const auto& sigma = std::get<std::vector<double>>(result.axes.at(0).values);
@@ -22,9 +39,7 @@ Table map_table(const std::string& name, const SweepResult& result) {
     low.push_back(interval.first), high.push_back(interval.second);
     runs.push_back(t.runs);
   }
-  Table table{name, "lifts that did not pop through"};
-  table.add("noise", "r_c", "standard deviation of the noise", x);
-  table.add("acceleration", "r_c/s^2", "acceleration of the lift", y);
+  Table table = cell_table(name, "lifts that did not pop through", x, y);
   table.add("survived", "1", "share of lifts that did not pop through", survived);
   table.add("survived_low", "1", "lower end of its 95 % Wilson interval", low);
   table.add("survived_high", "1", "upper end of its 95 % Wilson interval", high);
@@ -38,10 +53,7 @@ Table survivors(const std::string& name, const Table& map) {
   std::vector<double> filled_x, filled_y;
   for (std::size_t i = 0; i < x.size(); ++i)
     if (survived[i] > 0.5) filled_x.push_back(x[i]), filled_y.push_back(y[i]);
-  Table table{name, "cells whose lift did not pop through"};
-  table.add("noise", "r_c", "standard deviation of the noise", filled_x);
-  table.add("acceleration", "r_c/s^2", "acceleration of the lift", filled_y);
-  return table;
+  return cell_table(name, "cells whose lift did not pop through", filled_x, filled_y);
 }
 
 void add_bound(Table& table, const std::string& column, const std::string& meaning,

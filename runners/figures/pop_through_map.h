@@ -17,11 +17,16 @@ inline constexpr double kContactRadius_m = 0.005;
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 
+// Columns noise (r_c) and acceleration (r_c/s^2).
+Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
+                 std::vector<double> acceleration);
 // One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (share), its Wilson interval, runs.
 Table map_table(const std::string& name, const SweepResult& result);
 // The cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 
+// Noise from 0 to 3 r_c, for curves over it.
+Table noise_table(const std::string& name, const std::string& title);
 // Noise in r_c against a bound in r_c/s^2, as a column of a table that begins with noise.
 void add_bound(Table& table, const std::string& column, const std::string& meaning,
                const std::function<double(double noise_m)>& bound_m_per_s2);
