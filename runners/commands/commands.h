@@ -18,8 +18,13 @@ struct CommandLine {
   const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
 };
 
-int command_list();
-int command_describe(const std::string& name);
+struct ListRequest {};
+int command_list(const CommandLine& line, const ListRequest& request);
+
+struct DescribeRequest {
+  std::string name;
+};
+int command_describe(const CommandLine& line, const DescribeRequest& request);
 
 struct RunRequest {
   std::string experiment;
@@ -49,7 +54,7 @@ struct MergeRequest {
   std::vector<std::string> shards;
   std::string output;
 };
-int command_merge(const MergeRequest& request);
+int command_merge(const CommandLine& line, const MergeRequest& request);
 
 struct ReplayRequest {
   std::string map;
@@ -59,6 +64,9 @@ struct ReplayRequest {
 };
 int command_replay(const CommandLine& line, const ReplayRequest& request);
 
-int command_inspect(const std::string& file);
+struct InspectRequest {
+  std::string file;
+};
+int command_inspect(const CommandLine& line, const InspectRequest& request);
 
 }  // namespace remote_touch

@@ -63,7 +63,8 @@ bool describe_sweep(const std::string& name) {
 
 }  // namespace
 
-int command_describe(const std::string& name) {
+int command_describe(const CommandLine&, const DescribeRequest& request) {
+  const std::string& name = request.name;
   bool found = describe_entry(scenarios(), "scenario", name);
   found |= describe_entry(renderers(), "renderer", name);
   found |= describe_entry(trajectories(), "trajectory", name);

@@ -63,7 +63,8 @@ void print(const std::string& path, const Column& column) {
 
 }  // namespace
 
-int command_inspect(const std::string& file) {
+int command_inspect(const CommandLine&, const InspectRequest& request) {
+  const std::string& file = request.file;
   const Hdf5Content content = read_hdf5(file);
   std::printf("%s\n", file.c_str());
   for (const auto& [name, value] : content.attributes) {

@@ -15,7 +15,7 @@ void row(const char* name, const std::string& text) {
 }
 }  // namespace
 
-int command_list() {
+int command_list(const CommandLine&, const ListRequest&) {
   std::puts("scenarios");
   for (const auto& entry : scenarios()) row(entry.name, entry.summary);
   std::puts("renderers");

@@ -89,7 +89,7 @@ void require_nothing_more(const std::string& file, const SweepResult& whole) {
 
 }  // namespace
 
-int command_merge(const MergeRequest& request) {
+int command_merge(const CommandLine&, const MergeRequest& request) {
   std::vector<Part> parts;
   for (const std::string& file : request.shards) {
     std::error_code absent;

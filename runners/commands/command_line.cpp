@@ -1,0 +1,118 @@
+#include "runners/commands/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "core/input_error.h"
+#include "runners/provenance.h"
+
+namespace remote_touch {
+
+namespace {
+
+// One subcommand with its options. act is called when it was asked for; what the options fill lives as long
+// as it does.
+struct Subcommands {
+  CLI::App& app;
+  CommandLine& line;
+  std::function<int()> act = {};
+
+  template <class Request>
+  std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
+                                     int (*run)(const CommandLine&, const Request&)) {
+    auto request = std::make_shared<Request>();
+    CLI::App* command = app.add_subcommand(name, meaning);
+    command->callback([this, request, run] { act = [this, request, run] { return run(line, *request); }; });
+    return {command, request.get()};
+  }
+};
+
+void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning) {
+  command->add_option("--set", overrides, meaning)->allow_extra_args(false);
+}
+
+void add_lists(Subcommands& commands) {
+  commands.add("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
+               command_list);
+  auto [describe, described] =
+      commands.add("describe", "every parameter: range, default, meaning", command_describe);
+  describe->add_option("name", described->name, "a name of the list")->required();
+  auto [inspect, inspected] = commands.add("inspect", "what is in a result file", command_inspect);
+  inspect->add_option("file", inspected->file, "an HDF5 file")->required();
+}
+
+void add_run(Subcommands& commands) {
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
+  command->add_option("experiment", run->experiment, "a name of the list, or a JSON file")->required();
+  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
+  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run->timing, "also store the wall clock of each tick");
+}
+
+void add_sweep(Subcommands& commands) {
+  auto [command, sweep] =
+      commands.add("sweep", "run an experiment over a grid of parameters; resumes by itself", command_sweep);
+  command->add_option("sweep", sweep->sweep, "a name of the list, or a JSON file")->required();
+  add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
+  command->add_option("-o,--output", sweep->output,
+                      "the HDF5 file to write or to go on with; {shard} stands for the shard, 2of7");
+  command->add_option("--threads", sweep->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--shard", sweep->shard,
+                      "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
+  command->add_flag("--dry-run", sweep->dry_run,
+                    "check every cell, estimate time and file size, write nothing");
+}
+
+void add_merge_and_replay(Subcommands& commands) {
+  auto [command, merge] = commands.add("merge", "put the shards of a sweep together", command_merge);
+  command->add_option("shards", merge->shards, "the files of all shards")->required();
+  command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
+
+  auto [again, replay] =
+      commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
+  again->add_option("map", replay->map, "the result of a sweep")->required();
+  again->add_option("--cell", replay->cell, "place on each axis, counted from 0, for example 3,40")
+      ->required();
+  again->add_option("--replicate", replay->replicate, "counted from 0");
+  again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
+}
+
+void add_figure(Subcommands& commands) {
+  auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", command_figure);
+  command->add_option("names", figure->names, "figures of the list, or all")->required();
+  command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+}
+
+// An unknown command is named, which CLI11 leaves to guess.
+InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining();
+  if (!app.get_subcommands().empty() || left.empty())
+    return InputError(error.what(), "see remote-touch --help");
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return InputError(left.front(), "unknown; allowed " + known);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
+  CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "remote-touch " + version());
+  app.fallthrough();
+  app.add_flag("-q,--quiet", line.quiet, "no progress");
+  Subcommands commands{app, line};
+  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure}) add(commands);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw usage_error(app, error);
+  }
+  line.kernels = &choose_kernels();
+  return commands.act();
+}
+
+}  // namespace remote_touch
