@@ -8,12 +8,16 @@
 
 namespace remote_touch {
 
+// Numbers, counts and enumerations, fingerprints, texts.
+using Values = std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::uint64_t>,
+                            std::vector<std::string>>;
+
 // length * width values, row after row; width 3 for a vector. Integers may carry names (an enumeration).
 struct Column {
   std::string name;
   std::string units;  // SI symbol, "1" for a pure number
   std::string long_name;
-  std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::string>> values;
+  Values values;
   int width = 1;
   std::vector<std::string> value_names;
 

@@ -19,7 +19,9 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 // part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.
 class Hdf5Writer {
  public:
-  Hdf5Writer();
+  // A finished file is sealed (hdf5_seal.h); one that is to be written in place later cannot be.
+  enum class Finished { yes, no };
+  explicit Hdf5Writer(Finished finished = Finished::yes);
   ~Hdf5Writer();
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -48,6 +50,7 @@ class Hdf5Writer {
  private:
   void dataset(const std::string& path, const Column& column, const std::vector<unsigned long long>& extent,
                Storage storage);
+  bool sealed_;
   std::int64_t file_;
 };
 
@@ -56,12 +59,10 @@ struct Hdf5Content {
   std::vector<std::pair<std::string, Column>> datasets;  // path and values, in the order of the paths
 };
 
-// Reads every dataset; an array of more than two dimensions comes as one column. Throws InputError when the
-// file is missing or not HDF5.
+// Reads every dataset; see hdf5_reader.h.
 Hdf5Content read_hdf5(const std::filesystem::path& file);
 
-// Where in the file the values of a dataset begin that was stored in_place. Throws InputError as read_hdf5
-// does.
+// Where in the file the values of a dataset begin that was stored in_place.
 std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset);
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/hdf5_handle.h"
+#include "analysis/hdf5_seal.h"
 #include "analysis/whole_file.h"
 
 namespace remote_touch {
@@ -43,6 +44,8 @@ Handle stored_type(const Column& column) {
     return Handle(H5Tcopy(H5T_IEEE_F64LE), H5Tclose);
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values))
     return text_type(longest(*texts));
+  if (std::holds_alternative<std::vector<std::uint64_t>>(column.values))
+    return Handle(H5Tcopy(H5T_STD_U64LE), H5Tclose);
   if (column.value_names.empty()) return Handle(H5Tcopy(H5T_STD_I32LE), H5Tclose);
   Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(column.value_names.size()); ++i)
@@ -52,7 +55,7 @@ Handle stored_type(const Column& column) {
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer() : file_(-1) {
+Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes), file_(-1) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   check(H5Pset_fapl_core(access, 1 << 20, false));
@@ -203,6 +206,7 @@ void Hdf5Writer::save(const std::filesystem::path& target) {
   std::vector<char> image(size());
   if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
     throw std::runtime_error("the HDF5 library gave no file image");
+  if (sealed_) image = seal(image);
   write_whole_file(target, image.data(), image.size());
 }
 

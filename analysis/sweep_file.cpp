@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "analysis/digest.h"
+#include "analysis/hdf5_reader.h"
 #include "core/input_error.h"
 
 namespace remote_touch {
@@ -134,13 +135,13 @@ std::string write_sweep(const std::filesystem::path& file, const SweepResult& re
 
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes) {
-  Hdf5Writer hdf5;
+  Hdf5Writer hdf5(Hdf5Writer::Finished::no);
   build(hdf5, result, attributes, Storage::in_place);
   hdf5.save(file);
 }
 
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes) {
-  Hdf5Writer hdf5;
+  Hdf5Writer hdf5(Hdf5Writer::Finished::no);
   build(hdf5, result, attributes, Storage::in_place);
   return hdf5.size();
 }
@@ -151,32 +152,31 @@ namespace {
 
 class SweepReader {
  public:
-  explicit SweepReader(const std::filesystem::path& file) : file_(file.string()), content_(read_hdf5(file)) {
-    if (text("schema") != kSweepSchema)
-      throw InputError(file_, "no sweep; allowed the result of remote-touch sweep or merge");
+  explicit SweepReader(const std::filesystem::path& file) : hdf5_(file), datasets_(hdf5_.datasets()) {
+    hdf5_.require_schema(kSweepSchema, "the result of remote-touch sweep or merge");
   }
 
-  std::string text(const std::string& name) const { return attribute(content_.attributes, name); }
+  std::string text(const std::string& name) const { return attribute(hdf5_.attributes(), name); }
   TextAttributes provenance() const {
     TextAttributes kept;
-    for (const auto& [name, value] : content_.attributes)
+    for (const auto& [name, value] : hdf5_.attributes())
       if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures"}))
         kept.emplace_back(name, value);
     return kept;
   }
-  const Column* find(const std::string& name) const {
-    for (const auto& [path, column] : content_.datasets)
-      if (path == "/sweep/" + name) return &column;
-    return nullptr;
+  bool has(const std::string& name) const {
+    return std::find(datasets_.begin(), datasets_.end(), "/sweep/" + name) != datasets_.end();
+  }
+  Column axis(const std::string& name) const {
+    if (!has(name)) damaged("/sweep/" + name + " is missing");
+    return hdf5_.column("/sweep/" + name);
   }
   // The column of that name, length and kind.
   template <class Value>
   Column column(const std::string& name, std::size_t length) const {
-    const Column* found = find(name);
-    if (found == nullptr) damaged("/sweep/" + name + " is missing");
-    const auto* values = std::get_if<std::vector<Value>>(&found->values);
+    Column column = axis(name);
+    const auto* values = std::get_if<std::vector<Value>>(&column.values);
     if (values == nullptr || values->size() != length) damaged("/sweep/" + name + " has another shape");
-    Column column = *found;
     column.width = 1;  // a second dimension is an axis
     return column;
   }
@@ -184,16 +184,15 @@ class SweepReader {
   std::vector<Value> values(const std::string& name, std::size_t length) const {
     return std::get<std::vector<Value>>(column<Value>(name, length).values);
   }
-  [[noreturn]] void damaged(const std::string& how) const {
-    throw InputError(file_, "damaged (" + how + "); allowed the result of remote-touch sweep or merge");
-  }
+  void require_seal() const { hdf5_.require_seal(); }
+  [[noreturn]] void damaged(const std::string& how) const { hdf5_.damaged(how); }
 
  private:
   static bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
-  std::string file_;
-  Hdf5Content content_;
+  Hdf5Reader hdf5_;
+  std::vector<std::string> datasets_;
 };
 
 void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result) {
@@ -213,14 +212,10 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   StoredSweep stored;
   SweepResult& result = stored.result;
   stored.attributes = reader.provenance();
-  stored.in_progress = reader.find("checksum") != nullptr;
-  for (const std::string& name : split(reader.text("axes"))) {
-    const Column* axis = reader.find(name);
-    if (axis == nullptr) reader.damaged("/sweep/" + name + " is missing");
-    result.axes.push_back(*axis);
-  }
-  if (const Column* replicate = reader.find("replicate"))
-    result.replicates = static_cast<int>(replicate->length());
+  stored.in_progress = reader.has("checksum");
+  if (!stored.in_progress) reader.require_seal();
+  for (const std::string& name : split(reader.text("axes"))) result.axes.push_back(reader.axis(name));
+  if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
   const std::size_t runs = result.run_count();
   for (const std::string& name : split(reader.text("measures")))
     result.measures.push_back(reader.column<double>(name, runs));
@@ -230,7 +225,7 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
       reader.damaged("a state is unknown");
     result.state.push_back(static_cast<RunState>(state));
   }
-  if (reader.find("round")) result.round = reader.values<std::int32_t>("round", runs);
+  if (reader.has("round")) result.round = reader.values<std::int32_t>("round", runs);
   if (stored.in_progress) {
     result.error.resize(runs);
     if (reader.text("plan_digest") != plan_digest(result, stored.attributes))

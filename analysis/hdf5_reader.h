@@ -1,0 +1,45 @@
+// Reading an HDF5 file a column, or some rows of one, at a time: a file may be larger than what one wants to
+// hold.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/hdf5_file.h"
+
+namespace remote_touch {
+
+// Every member throws InputError naming the file when it is damaged.
+class Hdf5Reader {
+ public:
+  // Throws InputError when the file is missing, not HDF5, or its seal is broken. A file without a seal is
+  // taken: one of a sweep at work has none.
+  explicit Hdf5Reader(const std::filesystem::path& file);
+
+  const std::string& file() const { return file_; }
+  // Throw InputError unless the file is of that schema (allowed: what makes one), or is sealed.
+  void require_schema(const std::string& schema, const std::string& allowed) const;
+  void require_seal() const;
+  const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
+  std::vector<std::string> datasets() const;                        // paths, sorted
+  bool has(const std::string& dataset) const;
+  // An array of more than two dimensions comes as one column.
+  Column column(const std::string& dataset) const;
+  // Rows first .. first + count - 1; pre: they are there.
+  Column rows(const std::string& dataset, std::size_t first, std::size_t count) const;
+  std::int64_t offset(const std::string& dataset) const;  // of its values in the file; it lies in one piece
+
+  [[noreturn]] void damaged(const std::string& how) const;
+
+ private:
+  template <class Read>
+  auto guarded(Read&& read) const;
+  std::string file_;
+  bool sealed_ = false;
+  std::shared_ptr<void> handle_;
+  TextAttributes attributes_;
+};
+
+}  // namespace remote_touch

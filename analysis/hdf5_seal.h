@@ -1,0 +1,22 @@
+// The seal of a finished result: HDF5 keeps the first 512 bytes of a file for its user (the "user block"),
+// and there stands the SHA-256 of all that follows. So a changed byte, wherever it is, is found before the
+// HDF5 library, which checksums only the values of long columns, looks at the file.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace remote_touch {
+
+inline constexpr std::size_t kSealSize = 512;  // the smallest user block there is
+
+// The image of an HDF5 file with the seal before it, as h5jam puts a user block before a file: the library
+// finds its beginning and counts from there.
+std::vector<char> seal(const std::vector<char>& image);
+
+enum class Seal { intact, absent, broken };
+// Throws InputError when the file cannot be read.
+Seal seal_of(const std::filesystem::path& file);
+
+}  // namespace remote_touch

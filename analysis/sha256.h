@@ -1,0 +1,24 @@
+// SHA-256, the fingerprint of results, of stored files and of input files.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace remote_touch {
+
+class Sha256 {
+ public:
+  Sha256();
+  void add(const void* data, std::size_t size);
+  std::string hex();  // 64 hexadecimal digits; call once, at the end
+
+ private:
+  std::shared_ptr<void> state_;
+};
+
+// Of the bytes of a file from an offset on. Throws InputError when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& file, std::size_t from = 0);
+
+}  // namespace remote_touch
