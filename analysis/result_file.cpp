@@ -6,14 +6,23 @@
 
 namespace remote_touch {
 
-std::string write_trace(const std::filesystem::path& file, const Trace& trace,
+namespace {
+// In the order of the digest, which the file's own order of datasets is not.
+std::string names(const std::vector<Column>& columns) {
+  std::string list;
+  for (const Column& column : columns) list += (list.empty() ? "" : ",") + column.name;
+  return list;
+}
+}  // namespace
+
+std::string write_trace(const std::filesystem::path& file, const std::vector<Column>& columns,
                         const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
-  const std::vector<Column> columns = trace.columns();
   const std::string sum = digest(columns);
   Hdf5Writer hdf5;
   hdf5.attribute("/", "schema", kTraceSchema);
   hdf5.attributes("/", provenance);
   hdf5.attribute("/", "digest", sum);
+  hdf5.attribute("/", "columns", names(columns));
   hdf5.attribute("/", "default", "trace");  // NeXus: what a viewer opens first
   hdf5.group("/trace");
   hdf5.columns("/trace", columns, "time");

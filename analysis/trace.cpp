@@ -1,5 +1,7 @@
 #include "analysis/trace.h"
 
+#include "analysis/fingerprint.h"
+
 namespace remote_touch {
 
 namespace {
@@ -14,9 +16,11 @@ void Trace::reserve(std::size_t ticks) {
   for (auto* column : {&hip_m, &proxy_m, &force_N, &normal, &carried_m}) column->reserve(3 * ticks);
   for (auto* column : {&state, &proxy_steps, &converged, &contact_count, &frame_index, &status})
     column->reserve(ticks);
+  frame_hash.reserve(ticks);
 }
 
-void Trace::append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance) {
+void Trace::append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance,
+                   std::uint64_t hash_of_frame) {
   time_s.push_back(time);
   push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
       push(normal, out.normal_W), push(carried_m, out.carried_m);
@@ -29,10 +33,11 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   surface_velocity_m_per_s.push_back(out.surface_velocity_m_per_s);
   nearest_m.push_back(out.nearest_m);
   signed_distance_m.push_back(signed_distance);
+  frame_hash.push_back(hash_of_frame);
 }
 
 std::vector<Column> Trace::columns() const {
-  return {
+  std::vector<Column> list = {
       {"time", "s", "simulated time", time_s, 1, {}},
       {"hip_position", "m", "haptic interface point, world frame", hip_m, 3, {}},
       {"proxy_position", "m", "centre of the proxy, world frame", proxy_m, 3, {}},
@@ -68,7 +73,10 @@ std::vector<Column> Trace::columns() const {
        status,
        1,
        {"ok", "stale_frame_dropped", "degenerate_normal", "no_frame", "device_not_finite"}},
+      {"frame_hash", "1", "fingerprint of the points of the newest frame", frame_hash, 1, {}},
   };
+  list.push_back({"tick_hash", "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});
+  return list;
 }
 
 }  // namespace remote_touch

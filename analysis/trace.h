@@ -14,10 +14,13 @@ struct Trace {
   std::vector<double> hip_m, proxy_m, force_N, normal, carried_m;  // three numbers a row
   std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
   std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m;
+  std::vector<std::uint64_t> frame_hash;
 
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
-  void append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance);
+  // hash_of_frame: fingerprint of the newest frame that the scenario delivered, 0 where it was not made.
+  void append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance,
+              std::uint64_t hash_of_frame = 0);
 
   Vec3 hip(std::size_t i) const { return row(hip_m, i); }
   Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
@@ -27,7 +30,7 @@ struct Trace {
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
-  // Copies, with units, in the order they are stored and hashed.
+  // Copies, with units, in the order they are stored and hashed; the last is the running hash of the others.
   std::vector<Column> columns() const;
 
  private:

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "analysis/fingerprint.h"
 #include "core/input_error.h"
 
 namespace remote_touch {
@@ -12,21 +13,33 @@ namespace {
 // Hands frames over when they arrive.
 class FrameStream {
  public:
-  FrameStream(const Scenario& scenario, double latency_s) : scenario_(scenario), latency_s_(latency_s) {}
+  FrameStream(const Scenario& scenario, double latency_s, bool hash_frames)
+      : scenario_(scenario), latency_s_(latency_s), hash_frames_(hash_frames) {}
 
   void deliver_until(double time_s, Renderer& renderer) {
     while (next_ < scenario_.frame_count() &&
            scenario_.captured_s(next_) + latency_s_ <= time_s + kSameTime_s) {
       const double captured = scenario_.captured_s(next_);
-      renderer.on_frame({next_, captured, captured + latency_s_, scenario_.points(next_)});
+      const auto points = scenario_.points(next_);
+      if (hash_frames_) hash_ = hash_of(*points);
+      renderer.on_frame({next_, captured, captured + latency_s_, points});
       ++next_;
     }
   }
+  std::uint64_t newest_hash() const { return hash_; }
 
  private:
+  std::uint64_t hash_of(const NeighbourSearch& points) const {
+    const auto* stored =
+        dynamic_cast<const CloudSearch*>(&points);  // else its points are made when asked for
+    return stored ? fingerprint(stored->cloud()) : fingerprint(scenario_.cloud(next_));
+  }
+
   const Scenario& scenario_;
   double latency_s_;
+  bool hash_frames_;
   int next_ = 0;
+  std::uint64_t hash_ = 0;
 };
 
 std::size_t tick_count(const Experiment& experiment, const Trajectory& trajectory) {
@@ -61,7 +74,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto scenario = experiment.build_scenario(kernels);
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto renderer = experiment.build_renderer(kernels);
-  FrameStream frames(*scenario, experiment.settings().frame_latency_s);
+  FrameStream frames(*scenario, experiment.settings().frame_latency_s, options.hash_frames);
   const std::size_t ticks = tick_count(experiment, *trajectory);
 
   Trace trace;
@@ -76,7 +89,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    trace.append(time_s, device, out, scenario->signed_distance(out.proxy_W, time_s));
+    trace.append(time_s, device, out, scenario->signed_distance(out.proxy_W, time_s), frames.newest_hash());
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }

@@ -16,6 +16,7 @@ struct SimulationOptions {
   const std::atomic<bool>* stop = nullptr;         // when set, the run ends with Interrupted
   std::function<void(double share)> progress;      // called about a hundred times
   std::vector<double>* step_duration_s = nullptr;  // wall clock of each tick, where wanted
+  bool hash_frames = false;  // make every point of every frame for the trace's frame_hash, else 0
 };
 
 struct Interrupted {};

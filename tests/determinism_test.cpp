@@ -17,6 +17,7 @@ namespace {
 std::string digest_of(const std::string& name, const std::vector<std::string>& overrides, Isa isa) {
   SimulationOptions options;
   options.kernels = &kernels_for(isa);
+  options.hash_frames = true;
   return digest(simulate(Experiment::load(name, overrides), options).columns());
 }
 

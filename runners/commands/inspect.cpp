@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -45,6 +46,12 @@ void print_texts(const std::string& path, const Column& column, const std::vecto
               first == texts.end() ? "" : ": ", first == texts.end() ? "" : first->c_str());
 }
 
+void print_hashes(const std::string& path, const Column& column, const std::vector<std::uint64_t>& values) {
+  std::printf("  %-32s %8zu x %d  %-6s", path.c_str(), column.length(), column.width, "");
+  if (!values.empty()) std::printf("  last %016" PRIx64, values.back());
+  std::puts("");
+}
+
 void print(const std::string& path, const Column& column) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) {
     print_numbers(path, column, *numbers);
@@ -52,6 +59,10 @@ void print(const std::string& path, const Column& column) {
   }
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
     print_texts(path, column, *texts);
+    return;
+  }
+  if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values)) {
+    print_hashes(path, column, *hashes);
     return;
   }
   const auto& integers = std::get<std::vector<std::int32_t>>(column.values);

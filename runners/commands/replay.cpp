@@ -76,6 +76,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   SimulationOptions options;
   options.kernels = line.kernels;
   options.stop = line.stop;
+  options.hash_frames = true;
   options.progress = [&](double share) { progress.update(share); };
   const Trace trace = simulate(experiment, options);
   const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +

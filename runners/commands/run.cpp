@@ -30,6 +30,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   SimulationOptions options;
   options.kernels = line.kernels;
   options.stop = line.stop;
+  options.hash_frames = true;
   options.progress = [&](double share) { progress.update(share); };
   if (request.timing) options.step_duration_s = &durations;
   const Trace trace = simulate(experiment, options);
