@@ -1,21 +1,19 @@
 #include "runners/sweep_session.h"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "analysis/sweep_in_progress.h"
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
-#include "runners/json_parameters.h"
+#include "runners/configuration_difference.h"
 
 namespace remote_touch {
 
 namespace {
 
-// The first place where two configurations differ.
-std::string difference(const std::string& theirs, const std::string& ours) {
-  const Json changes = Json::diff(parse_json(theirs, "config"), parse_json(ours, "config"));
-  return changes.empty() ? "" : changes.front()["path"].get<std::string>();
+std::string first_difference(const TextAttributes& theirs, const TextAttributes& ours) {
+  const auto all = configuration_differences(attribute(theirs, "config"), attribute(ours, "config"));
+  return all.empty() ? "its title" : all.front();
 }
 
 // A file of another sweep, another shard or another build is not touched.
@@ -26,8 +24,7 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
                      what + "; allowed a file of the same sweep, shard and build, or a new file");
   };
   if (attribute(theirs, "config") != attribute(ours, "config"))
-    refuse("is of another configuration, first at " +
-           difference(attribute(theirs, "config"), attribute(ours, "config")));
+    refuse("is of another configuration, first in " + first_difference(theirs, ours));
   for (const char* name : {"shard", "version", "git_commit", "git_dirty", "compiler", "flags"})
     if (attribute(theirs, name) != attribute(ours, name))
       refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
