@@ -16,9 +16,9 @@ enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, b
 struct Curve {
   std::string table, x, y;  // names of a table and two of its columns
   CurveStyle style = CurveStyle::line;
-  std::string label;   // empty: not in the legend
-  double radius = 0;   // of circles, in data units
-  std::string z = {};  // a third column, of maps and bands
+  std::string label = {};  // empty: not in the legend
+  double radius = 0;       // of circles, in data units
+  std::string z = {};      // a third column, of maps and bands
 };
 
 struct Panel {

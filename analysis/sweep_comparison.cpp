@@ -224,10 +224,10 @@ RegionComparison tested(const Pairs& pairs, const Runs& runs, bool event) {
   return result;
 }
 
-Judgement judgement(const RegionComparison& c, const PairedRule& rule) {
+Judgement judgement(const RegionComparison& c, double margin, double alpha) {
   if (c.runs > 0 && c.outside == 0) return Judgement::equal;
-  if (c.adjusted_p < rule.alpha) return Judgement::changed;
-  const bool within = c.difference.first >= -rule.margin && c.difference.second <= rule.margin;
+  if (c.adjusted_p < alpha) return Judgement::changed;
+  const bool within = c.difference.first >= -margin && c.difference.second <= margin;
   return within && c.pairs > 0 && c.unpaired == 0 ? Judgement::within_margin : Judgement::undecided;
 }
 
@@ -243,7 +243,8 @@ void judge(const PairedRule& rule, SweepComparison& result) {
   for (RegionComparison& c : result.by_region) {
     c.adjusted_p = *next++;
     if (!result.measures[c.measure].event) c.adjusted_p = std::min(c.adjusted_p, *next++);
-    c.judgement = judgement(c, rule);
+    const double margin = result.measures[c.measure].event ? rule.margin : rule.shift_margin;
+    c.judgement = judgement(c, margin, rule.alpha);
   }
 }
 

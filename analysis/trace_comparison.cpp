@@ -13,6 +13,12 @@ std::optional<std::size_t> earlier(std::optional<std::size_t> a, std::optional<s
   return a && b ? std::min(a, b) : a ? a : b;
 }
 
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
 bool is_input(const std::string& column) {
   for (const char* input : {"time", "hip_position", "hip_orientation", "frame_index", "frame_hash"})
     if (column == input) return true;
@@ -26,9 +32,8 @@ class PartingPlace {
                const std::vector<ColumnComparison>& columns, std::size_t tick)
       : baseline_(baseline), candidate_(candidate), columns_(columns), tick_(tick) {}
 
-  // Cause and the line that says why.
-  std::pair<Cause, std::string> cause(const std::vector<std::string>& configuration) const {
-    if (!configuration.empty()) return {Cause::configuration, joined(configuration)};
+  // What kind of place it is, and the line that says why.
+  std::pair<Cause, std::string> situation() const {
     const std::vector<std::string> inputs = differing_inputs();
     if (!inputs.empty())
       return {Cause::input, joined(inputs) + " differs; the renderer was given something else"};
@@ -55,11 +60,6 @@ class PartingPlace {
   }
 
  private:
-  static std::string joined(const std::vector<std::string>& parts) {
-    std::string text;
-    for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
-    return text;
-  }
   bool differs(const std::string& column) const {
     for (const ColumnComparison& comparison : columns_)
       if (comparison.name == column) return comparison.first_difference == tick_;
@@ -126,7 +126,9 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
   if (baseline.has("time"))
     found.time_s = std::get<std::vector<double>>(baseline.rows("time", found.tick, 1).values).at(0);
   const PartingPlace place(baseline, candidate, columns, found.parted);
-  std::tie(found.cause, found.because) = place.cause(configuration);
+  std::tie(found.situation, found.seen) = place.situation();
+  found.cause = configuration.empty() ? found.situation : Cause::configuration;
+  found.because = configuration.empty() ? found.seen : joined(configuration);
   found.frame = place.frame_text();
   found.first_row = found.parted > 0 ? found.parted - 1 : 0;
   for (const ColumnComparison& column : columns) {

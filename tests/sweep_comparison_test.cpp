@@ -317,8 +317,8 @@ TEST(PairedVerdictOf, PassesFromTheRunsOnThatItSays) {
     EXPECT_EQ(compare(a, b, {{"*", {1e-9, 0}}}).paired, PairedVerdict::equal);
     return compare(a, b).paired;
   };
-  EXPECT_EQ(with_jitter(9600), PairedVerdict::undecided);
-  EXPECT_EQ(with_jitter(9604), PairedVerdict::within_margin);
+  EXPECT_EQ(with_jitter(380), PairedVerdict::undecided);
+  EXPECT_EQ(with_jitter(384), PairedVerdict::within_margin);
 }
 
 TEST(PairedVerdictOf, ChaoticFlipsBothWaysPass) {
@@ -344,7 +344,7 @@ TEST(PairedVerdictOf, FlipsOneWayAreAChange) {
     EXPECT_EQ(c.paired, PairedVerdict::changed);
     EXPECT_EQ(whole(c, 0), Judgement::changed);
     EXPECT_GT(c.at(0, 0).adjusted_p, c.at(0, 0).sign_p);
-    EXPECT_EQ(compare(a, b, {}, {0.02, 1e-12}).paired, PairedVerdict::within_margin);
+    EXPECT_EQ(compare(a, b, {}, {0.02, 0.1, 1e-12}).paired, PairedVerdict::within_margin);
   }
 }
 
@@ -400,7 +400,7 @@ TEST(PairedVerdictOf, IsRarelyAFalseAlarm) {
       if (drawn < 2) flip(a, b, run, drawn == 0);
       depth(b)[run] = drawn == 2 ? 1 : drawn == 3 ? -1 : 0;
     }
-    const PairedVerdict verdict = compare(a, b, {}, {0.02, 0.05}).paired;
+    const PairedVerdict verdict = compare(a, b, {}, {0.02, 0.1, 0.05}).paired;
     alarms += verdict == PairedVerdict::changed ? 1 : 0;
     passes += verdict == PairedVerdict::within_margin ? 1 : 0;
   }

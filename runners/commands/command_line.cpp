@@ -84,6 +84,35 @@ void add_figure(Subcommands& commands) {
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
 }
 
+void add_compare(Subcommands& commands) {
+  auto [command, compare] = commands.add(
+      "compare", "two results side by side: 0 same, 1 regressed, 2 could not compare", command_compare);
+  command->add_option("baseline", compare->baseline, "a trace, sweep, figure or hashes")->required();
+  command->add_option("candidate", compare->candidate, "another of the same kind")->required();
+  command
+      ->add_option("--tolerance", compare->tolerances,
+                   "COLUMN=ABSOLUTE[,RELATIVE], * for every column; without it exact")
+      ->allow_extra_args(false);
+  command->add_flag("--paired", compare->paired,
+                    "judge sweeps by paired tests over regions: single runs may differ");
+  command->add_option("--margin", compare->margin, "largest change of a share of runs that counts as none")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--alpha", compare->alpha, "probability of calling a region changed when none is")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--json", compare->json, "also write everything to this file");
+  command->add_option("--junit", compare->junit, "also write JUnit's XML");
+  command->add_option("--plot", compare->plot,
+                      "also write the deviation over time as a figure (HDF5, for scripts/plot)");
+
+  auto [hash, hashes] = commands.add(
+      "hashes", "the running hash of a trace alone, to find where runs on two machines part", command_hashes);
+  hash->add_option("trace", hashes->trace, "a trace")->required();
+  hash->add_option("--every", hashes->every, "keep every n-th tick");
+  hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
+}
+
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining();
@@ -104,7 +133,8 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.fallthrough();
   app.add_flag("-q,--quiet", line.quiet, "no progress");
   Subcommands commands{app, line};
-  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure}) add(commands);
+  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_compare})
+    add(commands);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

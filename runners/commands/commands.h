@@ -64,6 +64,22 @@ struct ReplayRequest {
 };
 int command_replay(const CommandLine& line, const ReplayRequest& request);
 
+struct CompareRequest {
+  std::string baseline, candidate;
+  std::vector<std::string> tolerances;  // "force=1e-9,1e-6"
+  bool paired = false;
+  double margin = 0.02, alpha = 0.01;
+  std::string json, junit, plot;  // files to write; empty: none
+};
+int command_compare(const CommandLine& line, const CompareRequest& request);
+
+struct HashesRequest {
+  std::string trace;
+  int every = 1;
+  std::string output;
+};
+int command_hashes(const CommandLine& line, const HashesRequest& request);
+
 struct InspectRequest {
   std::string file;
 };

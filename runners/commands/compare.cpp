@@ -1,0 +1,69 @@
+#include <charconv>
+#include <cmath>
+
+#include "analysis/column_source.h"
+#include "analysis/deviation_figure.h"
+#include "analysis/result_file.h"
+#include "analysis/whole_file.h"
+#include "core/input_error.h"
+#include "runners/commands/commands.h"
+#include "runners/comparison/comparison_report.h"
+#include "runners/comparison/comparison_text.h"
+#include "runners/provenance.h"
+
+namespace remote_touch {
+
+namespace {
+
+// "force=1e-9", or "force=1e-9,1e-6": absolute, relative.
+void add_tolerance(const std::string& text, Tolerances& tolerances) {
+  const auto refuse = [&] {
+    throw InputError(
+        "--tolerance " + text,
+        "allowed COLUMN=ABSOLUTE or COLUMN=ABSOLUTE,RELATIVE with numbers of 0 or more; * is every column");
+  };
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) refuse();
+  Tolerance tolerance;
+  const char *next = text.data() + equals + 1, *end = text.data() + text.size();
+  for (double* part : {&tolerance.absolute, &tolerance.relative}) {
+    const auto [stop, error] = std::from_chars(next, end, *part);
+    if (error != std::errc() || !(*part >= 0)) refuse();
+    next = stop;
+    if (next == end) break;
+    if (*next++ != ',' || part == &tolerance.relative) refuse();
+  }
+  if (next != end) refuse();
+  tolerances[text.substr(0, equals)] = tolerance;
+}
+
+void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
+  if (!request.plot.empty() && comparison.kind != "trace")
+    throw InputError("--plot " + request.plot, "of " + comparison.kind + "; allowed with two traces");
+}
+
+void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {
+  const StoredTrace baseline(request.baseline), candidate(request.candidate);
+  write_figure(request.plot, deviation_figure(baseline, candidate, *comparison.columns),
+               provenance("", "remote-touch compare", line.kernels->isa));
+}
+
+}  // namespace
+
+int command_compare(const CommandLine& line, const CompareRequest& request) {
+  ComparisonRules rules;
+  for (const std::string& text : request.tolerances) add_tolerance(text, rules.tolerances);
+  rules.paired = request.paired;
+  rules.rule.margin = request.margin, rules.rule.alpha = request.alpha;
+  for (const std::string& file : {request.json, request.junit, request.plot})
+    if (!file.empty()) require_writable(file);
+  const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
+  require_plot_of_traces(request, comparison);
+  print_comparison(comparison);
+  if (!request.json.empty()) write_report(request.json, comparison_json(comparison));
+  if (!request.junit.empty()) write_report(request.junit, junit({suite_of(comparison, request.baseline)}));
+  if (!request.plot.empty()) write_plot(line, request, comparison);
+  return static_cast<int>(comparison.outcome);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,213 @@
+#include "runners/comparison/result_comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "analysis/column_source.h"
+#include "analysis/result_file.h"
+#include "analysis/sweep_file.h"
+#include "core/input_error.h"
+#include "runners/configuration_difference.h"
+
+namespace remote_touch {
+
+namespace {
+
+ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
+                       const TextAttributes& candidate) {
+  ResultComparison result{"baseline", "candidate", kind};
+  const auto configuration = [](const TextAttributes& of) {
+    const std::string text = attribute(of, "config");
+    return text.empty() ? std::string("null") : text;
+  };
+  result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
+  for (const char* name :
+       {"command", "version", "git_commit", "git_dirty", "compiler", "flags", "isa", "inputs"})
+    if (attribute(baseline, name) != attribute(candidate, name))
+      result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
+                                  attribute(candidate, name));
+  return result;
+}
+
+void conclude(ResultComparison& result, Outcome outcome, std::string verdict) {
+  result.outcome = outcome;
+  result.verdict = std::move(verdict);
+}
+
+// "proxy_position and 3 more of 16 columns"
+std::string count_text(const std::vector<std::string>& names, std::size_t of, const char* things) {
+  std::string text = names.front();
+  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
+  return text + " of " + std::to_string(of) + " " + things;
+}
+
+void judge_columns(ResultComparison& result) {
+  const std::vector<ColumnComparison>& columns = result.columns->columns;
+  std::vector<std::string> failed;
+  std::size_t rows = 0;
+  bool exact = true;
+  for (const ColumnComparison& column : columns) {
+    if (!column.is_same()) failed.push_back(column.name);
+    rows = std::max(rows, column.rows);
+    exact &= !column.first_difference;
+  }
+  if (rows == 0) return conclude(result, Outcome::not_comparable, "nothing was compared");
+  if (failed.empty())
+    return conclude(result, Outcome::same,
+                    std::to_string(columns.size()) + " columns, " +
+                        (exact ? "every number is the same" : "every number is within its tolerance"));
+  std::string text = count_text(failed, columns.size(), "columns");
+  if (const auto& first = result.columns->divergence)
+    text += ", from tick " + std::to_string(first->tick) + " on (" + name_of(first->cause) + ")";
+  conclude(result, Outcome::regressed, text);
+}
+
+// Each tolerance has to be of something, else a misspelt one would leave its column exact.
+void check_names(const Tolerances& tolerances, const std::vector<std::string>& names) {
+  for (const auto& [name, tolerance] : tolerances) {
+    if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    std::string known;
+    for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+    throw InputError("tolerance of " + name, "there is no such column; allowed " + known);
+  }
+}
+
+std::string exact_text(const SweepComparison& sweep) {
+  if (sweep.exact == ExactVerdict::equal)
+    return std::to_string(sweep.done_in_both) + " runs, every measure is the same or within its tolerance";
+  std::int64_t outside = 0;
+  for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
+  return "up to " + std::to_string(outside) + " of " + std::to_string(sweep.done_in_both) +
+         " runs differ in a measure, " +
+         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only";
+}
+
+void judge_exactly(ResultComparison& result) {
+  conclude(result, result.sweep->exact == ExactVerdict::equal ? Outcome::same : Outcome::regressed,
+           exact_text(*result.sweep));
+}
+
+void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
+  char margin[32];
+  std::snprintf(margin, sizeof margin, "%.3g", rule.margin);
+  switch (result.sweep->paired) {
+    case PairedVerdict::equal:
+      return conclude(result, Outcome::same, exact_text(*result.sweep));
+    case PairedVerdict::within_margin:
+      return conclude(result, Outcome::same,
+                      exact_text(*result.sweep) + "; no share changed by more than " + margin);
+    case PairedVerdict::changed:
+      return conclude(result, Outcome::regressed, exact_text(*result.sweep) + "; a region has changed");
+    case PairedVerdict::runs_missing:
+      return conclude(result, Outcome::regressed, exact_text(*result.sweep));
+    case PairedVerdict::undecided:
+    case PairedVerdict::not_comparable:
+      break;
+  }
+  conclude(result, Outcome::not_comparable,
+           exact_text(*result.sweep) + "; too few runs to tell whether a share changed by " + margin);
+}
+
+std::string schema_of(const std::filesystem::path& file) {
+  return attribute(Hdf5Reader(file).attributes(), "schema");
+}
+
+// "trace" of "remote-touch-trace/1"; another version is for the reader of that kind to refuse.
+std::string kind_of(const std::filesystem::path& file) {
+  const std::string schema = schema_of(file);
+  for (const char* kind : {"trace", "sweep", "figure", "hashes"})
+    if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
+  throw InputError(file.string(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
+                                      "; allowed a trace, a sweep, a figure or hashes of this program");
+}
+
+ResultComparison compare_figures(const std::filesystem::path& baseline,
+                                 const std::filesystem::path& candidate, const ComparisonRules& rules) {
+  const StoredFigure ours(baseline), theirs(candidate);
+  check_names(rules.tolerances, ours.columns());
+  // A figure's configuration is a list of all that it ran: too long to be told place by place.
+  ResultComparison result = begin("figure", {}, {});
+  result.columns = compare_by_name(ours, theirs, rules.tolerances);
+  judge_columns(result);
+  return result;
+}
+
+StoredHashes hashes_of(const std::filesystem::path& file, const std::string& kind) {
+  if (kind == "hashes") return read_hashes(file);
+  return {hashes_of_trace(file, 1), StoredTrace(file).attributes()};
+}
+
+ResultComparison compare_hash_files(const StoredHashes& baseline, const StoredHashes& candidate) {
+  ResultComparison result = begin("hashes", baseline.attributes, candidate.attributes);
+  const HashComparison hashes = compare_hashes(baseline.hashes, candidate.hashes);
+  result.hashes = hashes;
+  const std::string counted = std::to_string(hashes.compared) + " hashes compared";
+  if (hashes.compared == 0)
+    conclude(result, Outcome::not_comparable, "nothing was compared: no tick is in both");
+  else if (hashes.is_same())
+    conclude(result, Outcome::same, counted + ", all the same");
+  else if (hashes.different)
+    conclude(result, Outcome::regressed,
+             counted + "; the first divergent tick is after " +
+                 (hashes.same ? "tick " + std::to_string(*hashes.same) : "none") + " and not after tick " +
+                 std::to_string(*hashes.different));
+  else
+    conclude(result, Outcome::regressed, counted + ", all the same, but one run is longer");
+  return result;
+}
+
+ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
+                               const ComparisonRules& rules) {
+  const std::string ours = kind_of(baseline), theirs = kind_of(candidate);
+  const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
+  if (ours != theirs && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs))
+    return compare_hash_files(hashes_of(baseline, ours), hashes_of(candidate, theirs));
+  if (ours != theirs)
+    throw InputError(candidate.string(), "is a " + theirs + "; allowed a " + ours + ", as the baseline is");
+  if (ours == "hashes") return compare_hash_files(read_hashes(baseline), read_hashes(candidate));
+  if (ours == "figure") return compare_figures(baseline, candidate, rules);
+  if (ours == "trace") {
+    const StoredTrace first(baseline), second(candidate);
+    return compare_trace(first, first.attributes(), second, second.attributes(), rules);
+  }
+  const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
+  return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
+}
+
+}  // namespace
+
+ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
+                               const ColumnSource& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  check_names(rules.tolerances, baseline.columns());
+  ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
+  result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
+  judge_columns(result);
+  return result;
+}
+
+ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                               const SweepResult& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule);
+  for (const std::string& difference : result.configuration)
+    if (difference.starts_with("experiment.seed "))
+      result.sweep->problems.push_back(difference + ": the runs met other noise and are no pairs");
+  if (!result.sweep->problems.empty())
+    conclude(result, Outcome::not_comparable, result.sweep->problems.front());
+  else if (rules.paired)
+    judge_by_pairs(result, rules.rule);
+  else
+    judge_exactly(result);
+  return result;
+}
+
+ResultComparison compare_results(const std::filesystem::path& baseline,
+                                 const std::filesystem::path& candidate, const ComparisonRules& rules) {
+  ResultComparison result = compare_files(baseline, candidate, rules);
+  result.baseline = baseline.string(), result.candidate = candidate.string();
+  return result;
+}
+
+}  // namespace remote_touch

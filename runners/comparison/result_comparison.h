@@ -1,0 +1,50 @@
+// Two results held against each other: traces, sweeps, figures, or the running hashes of traces.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/sweep_comparison.h"
+#include "analysis/tick_hashes.h"
+#include "analysis/trace_comparison.h"
+
+namespace remote_touch {
+
+// The exit codes of compare.
+enum class Outcome { same = 0, regressed = 1, not_comparable = 2 };
+
+struct ComparisonRules {
+  Tolerances tolerances = {};  // of columns, or of a sweep's measures
+  bool paired = false;         // judge sweeps by the paired tests (sweep_comparison.h), not run by run
+  PairedRule rule = {};
+};
+
+struct ResultComparison {
+  std::string baseline, candidate;              // names for people
+  std::string kind;                             // trace, sweep, figure, hashes
+  std::vector<std::string> configuration = {};  // where the experiments differ
+  std::vector<std::string> provenance = {};     // where the builds differ: told, not judged
+  std::optional<TraceComparison> columns = {};  // of traces and figures
+  std::optional<SweepComparison> sweep = {};
+  std::optional<HashComparison> hashes = {};
+  Outcome outcome = Outcome::not_comparable;
+  std::string verdict = {};  // one line
+};
+
+// Throws InputError for files that cannot be read or are of different kinds (but hashes go with traces), and
+// for tolerances of columns that there are not.
+ResultComparison compare_results(const std::filesystem::path& baseline,
+                                 const std::filesystem::path& candidate, const ComparisonRules& rules);
+
+// Of a trace and columns at hand. attributes: configuration and provenance of both.
+ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
+                               const ColumnSource& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules);
+
+ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                               const SweepResult& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules);
+
+}  // namespace remote_touch
