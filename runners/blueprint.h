@@ -5,12 +5,14 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/kernels.h"
 #include "core/noise.h"
 #include "core/parameter.h"
 #include "core/renderer.h"
 #include "runners/trajectories/trajectory.h"
+#include "scenarios/recording_part.h"
 #include "scenarios/scenario.h"
 
 namespace remote_touch {
@@ -19,18 +21,25 @@ template <class Seam, class... Arguments>
 class Blueprint {
  public:
   virtual ~Blueprint() = default;
-  virtual Parameters settings() = 0;              // pointers into this object
-  virtual std::string contradiction() const = 0;  // empty when the settings fit together
+  virtual Parameters settings() = 0;                      // pointers into this object
+  virtual std::string contradiction() const = 0;          // empty when the settings fit together
+  virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
 // For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
-// conflict(Settings).
+// conflict(Settings); and input_files(Settings) where the settings name files.
 template <class Product, class Settings, class Seam, class... Arguments>
 class BlueprintFor final : public Blueprint<Seam, Arguments...> {
  public:
   Parameters settings() override { return parameters(values_); }
   std::string contradiction() const override { return conflict(values_); }
+  std::vector<RecordingPart> inputs() const override {
+    if constexpr (requires { input_files(values_); })
+      return {input_files(values_)};
+    else
+      return {};
+  }
   std::unique_ptr<Seam> build(Arguments... arguments) const override {
     return std::make_unique<Product>(values_, arguments...);
   }

@@ -83,6 +83,13 @@ std::string Experiment::to_json() const {
   return json.dump();
 }
 
+std::vector<RecordingPart> Experiment::inputs() const {
+  std::vector<RecordingPart> all = scenario_->inputs();
+  for (const auto& parts : {renderer_->inputs(), trajectory_->inputs()})
+    all.insert(all.end(), parts.begin(), parts.end());
+  return all;
+}
+
 std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) const {
   return scenario_->build(settings_.key, kernels);
 }

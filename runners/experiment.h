@@ -34,6 +34,8 @@ class Experiment {
 
   const RunSettings& settings() const { return settings_; }
   std::string to_json() const;  // complete: every parameter, one line
+  // The recordings that a run reads, as they are named; none has been looked for yet.
+  std::vector<RecordingPart> inputs() const;
 
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;

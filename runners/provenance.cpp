@@ -8,7 +8,8 @@ std::string version() {
   return REMOTE_TOUCH_VERSION;
 }
 
-TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa) {
+TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
+                          const std::string& inputs) {
   TextAttributes list = {{"config", config},
                          {"command", command},
                          {"version", REMOTE_TOUCH_VERSION},
@@ -17,6 +18,7 @@ TextAttributes provenance(const std::string& config, const std::string& command,
                          {"compiler", REMOTE_TOUCH_COMPILER},
                          {"flags", REMOTE_TOUCH_FLAGS}};
   if (!isa.empty()) list.emplace_back("isa", isa);
+  if (!inputs.empty()) list.emplace_back("inputs", inputs);
   return list;
 }
 

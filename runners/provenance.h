@@ -10,7 +10,9 @@ namespace remote_touch {
 std::string version();  // "0.1.0"
 
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON.
-// isa may be empty: then it is left out, for results that several machines made together.
-TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa);
+// isa may be empty: then it is left out, for results that several machines made together. inputs: as
+// input_hashes.h has them; empty where nothing was read, and then left out.
+TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
+                          const std::string& inputs = {});
 
 }  // namespace remote_touch

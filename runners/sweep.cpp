@@ -27,11 +27,12 @@ struct Sweep::Definition {
   int replicates = 1;
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
+  std::vector<RecordingPart> inputs;  // of all cells
 
   Json cell(std::size_t number) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
-  void check_cells(const std::string& label) const;
+  void check_cells(const std::string& label);
 };
 
 namespace {
@@ -156,20 +157,26 @@ void Sweep::Definition::check_budget(const std::string& label) const {
                      "allowed at least the " + std::to_string(first_round) + " runs of the first round");
 }
 
-// In parallel, because a large map has many; the first cell in order is the one that is named.
-void Sweep::Definition::check_cells(const std::string& label) const {
+// In parallel, because a large map has many; the first cell in order is the one that is named. What a cell
+// reads is noted on the way.
+void Sweep::Definition::check_cells(const std::string& label) {
   const auto cells = static_cast<long>(grid.cell_count());
   long first_wrong = cells;
   std::string problem;
+  std::set<RecordingPart> parts;
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
     try {
-      Experiment::from_json(cell(static_cast<std::size_t>(i)));
+      const auto read = Experiment::from_json(cell(static_cast<std::size_t>(i))).inputs();
+      if (read.empty()) continue;
+#pragma omp critical(sweep_inputs)
+      parts.insert(read.begin(), read.end());
     } catch (const std::exception& error) {
 #pragma omp critical(sweep_check)
       if (i < first_wrong) first_wrong = i, problem = error.what();
     }
   }
+  inputs.assign(parts.begin(), parts.end());
   if (first_wrong == cells) return;
   std::string where;
   for (const std::size_t k : grid.place(static_cast<std::size_t>(first_wrong)))
@@ -245,6 +252,10 @@ Experiment Sweep::experiment(std::size_t cell, int replicate) const {
   json["cell"] = cell;
   json["replicate"] = static_cast<std::uint64_t>(replicate);
   return Experiment::from_json(std::move(json));
+}
+
+const std::vector<RecordingPart>& Sweep::inputs() const {
+  return definition_->inputs;
 }
 
 const std::vector<Measure>& Sweep::measures() const {

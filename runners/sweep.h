@@ -31,6 +31,8 @@ class Sweep {
   SweepResult plan(const Shard& shard = {}) const;
   // The run with its own noise: cell and replicate are keys of it.
   Experiment experiment(std::size_t cell, int replicate) const;
+  // The recordings that any of its cells reads, each part once, as they are named.
+  const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
   std::optional<RefinementRule> refinement() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep

@@ -6,6 +6,7 @@
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/configuration_difference.h"
+#include "runners/input_hashes.h"
 
 namespace remote_touch {
 
@@ -31,6 +32,24 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
              attribute(ours, name) + "\"");
 }
 
+// A recording that changed is another one; whatever was measured on it before does not belong here.
+void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, const SweepResult& result,
+                         const std::vector<ChangedInput>& changed) {
+  if (changed.empty()) return;
+  for (const std::size_t run : result.runs_in(RunState::done))
+    for (const RecordingPart& part : sweep.experiment(result.cell_of(run), 0).inputs())
+      for (const ChangedInput& input : changed)
+        if (input.path == in_one_line(part.path))
+          throw InputError(file.string(), "has runs on another recording " + input.path + " (" +
+                                              input.before + "; now " + input.now +
+                                              "); allowed the same recording, or a new file");
+}
+
+void set_attribute(TextAttributes& attributes, const std::string& name, const std::string& value) {
+  std::erase_if(attributes, [&](const auto& each) { return each.first == name; });
+  if (!value.empty()) attributes.emplace_back(name, value);
+}
+
 // The runs of the earlier call. Only what they gave is taken: the rest is known.
 void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
   if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
@@ -54,11 +73,17 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
   StoredSweep stored = read_sweep(file);
   require_same(file, stored.attributes, attributes);
   take_over(std::move(stored.result), file, plan.result);
+  const std::string inputs = attribute(attributes, "inputs");
+  const auto changed = changed_inputs(attribute(stored.attributes, "inputs"), inputs);
+  require_same_inputs(file, sweep, plan.result, changed);
   const auto failed = plan.result.runs_in(RunState::failed);
   for (const std::size_t run : failed)
     plan.result.state[run] = RunState::pending, plan.result.error[run].clear();
   plan.attributes = std::move(stored.attributes);
-  plan.in_progress = stored.in_progress && failed.empty();
+  set_attribute(plan.attributes, "inputs", inputs);
+  const bool is_same = failed.empty() && changed.empty();
+  plan.in_progress = stored.in_progress && is_same;
+  plan.is_finished = !stored.in_progress && is_same;
   plan.is_there = true;
   return plan;
 }
@@ -79,7 +104,7 @@ bool SweepSession::add_round_if_whole() {
 }
 
 bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
-  bool is_finished = plan_.is_there && !plan_.in_progress;
+  bool is_finished = plan_.is_finished;
   while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
     is_finished = false;
     do_round(kernels, stop, progress);

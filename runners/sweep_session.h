@@ -15,11 +15,13 @@ namespace remote_touch {
 // What is left to do of a sweep when the file, if it is there, holds a part of it.
 struct SweepPlan {
   SweepResult result;         // failed runs are pending again
-  TextAttributes attributes;  // of the file that is there, or as given
+  TextAttributes attributes;  // of the file that is there, or as given; inputs as given
   bool in_progress = false;   // the file is there, can be written in place, and holds this result
   bool is_there = false;
+  bool is_finished = false;  // the file is there, and is what a finished sweep with this result would write
 };
-// Throws InputError for a file that is no sweep, or one of another configuration, shard or build.
+// Throws InputError for a file that is no sweep, or one of another configuration, shard or build; and where a
+// recording has changed that a finished run has read. One that only failed runs have read may be mended.
 SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                        const std::filesystem::path& file);
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 
 namespace remote_touch {
@@ -28,27 +26,14 @@ std::string conflict(const RecordedScene::Settings& s) {
   return {};
 }
 
-std::string find_recording(const std::string& path) {
-  namespace fs = std::filesystem;
-  if (fs::exists(path)) return path;
-  const char* data = std::getenv("REMOTE_TOUCH_DATA");
-  if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
-    return (fs::path(data) / path).string();
-  throw MissingRecording(
-      path, std::string("no such recording; allowed a folder or PCD file here or below REMOTE_TOUCH_DATA") +
-                (data != nullptr ? std::string(" = ") + data : " (not set)"));
+RecordingPart input_files(const RecordedScene::Settings& s) {
+  return {s.path, s.first_frame, s.last_frame};
 }
 
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings), recording_(index_recording(find_recording(settings.path))) {
-  const int available = static_cast<int>(recording_.frames.size());
-  const int last = settings.last_frame < 0 ? available - 1 : settings.last_frame;
-  if (settings.first_frame >= available || last >= available)
-    throw InputError(settings.path, "first_frame = " + std::to_string(settings.first_frame) +
-                                        ", last_frame = " + std::to_string(settings.last_frame) +
-                                        ": allowed 0 to " + std::to_string(available - 1));
-  first_ = settings.first_frame;
-  count_ = last - first_ + 1;
+  const FrameRange frames = frames_of(input_files(settings), recording_);
+  first_ = frames.first, count_ = frames.last - frames.first + 1;
   rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
 }
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "core/input_error.h"
 #include "core/parameter.h"
 #include "scenarios/recording.h"
+#include "scenarios/recording_part.h"
 #include "scenarios/scenario.h"
 
 namespace remote_touch {
@@ -52,16 +52,6 @@ class RecordedScene final : public Scenario {
 
 Parameters parameters(RecordedScene::Settings& s);
 std::string conflict(const RecordedScene::Settings& s);
-
-// A recording that is not on this machine: figures that need it are reported as not run. A damaged one is an
-// error.
-class MissingRecording : public InputError {
- public:
-  using InputError::InputError;
-};
-
-// Where a recording is looked for: the path itself, then below the folder that the environment variable
-// REMOTE_TOUCH_DATA names. Throws MissingRecording when it is in neither place.
-std::string find_recording(const std::string& path);
+RecordingPart input_files(const RecordedScene::Settings& s);  // what the scene reads
 
 }  // namespace remote_touch

@@ -132,11 +132,16 @@ RecordingIndex index_tum(const fs::path& folder) {
   std::vector<StampedFile> colour;
   CameraFile camera = kTumCamera;
   const fs::path camera_file = folder / "camera.json";
-  if (fs::exists(camera_file)) camera = read_camera(camera_file, parse_camera_file(camera_file));
+  RecordingIndex index;
+  index.texts = {folder / "depth.txt"};
+  if (fs::exists(camera_file)) {
+    camera = read_camera(camera_file, parse_camera_file(camera_file));
+    index.texts.push_back(camera_file);
+  }
   if (camera.colour_registered && fs::exists(folder / "rgb.txt")) {
     colour = read_stamped_list(folder / "rgb.txt");
+    index.texts.push_back(folder / "rgb.txt");
   }
-  RecordingIndex index;
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frames = associate_stamps(depth, colour);
   const double intervals = static_cast<double>(depth.size() - 1);
@@ -161,6 +166,7 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
   const nlohmann::json json = parse_camera_file(camera_file);
   const CameraFile camera = read_camera(camera_file, json);
   RecordingIndex index;
+  index.texts = {camera_file};
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frame_rate_hz = frame_rate(camera_file, json);
   append_frames(index, files_in_order(folder / "depth", ".png"));
@@ -174,13 +180,12 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
 
 // Of camera.json only the rate serves: every PCD file tells its own intrinsics.
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
-  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}};
+  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}};
   if (fs::exists(camera_file)) {
     index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
+    index.texts = {camera_file};
   }
   append_frames(index, files);
-  const PcdCloud first = read_pcd(files.front());
-  if (first.cloud.image) index.camera = first.cloud.image->camera;
   return index;
 }
 
@@ -219,14 +224,22 @@ void check_size(const fs::path& file, int width, int height, const CameraIntrins
 
 }  // namespace
 
-RecordingIndex index_recording(const fs::path& path) {
+RecordingIndex list_recording(const fs::path& path) {
   try {
-    RecordingIndex index = index_any(path);
-    index.description = describe(path, index);
-    return index;
+    return index_any(path);
   } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
     refuse(error.path1(), "cannot be read: " + error.code().message());
   }
+}
+
+RecordingIndex index_recording(const fs::path& path) {
+  RecordingIndex index = list_recording(path);
+  if (index.kind == RecordingIndex::Kind::pcd) {
+    const PcdCloud first = read_pcd(index.frames.front().depth);
+    if (first.cloud.image) index.camera = first.cloud.image->camera;
+  }
+  index.description = describe(path, index);
+  return index;
 }
 
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double farthest_m) {

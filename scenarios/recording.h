@@ -24,6 +24,8 @@ struct RecordingIndex {
   double frame_rate_hz = 0;
   std::vector<RecordedFrame> frames;  // at least one, captured_s strictly increasing
   std::string description;            // one line
+  // What was read beside the frames themselves, where it is there: camera.json, depth.txt, rgb.txt.
+  std::vector<std::filesystem::path> texts;
 };
 
 // The layout of path is the first of these that fits:
@@ -42,6 +44,8 @@ struct RecordingIndex {
 // Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Depth images
 // are opened by read_frame only; of PCD files the first is read here.
 RecordingIndex index_recording(const std::filesystem::path& path);
+// The same without opening any PCD file: no description, and no camera for kind pcd.
+RecordingIndex list_recording(const std::filesystem::path& path);
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
 // What is missing or farther than farthest_m is NaN. A PCD file may also hold a cloud that is not organised.

@@ -137,6 +137,19 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
+// A result is to hold the hashes of all files that it was made from.
+TEST_F(ScenarioContract, FilesThatSettingsNameAreTold) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto blueprint = entry.make();
+    for (const Parameter& p : blueprint->settings()) {
+      if (p.name != "path") continue;
+      *std::get<std::string*>(p.value) = folder_.path().string();
+      ASSERT_EQ(blueprint->inputs().size(), 1u) << entry.name;
+      EXPECT_EQ(blueprint->inputs()[0].path, folder_.path()) << entry.name;
+    }
+  }
+}
+
 TEST_F(ScenarioContract, FramesArePure) {
   for (const ScenarioEntry& entry : scenarios()) {
     const auto one = build(entry), other = build(entry);

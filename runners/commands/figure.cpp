@@ -12,7 +12,7 @@
 #include "runners/commands/progress.h"
 #include "runners/figures/figures.h"
 #include "runners/provenance.h"
-#include "scenarios/recorded_scene.h"
+#include "scenarios/recording_part.h"
 
 namespace remote_touch {
 
@@ -100,9 +100,9 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
     const Laboratory laboratory(*line.kernels, line.stop, [&](double share) { progress.update(share); });
     const Figure figure = make(*entry, laboratory);
     const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
-    write_figure(
-        file, figure,
-        provenance(laboratory.configurations(), "remote-touch figure " + figure.name, line.kernels->isa));
+    write_figure(file, figure,
+                 provenance(laboratory.configurations(), "remote-touch figure " + figure.name,
+                            line.kernels->isa, laboratory.inputs()));
     std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
     for (const Claim& claim : figure.claims) {
       print(claim);

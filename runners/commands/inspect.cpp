@@ -72,6 +72,14 @@ void print(const std::string& path, const Column& column) {
     print_states(path, column, integers);
 }
 
+// A text of several lines, as input files make it, stays in its column.
+void print_attribute(const std::string& name, std::string value) {
+  constexpr const char* kNextLine = "\n               ";
+  for (std::size_t at = value.find('\n'); at != std::string::npos; at = value.find('\n', at + 1))
+    value.replace(at, 1, kNextLine);
+  std::printf("  %-12s %s\n", name.c_str(), value.c_str());
+}
+
 }  // namespace
 
 int command_inspect(const CommandLine&, const InspectRequest& request) {
@@ -82,7 +90,7 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
     if (name == "config" && !value.empty())
       std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());
     else
-      std::printf("  %-12s %s\n", name.c_str(), value.c_str());
+      print_attribute(name, value);
   }
   for (const auto& [path, column] : content.datasets) print(path, column);
   return kDone;

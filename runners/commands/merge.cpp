@@ -7,6 +7,7 @@
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/sweep_summary.h"
+#include "runners/input_hashes.h"
 #include "runners/shard.h"
 
 namespace remote_touch {
@@ -34,7 +35,21 @@ Part read_part(const std::string& file) {
   return part;
 }
 
-// Parts of one sweep, made by one build; every shard once.
+// Of one sweep, one build and the same recordings.
+void require_same_origin(const Part& part, const Part& first) {
+  const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
+  for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
+    for (const auto& [name, value] : *attributes)
+      if (name != "inputs" && name != "command" &&  // the way to one file may be written differently
+          attribute(ours, name) != attribute(theirs, name))
+        throw InputError(part.file, "has another " + name + " than " + first.file +
+                                        "; allowed shards of one sweep, made by one build");
+  for (const auto& input : changed_inputs(attribute(theirs, "inputs"), attribute(ours, "inputs")))
+    throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
+                                    first.file + ": " + input.before + "); allowed shards of one sweep");
+}
+
+// Every shard once.
 void require_complete(const std::vector<Part>& parts) {
   const Part& first = parts.front();
   std::map<int, std::string> seen;
@@ -42,12 +57,7 @@ void require_complete(const std::vector<Part>& parts) {
     if (part.shard.count != first.shard.count)
       throw InputError(part.file, "is shard " + part.shard.text() + "; allowed shards of " +
                                       std::to_string(first.shard.count) + ", as " + first.file);
-    for (const auto& mine : part.stored.attributes)
-      if (mine.first != "command" &&  // the way to one file may be written differently
-          std::find(first.stored.attributes.begin(), first.stored.attributes.end(), mine) ==
-              first.stored.attributes.end())
-        throw InputError(part.file, "has another " + mine.first + " than " + first.file +
-                                        "; allowed shards of one sweep, made by one build");
+    require_same_origin(part, first);
     if (const auto [twin, is_new] = seen.emplace(part.shard.index, part.file); !is_new)
       throw InputError(part.file,
                        "is shard " + part.shard.text() + ", as is " + twin->second + "; allowed once");

@@ -9,6 +9,7 @@
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
+#include "runners/input_hashes.h"
 #include "runners/provenance.h"
 #include "runners/simulation.h"
 #include "runners/sweep.h"
@@ -53,6 +54,18 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
   return same;
 }
 
+// Why the values may be others: who made the sweep, and which of the run's recordings have changed since.
+void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
+  std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
+  std::vector<RecordingPart> parts;  // all that the sweep reads of them: it has one hash for that
+  for (const RecordingPart& part : sweep.inputs())
+    for (const RecordingPart& mine : experiment.inputs())
+      if (part.path == mine.path) parts.push_back(part);
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "inputs"), input_hashes(parts)))
+    if (input.now != "absent")
+      std::printf("  from %s: %s; now %s\n", input.path.c_str(), input.before.c_str(), input.now.c_str());
+}
+
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
@@ -78,14 +91,15 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   options.stop = line.stop;
   options.hash_frames = true;
   options.progress = [&](double share) { progress.update(share); };
+  const std::string inputs = input_hashes(experiment.inputs());
   const Trace trace = simulate(experiment, options);
   const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
                               request.cell + " --replicate " + std::to_string(request.replicate);
-  const std::string sum =
-      write_trace(request.output, trace, provenance(experiment.to_json(), command, line.kernels->isa), {});
+  const std::string sum = write_trace(
+      request.output, trace, provenance(experiment.to_json(), command, line.kernels->isa, inputs), {});
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   if (agrees(sweep, result, result.run(cell, request.replicate), trace)) return kDone;
-  std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
+  print_origin(stored, sweep, experiment);
   return kCheckFailed;
 }
 

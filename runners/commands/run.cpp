@@ -5,7 +5,9 @@
 #include "analysis/whole_file.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
+#include "runners/commands/shell_command.h"
 #include "runners/experiment.h"
+#include "runners/input_hashes.h"
 #include "runners/provenance.h"
 #include "runners/simulation.h"
 
@@ -15,9 +17,9 @@ namespace {
 
 // What makes the result again: no output path, no verbosity.
 std::string normalised(const RunRequest& request) {
-  std::string command = "remote-touch run " + request.experiment;
-  for (const std::string& assignment : request.overrides) command += " --set " + assignment;
-  return command;
+  std::vector<std::string> words = {"remote-touch", "run", request.experiment};
+  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
+  return shell_command(words);
 }
 
 }  // namespace
@@ -33,10 +35,10 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.hash_frames = true;
   options.progress = [&](double share) { progress.update(share); };
   if (request.timing) options.step_duration_s = &durations;
+  const TextAttributes origin = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
+                                           input_hashes(experiment.inputs()));
   const Trace trace = simulate(experiment, options);
-  const std::string sum =
-      write_trace(request.output, trace,
-                  provenance(experiment.to_json(), normalised(request), line.kernels->isa), durations);
+  const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   for (const Measure& measure : measures())
     std::printf("  %-20s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);

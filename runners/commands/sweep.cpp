@@ -8,7 +8,9 @@
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
+#include "runners/commands/shell_command.h"
 #include "runners/commands/sweep_summary.h"
+#include "runners/input_hashes.h"
 #include "runners/provenance.h"
 #include "runners/simulation.h"
 #include "runners/sweep_session.h"
@@ -25,9 +27,9 @@ double seconds_since(Clock::time_point start) {
 
 // What makes the result again: no output path, threads or shard.
 std::string normalised(const SweepRequest& request) {
-  std::string command = "remote-touch sweep " + request.sweep;
-  for (const std::string& assignment : request.overrides) command += " --set " + assignment;
-  return command;
+  std::vector<std::string> words = {"remote-touch", "sweep", request.sweep};
+  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
+  return shell_command(words);
 }
 
 std::string with_shard(std::string output, const Shard& shard) {
@@ -38,7 +40,7 @@ std::string with_shard(std::string output, const Shard& shard) {
 }
 
 TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, const Shard& shard) {
-  TextAttributes list = provenance(sweep.to_json(), normalised(request), "");
+  TextAttributes list = provenance(sweep.to_json(), normalised(request), "", input_hashes(sweep.inputs()));
   if (shard.count > 1) list.emplace_back("shard", shard.text());
   return list;
 }
@@ -94,13 +96,13 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
   const Shard shard =
       request.shard.empty() ? shard_from_environment().value_or(Shard{}) : parse_shard(request.shard);
   const Sweep sweep = Sweep::load(request.sweep, request.overrides);
-  const TextAttributes attributes = attributes_of(sweep, request, shard);
   const std::string file = with_shard(request.output, shard);
   if (file.empty() && !request.dry_run)
     throw InputError("--output", "is required; see remote-touch sweep --help");
+  if (!request.dry_run) require_writable(file);
+  const TextAttributes attributes = attributes_of(sweep, request, shard);
   if (request.dry_run) return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line);
 
-  require_writable(file);
   SweepSession session(sweep, shard, attributes, file);
   Progress progress(sweep.title(), line.quiet);
   try {

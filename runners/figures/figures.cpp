@@ -29,6 +29,7 @@ std::span<const FigureEntry> figures() {
 
 Trace Laboratory::run(const Experiment& experiment) const {
   note(experiment.to_json());
+  inputs_.add(experiment.inputs());
   return simulated(experiment, progress_);
 }
 
@@ -67,6 +68,7 @@ void Laboratory::for_each(std::size_t count, const std::function<void(std::size_
 
 SweepResult Laboratory::sweep(const Sweep& sweep) const {
   note(sweep.to_json());
+  inputs_.add(sweep.inputs());
   const double runs = static_cast<double>(sweep.plan().runs_in(RunState::pending).size());
   double done = 0;
   return run_sweep(sweep, {&kernels_, stop_, [&](std::size_t) { progress_(++done / runs); }});

@@ -10,6 +10,7 @@
 #include "analysis/figure.h"
 #include "analysis/trace.h"
 #include "runners/experiment.h"
+#include "runners/input_hashes.h"
 #include "runners/simulation.h"
 #include "runners/sweep.h"
 
@@ -26,6 +27,7 @@ class Laboratory {
   template <class Of>
   auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
     if (!experiments.empty()) note(experiments.front().to_json());
+    for (const Experiment& experiment : experiments) inputs_.add(experiment.inputs());
     return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
   }
   // Every run of a sweep; throws InputError when one failed.
@@ -35,6 +37,7 @@ class Laboratory {
   auto measure(const Sweep& sweep, Of&& of) const {
     const SweepResult plan = sweep.plan();
     note(sweep.to_json());
+    inputs_.add(sweep.inputs());
     return collect(plan.run_count(), [&](std::size_t run) {
       return of(simulated(sweep.experiment(plan.cell_of(run), plan.replicate_of(run))));
     });
@@ -42,6 +45,8 @@ class Laboratory {
   // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
   // JSON list.
   std::string configurations() const;
+  // What was in the recordings that all of them read, as input_hashes.h has it.
+  std::string inputs() const { return inputs_.text(); }
 
  private:
   Trace simulated(const Experiment& experiment, std::function<void(double)> progress = {}) const;
@@ -55,6 +60,7 @@ class Laboratory {
   void note(const std::string& configuration) const { configurations_.push_back(configuration); }
 
   mutable std::vector<std::string> configurations_;
+  mutable InputHashes inputs_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
   std::function<void(double)> progress_;
