@@ -48,6 +48,13 @@ void Neighbourhood::gather(Kept& kept) {
   kept.valid = true;
 }
 
+const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {
+  tube_.clear();
+  points_->gather({p, (radius + points_->largest_fixture_radius()) * (1 + 1e-9)}, kernels_, tube_);
+  tube_.finish();
+  return tube_;
+}
+
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
   const double girth = radius + points_->largest_fixture_radius();
   const Kept& here = kept_[present_];

@@ -21,6 +21,8 @@ class Neighbourhood {
   void set_points(std::shared_ptr<const NeighbourSearch> points);
   // The points around p. Valid until the next call.
   const GatheredPoints& around(const Vec3& p);
+  // All points with r_n <= radius of p, gathered anew, and some beyond. Valid until the next call.
+  const GatheredPoints& within(const Vec3& p, double radius);
   // (4.9), (5.9): how far a ball of that radius moves from p along the unit vector u before it meets a point;
   // limit when nothing is met before. Looks at the whole swept tube.
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
@@ -44,7 +46,7 @@ class Neighbourhood {
   std::shared_ptr<const NeighbourSearch> points_;
   std::array<Kept, 4> kept_;
   std::size_t present_ = 0;
-  GatheredPoints tube_;
+  GatheredPoints tube_;  // what was gathered for one call
 };
 
 }  // namespace remote_touch

@@ -126,7 +126,9 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   out.state = here.state;
   out.normal_W = unit_normal(here.survey, normal_W_);
   out.surface_velocity_m_per_s = velocity_.m_per_s();
-  out.nearest_m = here.survey.nearest;
+  // The list of neighbours goes further than r3 in some directions: what it finds there is chance.
+  out.nearest_m =
+      here.survey.nearest <= p_.r3_m ? here.survey.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(here.survey.touching);
   out.converged = has_converged(here.state, out.normal_W, hip_W - proxy_W_, p_);
   if (here.state == ContactState::entrenched && out.normal_W.isZero(0))

@@ -23,7 +23,7 @@ double sine_squared(double degrees) {
 }
 
 // The printed reading of (4.9): among all points, ahead or behind, the root of smallest magnitude, and the
-// smallest step of those.
+// smallest step of those. Roots beyond the way to the HIP, either way, are not asked about.
 double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& u, double radius,
                          double limit) {
   double step = limit;
@@ -33,7 +33,8 @@ double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& 
     const double rest = r * r - (e - along * u).squaredNorm();
     if (!(rest >= 0)) continue;
     const double near = along - std::sqrt(rest), far = along + std::sqrt(rest);
-    step = std::min(step, std::abs(near) <= std::abs(far) ? near : far);
+    const double root = std::abs(near) <= std::abs(far) ? near : far;
+    if (std::abs(root) <= limit) step = std::min(step, root);
   }
   return step;
 }
@@ -68,10 +69,10 @@ Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyP
   if (!(distance > 0)) return Vec3::Zero();
   if (p.step_rule == StepRule::fixed) return step_towards(u, p);
   const Vec3 direction = u / distance;
-  const double step =
-      p.free_root == FreeRoot::ahead
-          ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
-          : printed_free_root(near.around(p_W).view(), p_W, direction, p.contact_radius_m(), distance);
+  const double step = p.free_root == FreeRoot::ahead
+                          ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
+                          : printed_free_root(near.within(p_W, distance + p.contact_radius_m()).view(), p_W,
+                                              direction, p.contact_radius_m(), distance);
   // Unhindered, the step is u itself: P then meets the HIP bit for bit.
   return step >= distance ? u : Vec3(step * direction);
 }

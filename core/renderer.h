@@ -25,7 +25,8 @@ struct RenderOutput {
   ContactState state = ContactState::free;  // of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
   double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)
-  double nearest_m = 0;                 // distance of proxy_W to the nearest region, r_n of (5.5)
+  double nearest_m = 0;                 // distance of proxy_W to the nearest region, r_n of (5.5); infinite
+                                        // beyond the renderer's reach
   Vec3 carried_m = Vec3::Zero();        // how far frame updates moved the proxy since the last tick, (4.3)
   int steps = 0;                        // proxy steps made in this tick
   bool converged = false;               // (4.8)
