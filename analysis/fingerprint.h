@@ -18,6 +18,8 @@ constexpr std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   return hash ^ (hash >> 32);
 }
 
+inline constexpr const char* kRunningHash = "tick_hash";  // its column in a trace
+
 // Of every coordinate, fixture radius and stiffness of the cloud and of its length; the order of the points
 // does not count, as it is the search's own affair.
 std::uint64_t fingerprint(const PointCloud& cloud);

@@ -15,8 +15,9 @@ namespace remote_touch {
 
 namespace {
 
-// Rows in a chunk of a long column; an array has chunks of at most so many values.
-constexpr hsize_t kChunk = 4096, kLargestChunk = 32768;
+// Columns longer than that are compressed, in chunks of so many rows; an array has chunks of at most so many
+// values.
+constexpr hsize_t kLongestInOnePiece = 256, kChunk = 4096, kLargestChunk = 32768;
 
 // Object time stamps off, so that equal contents are equal bytes.
 Handle creation_list(hid_t kind) {
@@ -110,7 +111,7 @@ namespace {
 
 // Whole trailing dimensions, as many as fit.
 std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
-  if (extent.size() == 1) return {kChunk};
+  if (extent.size() == 1) return {std::min(kChunk, extent.front())};
   for (hsize_t& along : extent) {
     const auto product = std::accumulate(extent.begin(), extent.end(), hsize_t{1}, std::multiplies<>());
     if (product > kLargestChunk) along = std::max<hsize_t>(1, kLargestChunk * along / product);
@@ -143,7 +144,7 @@ void Hdf5Writer::dataset(const std::string& path, const Column& column, const st
   const Handle type = stored_type(column);
   if (storage == Storage::in_place) {
     check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
-  } else if (column.length() > kChunk) {
+  } else if (column.length() > kLongestInOnePiece) {
     check(H5Pset_chunk(creation, rank, chunk_of(extent).data()));
     check(H5Pset_shuffle(creation));
     check(H5Pset_deflate(creation, 1));

@@ -10,6 +10,7 @@ namespace remote_touch {
 struct Tolerance {
   double absolute = 0;
   double relative = 0;
+  bool operator==(const Tolerance&) const = default;
 };
 
 // By name; "*" is for those that are not named, and exact where there is none.

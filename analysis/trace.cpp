@@ -75,7 +75,8 @@ std::vector<Column> Trace::columns() const {
        {"ok", "stale_frame_dropped", "degenerate_normal", "no_frame", "device_not_finite"}},
       {"frame_hash", "1", "fingerprint of the points of the newest frame", frame_hash, 1, {}},
   };
-  list.push_back({"tick_hash", "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});
+  list.push_back(
+      {kRunningHash, "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});
   return list;
 }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "analysis/fingerprint.h"
+
 namespace remote_touch {
 
 namespace {
-
-constexpr const char* kRunningHash = "tick_hash";
 
 std::optional<std::size_t> earlier(std::optional<std::size_t> a, std::optional<std::size_t> b) {
   return a && b ? std::min(a, b) : a ? a : b;
@@ -38,7 +38,7 @@ class PartingPlace {
     if (!inputs.empty())
       return {Cause::input, joined(inputs) + " differs; the renderer was given something else"};
     if (new_frame(baseline_) || new_frame(candidate_))
-      return {Cause::frame_update, "frame " + std::to_string(value(baseline_, "frame_index", tick_)) +
+      return {Cause::frame_update, "frame " + std::to_string(frame(baseline_, tick_)) +
                                        " came in with this tick, the same in both"};
     if (differs("state") || changed(baseline_, "state") || changed(candidate_, "state"))
       return {Cause::state_transition, "baseline " + states(baseline_) + ", candidate " + states(candidate_)};
@@ -46,7 +46,7 @@ class PartingPlace {
   }
 
   std::string frame_text() const {
-    if (!baseline_.has("frame_index")) return "unknown: the trace has no frame_index";
+    if (!integer(baseline_, "frame_index", tick_)) return "unknown: the traces have no frame_index here";
     const Column frames = baseline_.column("frame_index");
     const auto& index = std::get<std::vector<std::int32_t>>(frames.values);
     if (index[tick_] < 0) return "none had come yet";
@@ -74,22 +74,32 @@ class PartingPlace {
       inputs.emplace_back("signed_distance (the true surface)");
     return inputs;
   }
-  std::int32_t value(const ColumnSource& trace, const char* column, std::size_t tick) const {
-    if (!trace.has(column)) return -1;
-    return std::get<std::vector<std::int32_t>>(trace.rows(column, tick, 1).values).at(0);
+  // None where one of the two has no such column, not that far, or of something else.
+  std::optional<std::int32_t> integer(const ColumnSource& trace, const char* column, std::size_t tick) const {
+    for (const ColumnComparison& comparison : columns_) {
+      if (comparison.name != column || comparison.rows <= tick) continue;
+      const Column row = trace.rows(column, tick, 1);
+      if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&row.values)) return integers->at(0);
+    }
+    return {};
+  }
+  std::int32_t frame(const ColumnSource& trace, std::size_t tick) const {
+    return integer(trace, "frame_index", tick).value_or(-1);
   }
   bool changed(const ColumnSource& trace, const char* column) const {
-    return tick_ > 0 && value(trace, column, tick_) != value(trace, column, tick_ - 1);
+    const auto now = integer(trace, column, tick_);
+    return now && tick_ > 0 && now != integer(trace, column, tick_ - 1);
   }
   // The very first tick with a frame is an update too.
   bool new_frame(const ColumnSource& trace) const {
-    return tick_ > 0 ? changed(trace, "frame_index") : value(trace, "frame_index", 0) >= 0;
+    return tick_ > 0 ? changed(trace, "frame_index") : frame(trace, 0) >= 0;
   }
   std::string state(const ColumnSource& trace, std::size_t tick) const {
-    if (!trace.has("state")) return "unknown";
+    const auto number = integer(trace, "state", tick);
+    if (!number) return "unknown";
     const Column row = trace.rows("state", tick, 1);
-    const auto number = static_cast<std::size_t>(std::get<std::vector<std::int32_t>>(row.values).at(0));
-    return number < row.value_names.size() ? row.value_names[number] : std::to_string(number);
+    const auto place = static_cast<std::size_t>(*number);
+    return place < row.value_names.size() ? row.value_names[place] : std::to_string(*number);
   }
   std::string states(const ColumnSource& trace) const {
     return (tick_ > 0 ? state(trace, tick_ - 1) + " to " : "") + state(trace, tick_);
@@ -171,6 +181,7 @@ TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource
     const Column ours = baseline.column(name);
     if (candidate.has(name)) {
       result.columns.push_back(compare_columns(ours, candidate.column(name), tolerance_of(tolerances, name)));
+      result.columns.back().name = name;  // of a figure, with its table
     } else {
       result.columns.push_back({name, ours.units, tolerance_of(tolerances, name)});
       result.columns.back().problem = "missing in the candidate";

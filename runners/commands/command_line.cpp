@@ -15,14 +15,16 @@ namespace {
 struct Subcommands {
   CLI::App& app;
   CommandLine& line;
-  std::function<int()> act = {};
+  std::function<int()>& act;
 
   template <class Request>
   std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
                                      int (*run)(const CommandLine&, const Request&)) {
     auto request = std::make_shared<Request>();
     CLI::App* command = app.add_subcommand(name, meaning);
-    command->callback([this, request, run] { act = [this, request, run] { return run(line, *request); }; });
+    command->callback([&act = act, &line = line, request, run] {
+      act = [&line, request, run] { return run(line, *request); };
+    });
     return {command, request.get()};
   }
 };
@@ -113,6 +115,47 @@ void add_compare(Subcommands& commands) {
   hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
 }
 
+void add_baseline(Subcommands& commands) {
+  CLI::App* parent =
+      commands.app.add_subcommand("baseline", "stored results that later programs are held against");
+  parent->require_subcommand(1);
+  Subcommands below{*parent, commands.line, commands.act};
+  auto [command, check] =
+      below.add("check", "make every stored result again and compare", command_baseline_check);
+  command->add_option("names", check->names, "some of them (default: all, and none may be missing)");
+  command->add_option("--folder", check->folder, "where they are")->capture_default_str();
+  command->add_option("--json", check->json, "also write everything to this file");
+  command->add_option("--junit", check->junit, "also write JUnit's XML");
+
+  auto [other, bless] =
+      below.add("bless", "store a result, with the spread over builds", command_baseline_bless);
+  other->add_option("names", bless->names, "of the baselines, or all")->required();
+  other->add_option("--reason", bless->reason, "why these numbers are right");
+  other->add_option("--run", bless->run,
+                    "a new baseline: the experiment, a name or a JSON file in the folder");
+  other->add_option("--sweep", bless->sweep, "a new baseline: the sweep");
+  add_set(other, bless->overrides, "parameter=value of a new baseline");
+  other->add_option("--also", bless->also, "a build of the same source by another compiler")
+      ->allow_extra_args(false);
+  other->add_flag("--one-compiler", bless->one_compiler, "measure the spread without one");
+  other->add_option("--folder", bless->folder, "where to store")->capture_default_str();
+}
+
+void add_repro_and_verify(Subcommands& commands) {
+  auto [command, repro] = commands.add(
+      "repro", "the command that makes a result again; with --run, does it and compares", command_repro);
+  command->add_option("file", repro->file, "a trace, sweep or figure")->required();
+  command->add_flag("--run", repro->run, "make it again from the stored configuration and compare");
+  command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
+
+  auto [other, verify] = commands.add(
+      "verify", "metamorphic checks of renderers: what must stay true when a scene is told differently",
+      command_verify);
+  other->add_option("renderers", verify->renderers, "of the list (default: all)");
+  add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
+  other->add_option("--junit", verify->junit, "also write JUnit's XML");
+}
+
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining();
@@ -132,8 +175,10 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.set_version_flag("--version", "remote-touch " + version());
   app.fallthrough();
   app.add_flag("-q,--quiet", line.quiet, "no progress");
-  Subcommands commands{app, line};
-  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_compare})
+  std::function<int()> act;
+  Subcommands commands{app, line, act};
+  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_compare,
+                         add_baseline, add_repro_and_verify})
     add(commands);
   try {
     app.parse(argc, argv);
@@ -142,7 +187,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
     throw usage_error(app, error);
   }
   line.kernels = &choose_kernels();
-  return commands.act();
+  return act();
 }
 
 }  // namespace remote_touch

@@ -73,6 +73,37 @@ struct CompareRequest {
 };
 int command_compare(const CommandLine& line, const CompareRequest& request);
 
+struct BaselineCheckRequest {
+  std::vector<std::string> names;  // empty: all, and none may be missing
+  std::string folder = "data/baselines";
+  std::string json, junit;
+};
+int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request);
+
+struct BaselineBlessRequest {
+  std::vector<std::string> names;
+  std::string reason;
+  std::string folder = "data/baselines";
+  std::string run, sweep;
+  std::vector<std::string> overrides, also;
+  bool one_compiler = false;
+};
+int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& request);
+
+struct VerifyRequest {
+  std::vector<std::string> renderers;  // empty: all
+  std::vector<std::string> overrides;  // "r1_m=0.004"
+  std::string junit;
+};
+int command_verify(const CommandLine& line, const VerifyRequest& request);
+
+struct ReproRequest {
+  std::string file;
+  bool run = false;
+  std::string config;  // a file to write the configuration to; empty: none
+};
+int command_repro(const CommandLine& line, const ReproRequest& request);
+
 struct HashesRequest {
   std::string trace;
   int every = 1;

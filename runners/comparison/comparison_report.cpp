@@ -1,6 +1,7 @@
 #include "runners/comparison/comparison_report.h"
 
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "analysis/whole_file.h"
@@ -170,6 +171,24 @@ std::string case_xml(const ReportSuite& suite, const ReportCase& one) {
   return xml + "><" + element + " message=\"" + escaped(one.text) + "\"/></testcase>\n";
 }
 
+// "2 of 867 rows outside, the largest deviation 0.25"; empty for none.
+std::string outside_text(std::int64_t outside, std::int64_t of, const char* things, double largest) {
+  if (outside == 0) return {};
+  char text[160];
+  std::snprintf(text, sizeof text, "%lld of %lld %s outside, the largest deviation %.6g",
+                static_cast<long long>(outside), static_cast<long long>(of), things, largest);
+  return text;
+}
+
+// By the rule that judged the whole.
+ReportCase::State state_of(const SweepComparison& sweep, std::size_t measure, bool paired) {
+  using State = ReportCase::State;
+  if (!paired) return sweep.measures[measure].outside == 0 ? State::passed : State::failed;
+  for (std::size_t region = 0; region < sweep.regions.size(); ++region)
+    if (sweep.at(region, measure).judgement == Judgement::changed) return State::failed;
+  return sweep.at(0, measure).judgement == Judgement::undecided ? State::error : State::passed;
+}
+
 std::string count(const ReportSuite& suite, ReportCase::State state) {
   return std::to_string(std::count_if(suite.cases.begin(), suite.cases.end(),
                                       [&](const ReportCase& one) { return one.state == state; }));
@@ -193,11 +212,17 @@ ReportSuite suite_of(const ResultComparison& comparison, const std::string& name
   if (comparison.columns)
     for (const ColumnComparison& column : comparison.columns->columns) {
       std::string why = column.problem;
-      if (column.outside > 0)
-        why += (why.empty() ? "" : "; ") + std::to_string(column.outside) + " of " +
-               std::to_string(column.rows) + " rows outside, the largest deviation " +
-               std::to_string(column.largest);
+      if (!why.empty() && column.outside > 0) why += "; ";
+      why += outside_text(static_cast<std::int64_t>(column.outside), static_cast<std::int64_t>(column.rows),
+                          "rows", column.largest);
       suite.cases.push_back({column.name, column.is_same() ? State::passed : State::failed, why});
+    }
+  if (comparison.sweep && comparison.sweep->problems.empty())
+    for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i) {
+      const MeasureComparison& measure = comparison.sweep->measures[i];
+      suite.cases.push_back(
+          {measure.name, state_of(*comparison.sweep, i, comparison.paired),
+           outside_text(measure.outside, measure.compared, "runs", measure.largest_deviation)});
     }
   const State whole = comparison.outcome == Outcome::same        ? State::passed
                       : comparison.outcome == Outcome::regressed ? State::failed

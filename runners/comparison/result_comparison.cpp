@@ -108,36 +108,54 @@ void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
            exact_text(*result.sweep) + "; too few runs to tell whether a share changed by " + margin);
 }
 
-std::string schema_of(const std::filesystem::path& file) {
-  return attribute(Hdf5Reader(file).attributes(), "schema");
+StoredHashes hashes_of(const std::filesystem::path& file, const std::string& kind) {
+  if (kind == "hashes") return read_hashes(file);
+  return {hashes_of_trace(file, 1), StoredTrace(file).attributes()};
 }
 
-// "trace" of "remote-touch-trace/1"; another version is for the reader of that kind to refuse.
+ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
+                               const ComparisonRules& rules) {
+  const std::string ours = kind_of(baseline), theirs = kind_of(candidate);
+  const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
+  const bool hashed = ours == "hashes" || theirs == "hashes";
+  if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
+    throw InputError(candidate.string(), "is a " + theirs + "; allowed a " + ours + ", as the baseline is");
+  if (hashed) {
+    if (!rules.tolerances.empty())
+      throw InputError("tolerance of " + rules.tolerances.begin()->first,
+                       "hashes are equal or not; allowed with traces, sweeps and figures");
+    return compare_hashes(hashes_of(baseline, ours), hashes_of(candidate, theirs));
+  }
+  if (ours == "figure") return compare_figure(StoredFigure(baseline), StoredFigure(candidate), rules);
+  if (ours == "trace") {
+    const StoredTrace first(baseline), second(candidate);
+    return compare_trace(first, first.attributes(), second, second.attributes(), rules);
+  }
+  const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
+  return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
+}
+
+}  // namespace
+
 std::string kind_of(const std::filesystem::path& file) {
-  const std::string schema = schema_of(file);
+  const std::string schema = attribute(Hdf5Reader(file).attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
   throw InputError(file.string(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
                                       "; allowed a trace, a sweep, a figure or hashes of this program");
 }
 
-ResultComparison compare_figures(const std::filesystem::path& baseline,
-                                 const std::filesystem::path& candidate, const ComparisonRules& rules) {
-  const StoredFigure ours(baseline), theirs(candidate);
-  check_names(rules.tolerances, ours.columns());
+ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                                const ComparisonRules& rules) {
+  check_names(rules.tolerances, baseline.columns());
   // A figure's configuration is a list of all that it ran: too long to be told place by place.
   ResultComparison result = begin("figure", {}, {});
-  result.columns = compare_by_name(ours, theirs, rules.tolerances);
+  result.columns = compare_by_name(baseline, candidate, rules.tolerances);
   judge_columns(result);
   return result;
 }
 
-StoredHashes hashes_of(const std::filesystem::path& file, const std::string& kind) {
-  if (kind == "hashes") return read_hashes(file);
-  return {hashes_of_trace(file, 1), StoredTrace(file).attributes()};
-}
-
-ResultComparison compare_hash_files(const StoredHashes& baseline, const StoredHashes& candidate) {
+ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes& candidate) {
   ResultComparison result = begin("hashes", baseline.attributes, candidate.attributes);
   const HashComparison hashes = compare_hashes(baseline.hashes, candidate.hashes);
   result.hashes = hashes;
@@ -156,26 +174,6 @@ ResultComparison compare_hash_files(const StoredHashes& baseline, const StoredHa
   return result;
 }
 
-ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
-                               const ComparisonRules& rules) {
-  const std::string ours = kind_of(baseline), theirs = kind_of(candidate);
-  const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
-  if (ours != theirs && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs))
-    return compare_hash_files(hashes_of(baseline, ours), hashes_of(candidate, theirs));
-  if (ours != theirs)
-    throw InputError(candidate.string(), "is a " + theirs + "; allowed a " + ours + ", as the baseline is");
-  if (ours == "hashes") return compare_hash_files(read_hashes(baseline), read_hashes(candidate));
-  if (ours == "figure") return compare_figures(baseline, candidate, rules);
-  if (ours == "trace") {
-    const StoredTrace first(baseline), second(candidate);
-    return compare_trace(first, first.attributes(), second, second.attributes(), rules);
-  }
-  const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
-  return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
-}
-
-}  // namespace
-
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
@@ -190,6 +188,7 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
   ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
+  result.paired = rules.paired;
   result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule);
   for (const std::string& difference : result.configuration)
     if (difference.starts_with("experiment.seed "))

@@ -28,13 +28,18 @@ struct ResultComparison {
   std::vector<std::string> provenance = {};     // where the builds differ: told, not judged
   std::optional<TraceComparison> columns = {};  // of traces and figures
   std::optional<SweepComparison> sweep = {};
+  bool paired = false;  // how the sweep was judged
   std::optional<HashComparison> hashes = {};
   Outcome outcome = Outcome::not_comparable;
   std::string verdict = {};  // one line
 };
 
+// "trace", "sweep", "figure" or "hashes", as the schema says; another version is for its reader to refuse.
+// Throws InputError for any other file.
+std::string kind_of(const std::filesystem::path& file);
+
 // Throws InputError for files that cannot be read or are of different kinds (but hashes go with traces), and
-// for tolerances of columns that there are not.
+// for tolerances of columns that there are not; hashes have none.
 ResultComparison compare_results(const std::filesystem::path& baseline,
                                  const std::filesystem::path& candidate, const ComparisonRules& rules);
 
@@ -42,6 +47,12 @@ ResultComparison compare_results(const std::filesystem::path& baseline,
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);
+
+// Tables of figures, columns named table/column.
+ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                                const ComparisonRules& rules);
+
+ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes& candidate);
 
 ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,

@@ -1,0 +1,172 @@
+#include "runners/baselines/baseline_bless.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "analysis/column_comparison.h"
+#include "analysis/column_source.h"
+#include "analysis/fingerprint.h"
+#include "analysis/result_file.h"
+#include "analysis/sha256.h"
+#include "analysis/sweep_file.h"
+#include "core/input_error.h"
+#include "runners/baselines/program_run.h"
+#include "runners/baselines/spread.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A folder for the runs, gone afterwards.
+class Scratch {
+ public:
+  Scratch()
+      : path_(std::filesystem::temp_directory_path() / ("remote-touch-bless-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void require_sense(const Blessing& blessing) {
+  const bool blank = std::all_of(blessing.reason.begin(), blessing.reason.end(),
+                                 [](unsigned char c) { return std::isspace(c) != 0; });
+  if (blank) throw InputError("--reason", "missing; allowed a sentence: why these numbers are right");
+  if (blessing.also.empty() && !blessing.one_compiler)
+    throw InputError(
+        "--also",
+        "missing; allowed a build of the same source by another compiler (scripts/bless makes one), "
+        "or --one-compiler");
+  for (const char c : blessing.name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_')
+      throw InputError("baseline " + blessing.name, "allowed letters, digits, . - and _");
+}
+
+Manifest manifest_or_new(const std::filesystem::path& folder) {
+  std::error_code unreachable;
+  return std::filesystem::exists(folder / "manifest.json", unreachable) ? read_manifest(folder) : Manifest{};
+}
+
+// What is to be run: as stored, or as now asked for.
+Baseline definition(const Blessing& blessing, const Manifest& manifest) {
+  const Baseline* stored = manifest.find(blessing.name);
+  const bool is_new = !blessing.run.empty() || !blessing.sweep.empty();
+  if (!stored && !is_new)
+    throw InputError("baseline " + blessing.name,
+                     "there is none; allowed --run EXPERIMENT or --sweep SWEEP to begin one");
+  if (!is_new && !blessing.overrides.empty())
+    throw InputError("--set",
+                     "without --run or --sweep; allowed with them, for a baseline of something else");
+  Baseline baseline = stored ? *stored : Baseline{blessing.name, "", ""};
+  if (is_new) {
+    baseline.command = blessing.run.empty() ? "sweep" : "run";
+    baseline.subject = blessing.run.empty() ? blessing.sweep : blessing.run;
+    baseline.overrides = blessing.overrides;
+  }
+  return baseline;
+}
+
+bool same_values(const std::vector<Column>& a, const std::vector<Column>& b) {
+  const auto equal = [](const Column& x, const Column& y) {
+    return compare_columns(x, y, {}).is_same() && x.name == y.name;
+  };
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), equal);
+}
+
+// The attributes that make a result's provenance: the writer adds the others.
+TextAttributes kept(const TextAttributes& all) {
+  TextAttributes some;
+  for (const auto& [name, value] : all)
+    if (name != "schema" && name != "digest" && name != "default" && name != "columns")
+      some.emplace_back(name, value);
+  return some;
+}
+
+void store(const std::filesystem::path& file, const std::string& command, const std::filesystem::path& made,
+           std::vector<Column> columns) {
+  if (command == "sweep") {
+    StoredSweep sweep = read_sweep(made);
+    sweep.result.measures = std::move(columns);
+    write_sweep(file, sweep.result, sweep.attributes);
+  } else {
+    columns.push_back(StoredTrace(made).column(kRunningHash));
+    columns.back().values = running_hash({columns.begin(), columns.end() - 1});
+    write_trace(file, columns, kept(StoredTrace(made).attributes()), {});
+  }
+}
+
+std::string attribute_of(const std::filesystem::path& file, const char* name) {
+  return attribute(Hdf5Reader(file).attributes(), name);
+}
+
+// The stored columns, when the stored file is sound and of the same experiment.
+std::vector<Column> old_columns(const std::filesystem::path& file, const Baseline& baseline,
+                                const std::filesystem::path& made) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return {};
+  try {
+    if (attribute_of(file, "config") != attribute_of(made, "config")) return {};
+    return judged_columns(file, baseline.command);
+  } catch (const InputError&) {
+    return {};  // damaged: there are no old bits to keep
+  }
+}
+
+void enter(const Baseline& baseline, Manifest& manifest) {
+  const auto place = std::find_if(manifest.baselines.begin(), manifest.baselines.end(),
+                                  [&](const Baseline& one) { return one.name == baseline.name; });
+  if (place != manifest.baselines.end())
+    *place = baseline;
+  else
+    manifest.baselines.push_back(baseline);
+  std::sort(manifest.baselines.begin(), manifest.baselines.end(),
+            [](const Baseline& a, const Baseline& b) { return a.name < b.name; });
+}
+
+std::string spread_text(const Tolerances& spread) {
+  if (spread.empty()) return "exact";
+  std::string text = "spread";
+  for (const auto& [name, tolerance] : spread) text += " " + name + " " + std::to_string(tolerance.absolute);
+  return text;
+}
+
+}  // namespace
+
+std::string bless(const Blessing& blessing) {
+  require_sense(blessing);
+  Manifest manifest = manifest_or_new(blessing.folder);
+  Baseline baseline = definition(blessing, manifest);
+  std::vector<std::string> programs = {this_program()};
+  programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
+  const Scratch scratch;
+  const Measured measured = measure_spread(blessing.folder, baseline, programs, scratch.path());
+
+  const std::filesystem::path file = file_of(blessing.folder, baseline);
+  const std::vector<Column> old = old_columns(file, baseline, measured.reference);
+  std::vector<Column> now = judged_columns(measured.reference, baseline.command);
+  if (!old.empty()) now = keep_old_bits(old, std::move(now), baseline.tolerances);
+  const bool is_new = old.empty() || !same_values(old, now);
+  if (!is_new && measured.spread == baseline.tolerances && sha256_of_file(file) == baseline.sha256)
+    return baseline.name + ": nothing to store, every number is within the spread of the stored one";
+  if (is_new) {
+    std::filesystem::create_directories(blessing.folder);
+    store(file, baseline.command, measured.reference, std::move(now));
+  }
+  baseline.sha256 = sha256_of_file(file), baseline.reason = blessing.reason;
+  baseline.builds = measured.over, baseline.tolerances = measured.spread;
+  enter(baseline, manifest);
+  write_manifest(blessing.folder, manifest);
+  return baseline.name + ": " + (is_new ? "stored" : "the spread is new, the numbers are kept") + ", " +
+         spread_text(baseline.tolerances);
+}
+
+}  // namespace remote_touch

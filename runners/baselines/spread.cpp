@@ -1,0 +1,130 @@
+#include "runners/baselines/spread.h"
+
+#include <algorithm>
+#include <map>
+
+#include "analysis/column_comparison.h"
+#include "analysis/column_source.h"
+#include "analysis/fingerprint.h"
+#include "analysis/sweep_file.h"
+#include "core/input_error.h"
+#include "core/kernels.h"
+#include "runners/baselines/program_run.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kThreads[] = {1, 2, 8};
+
+TextAttributes attributes_of(const std::filesystem::path& file) {
+  return Hdf5Reader(file).attributes();
+}
+
+void make(const std::filesystem::path& folder, const Baseline& baseline, const std::string& program,
+          const std::string& level, int threads, const std::filesystem::path& output) {
+  std::vector<std::string> words = {baseline.command, subject_of(folder, baseline)};
+  for (const std::string& assignment : baseline.overrides) words.insert(words.end(), {"--set", assignment});
+  words.insert(words.end(), {"--quiet", "-o", output.string()});
+  if (baseline.command == "sweep") words.insert(words.end(), {"--threads", std::to_string(threads)});
+  run_program(program, words, {{"REMOTE_TOUCH_ISA", level}, {"OMP_NUM_THREADS", std::to_string(threads)}});
+}
+
+void require_same_source(const std::string& program, const TextAttributes& reference,
+                         const TextAttributes& other) {
+  for (const char* name : {"version", "git_commit", "config"})
+    if (attribute(reference, name) != attribute(other, name))
+      throw InputError(program, std::string("is of another ") + name + ", " + attribute(other, name) +
+                                    "; allowed a build of the same source as this program");
+}
+
+// Adds the deviations of one variant to the spread.
+void add(const std::string& variant, const std::vector<Column>& reference, const std::vector<Column>& other,
+         Tolerances& spread) {
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const ColumnComparison found = compare_columns(reference[i], other.at(i), {});
+    if (!found.problem.empty() || found.not_numbers > 0 || (found.outside > 0 && found.largest == 0))
+      throw InputError(reference[i].name, "differs with " + variant + " in what has no tolerance (row " +
+                                              std::to_string(found.first_outside.value_or(0)) + ")" +
+                                              (found.problem.empty() ? "" : ": " + found.problem));
+    if (found.largest > 0) spread[found.name].absolute = std::max(spread[found.name].absolute, found.largest);
+  }
+}
+
+void note(std::vector<std::string>& list, const std::string& text) {
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+std::vector<std::string> levels_of_this_machine() {
+  std::vector<std::string> levels;  // the best first: it makes the reference
+  for (const Isa isa : {Isa::x86_64_v4, Isa::x86_64_v3, Isa::x86_64})
+    if (isa <= best_isa()) levels.emplace_back(kernels_for(isa).isa);
+  return levels;
+}
+
+template <class Values>
+void keep_rows(const Values& old, const std::vector<double>& deviation, const std::vector<bool>& inside,
+               std::size_t width, Values& now) {
+  for (std::size_t row = 0; row < deviation.size(); ++row)
+    if (inside[row])
+      std::copy_n(old.begin() + static_cast<std::ptrdiff_t>(row * width), width,
+                  now.begin() + static_cast<std::ptrdiff_t>(row * width));
+}
+
+}  // namespace
+
+std::vector<Column> judged_columns(const std::filesystem::path& file, const std::string& command) {
+  if (command == "sweep") return read_sweep(file).result.measures;
+  const StoredTrace trace(file);
+  std::vector<Column> columns;
+  for (const std::string& name : trace.columns())
+    if (name != kRunningHash) columns.push_back(trace.column(name));
+  return columns;
+}
+
+Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
+                        const std::vector<std::string>& programs, const std::filesystem::path& scratch) {
+  Measured measured{scratch / "reference.h5"};
+  std::vector<Column> reference;
+  TextAttributes first;
+  for (const std::string& program : programs)
+    for (const std::string& level : levels_of_this_machine())
+      for (const int threads : kThreads) {
+        const auto output = reference.empty() ? measured.reference : scratch / "variant.h5";
+        std::filesystem::remove(scratch / "variant.h5");
+        make(folder, baseline, program, level, threads, output);
+        const TextAttributes attributes = attributes_of(output);
+        const std::string compiler = attribute(attributes, "compiler");
+        for (const std::string& what : {compiler, level, std::to_string(threads) + " threads"})
+          note(measured.over, what);
+        if (reference.empty()) {
+          reference = judged_columns(output, baseline.command), first = attributes;
+          continue;
+        }
+        require_same_source(program, first, attributes);
+        add(compiler + ", " + level + ", " + std::to_string(threads) + " threads", reference,
+            judged_columns(output, baseline.command), measured.spread);
+      }
+  return measured;
+}
+
+std::vector<Column> keep_old_bits(const std::vector<Column>& old, std::vector<Column> now,
+                                  const Tolerances& tolerances) {
+  for (std::size_t i = 0; i < now.size() && i < old.size(); ++i) {
+    const Tolerance tolerance = tolerance_of(tolerances, now[i].name);
+    if (!compare_columns(old[i], now[i], tolerance).problem.empty()) continue;
+    const std::vector<double> deviation = deviations(old[i], now[i]);
+    std::vector<bool> inside;
+    for (const double d : deviation) inside.push_back(d <= tolerance.absolute);
+    std::visit(
+        [&](auto& values) {
+          using Kind = std::decay_t<decltype(values)>;
+          keep_rows(std::get<Kind>(old[i].values), deviation, inside, static_cast<std::size_t>(now[i].width),
+                    values);
+        },
+        now[i].values);
+  }
+  return now;
+}
+
+}  // namespace remote_touch
