@@ -29,23 +29,26 @@ double deviation(double a, double b) {
   return std::isfinite(difference) ? difference : kNotANumber;
 }
 
-template <class Number>
-double row_deviation(const Number* a, const Number* b, std::size_t width) {
-  if (width == 1) return std::abs(deviation(*a, *b));
+// Length of a row of differences or values, 0 only for zeros: where squares would over- or underflow, in
+// units of the largest.
+template <class Component>
+double length(std::size_t width, Component&& component) {
+  if (width == 1) return std::abs(component(0));
   double squares = 0;
-  for (std::size_t k = 0; k < width; ++k) {
-    const double d = deviation(a[k], b[k]);
-    squares += d * d;
-  }
-  return std::sqrt(squares);
+  for (std::size_t k = 0; k < width; ++k) squares += component(k) * component(k);
+  if ((squares > 1e-280 && squares < 1e280) || std::isnan(squares)) return std::sqrt(squares);
+  double largest = 0;
+  for (std::size_t k = 0; k < width; ++k) largest = std::max(largest, std::abs(component(k)));
+  if (largest == 0 || std::isinf(largest)) return largest;
+  squares = 0;
+  for (std::size_t k = 0; k < width; ++k) squares += (component(k) / largest) * (component(k) / largest);
+  return largest * std::sqrt(squares);
 }
 
 template <class Number>
-double length(const Number* row, std::size_t width) {
-  double squares = 0;
-  for (std::size_t k = 0; k < width; ++k)
-    squares += static_cast<double>(row[k]) * static_cast<double>(row[k]);
-  return std::sqrt(squares);
+double row_deviation(const Number* a, const Number* b, std::size_t width) {
+  if (std::equal(a, a + width, b)) return 0;
+  return length(width, [&](std::size_t k) { return deviation(a[k], b[k]); });
 }
 
 // Names, texts and fingerprints have none: they are equal or not.
@@ -54,26 +57,44 @@ bool has_deviations(const Column& column) {
          (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
 }
 
-// Hands (row, deviation, length of the baseline's row) of the rows that both have to visit.
+// Hands row and deviation of the rows that both have to visit.
 template <class Visit>
 void for_rows(const Column& baseline, const Column& candidate, Visit&& visit) {
   if (baseline.values.index() != candidate.values.index() || baseline.width != candidate.width) return;
   const std::size_t rows = std::min(baseline.length(), candidate.length());
   const auto width = static_cast<std::size_t>(baseline.width);
-  const auto by_equality = [&](const auto& a, const auto& b) {
-    for (std::size_t i = 0; i < rows; ++i)
-      visit(i, std::equal(&a[i * width], &a[i * width] + width, &b[i * width]) ? 0.0 : 1.0, 0.0);
-  };
   std::visit(
       [&](const auto& a) {
         using Numbers = std::decay_t<decltype(a)>;
         const auto& b = std::get<Numbers>(candidate.values);
-        if (!has_deviations(baseline)) return by_equality(a, b);
-        if constexpr (std::is_arithmetic_v<typename Numbers::value_type>)
-          for (std::size_t i = 0; i < rows; ++i)
-            visit(i, row_deviation(&a[i * width], &b[i * width], width), length(&a[i * width], width));
+        for (std::size_t i = 0; i < rows; ++i) {
+          const auto *x = &a[i * width], *y = &b[i * width];
+          if constexpr (std::is_arithmetic_v<typename Numbers::value_type>)
+            visit(i, has_deviations(baseline)      ? row_deviation(x, y, width)
+                     : std::equal(x, x + width, y) ? 0
+                                                   : 1);
+          else
+            visit(i, std::equal(x, x + width, y) ? 0 : 1);
+        }
       },
       baseline.values);
+}
+
+// Of a row of the baseline; 0 for what has no length.
+double length_of(const Column& column, std::size_t row) {
+  const auto* numbers = std::get_if<std::vector<double>>(&column.values);
+  const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values);
+  const auto width = static_cast<std::size_t>(column.width);
+  return length(width, [&](std::size_t k) -> double {
+    return numbers ? (*numbers)[row * width + k] : integers ? (*integers)[row * width + k] : 0;
+  });
+}
+
+// A relative tolerance allows nothing where the baseline has no finite length.
+double allowed(const Column& baseline, std::size_t row, const Tolerance& tolerance) {
+  if (tolerance.relative == 0) return tolerance.absolute;
+  const double size = length_of(baseline, row);
+  return tolerance.absolute + (std::isfinite(size) ? tolerance.relative * size : 0);
 }
 
 }  // namespace
@@ -81,15 +102,16 @@ void for_rows(const Column& baseline, const Column& candidate, Visit&& visit) {
 ColumnComparison compare_columns(const Column& baseline, const Column& candidate,
                                  const Tolerance& tolerance) {
   ColumnComparison result{baseline.name, baseline.units, tolerance, mismatch(baseline, candidate)};
+  result.baseline_rows = baseline.length(), result.candidate_rows = candidate.length();
   const bool measured = has_deviations(baseline);
   double squares = 0;
   std::size_t finite = 0;
-  for_rows(baseline, candidate, [&](std::size_t row, double deviation, double size) {
+  for_rows(baseline, candidate, [&](std::size_t row, double deviation) {
     ++result.rows;
     finite += std::isfinite(deviation) ? 1 : 0;
     if (deviation == 0) return;
     if (!result.first_difference) result.first_difference = row;
-    const bool inside = measured && deviation <= tolerance.absolute + tolerance.relative * size;
+    const bool inside = measured && deviation <= allowed(baseline, row, tolerance);
     if (std::isnan(deviation))
       ++result.not_numbers;
     else if (measured)
@@ -105,7 +127,7 @@ ColumnComparison compare_columns(const Column& baseline, const Column& candidate
 
 std::vector<double> deviations(const Column& baseline, const Column& candidate) {
   std::vector<double> all;
-  for_rows(baseline, candidate, [&](std::size_t, double deviation, double) { all.push_back(deviation); });
+  for_rows(baseline, candidate, [&](std::size_t, double deviation) { all.push_back(deviation); });
   return all;
 }
 

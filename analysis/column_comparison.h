@@ -19,7 +19,8 @@ namespace remote_touch {
 struct ColumnComparison {
   std::string name, units;
   Tolerance tolerance;
-  std::string problem = {};     // empty: none
+  std::string problem = {};  // empty: none
+  std::size_t baseline_rows = 0, candidate_rows = 0;
   std::size_t rows = 0;         // compared
   std::size_t outside = 0;      // of them
   std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity

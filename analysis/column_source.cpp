@@ -15,7 +15,6 @@ bool ColumnSource::has(const std::string& name) const {
 
 StoredTrace::StoredTrace(const std::filesystem::path& file) : hdf5_(file) {
   hdf5_.require_schema(kTraceSchema, "a trace of remote-touch run or replay");
-  hdf5_.require_seal();
   std::istringstream list(attribute(hdf5_.attributes(), "columns"));
   for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
 }
@@ -30,7 +29,6 @@ Column StoredTrace::rows(const std::string& name, std::size_t first, std::size_t
 
 StoredFigure::StoredFigure(const std::filesystem::path& file) : hdf5_(file) {
   hdf5_.require_schema(kFigureSchema, "a figure of remote-touch figure");
-  hdf5_.require_seal();
   const std::string tables = "/tables/";
   for (const std::string& path : hdf5_.datasets())
     if (path.starts_with(tables)) columns_.push_back(path.substr(tables.size()));

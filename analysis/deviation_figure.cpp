@@ -36,13 +36,14 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
   Figure figure{"deviation", "Deviation of two traces over time", "No column differs."};
   if (!baseline.has("time")) return figure;
   const Column time = baseline.column("time");
+  if (!std::holds_alternative<std::vector<double>>(time.values)) return figure;
   const auto& time_s = std::get<std::vector<double>>(time.values);
   for (const ColumnComparison& column : comparison.columns) {
     if (!column.first_difference || figure.panels.size() == kMostPanels) continue;
     const Column ours = baseline.column(column.name);
     figure.tables.push_back(pieces(column.name, time_s, deviations(ours, candidate.column(column.name))));
     Table first{column.name + "_first", "First row outside"};
-    if (column.first_outside) {
+    if (column.first_outside && *column.first_outside < time_s.size()) {
       const double size = deviations(baseline.rows(column.name, *column.first_outside, 1),
                                      candidate.rows(column.name, *column.first_outside, 1))
                               .front();
@@ -51,7 +52,7 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
     }
     Panel panel{column.name, "time / s", "log10 of the deviation / " + column.units};
     panel.curves.push_back({column.name, "time", "deviation", CurveStyle::line});
-    if (column.first_outside && std::isfinite(std::get<std::vector<double>>(first.columns[1].values)[0])) {
+    if (!first.columns.empty() && std::isfinite(std::get<std::vector<double>>(first.columns[1].values)[0])) {
       figure.tables.push_back(first);
       panel.curves.push_back({first.name, "time", "deviation", CurveStyle::dots, "first outside"});
     }

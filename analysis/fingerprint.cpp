@@ -1,6 +1,7 @@
 #include "analysis/fingerprint.h"
 
 #include <bit>
+#include <cmath>
 #include <type_traits>
 
 namespace remote_touch {
@@ -10,7 +11,8 @@ namespace {
 template <class Number>
 std::uint64_t word(Number value) {
   if constexpr (std::is_same_v<Number, double>)
-    return std::bit_cast<std::uint64_t>(value);
+    return std::isnan(value) ? 0x7ff8000000000000u
+                             : std::bit_cast<std::uint64_t>(value + 0.0);  // -0 + 0 is 0
   else
     return static_cast<std::uint64_t>(value);
 }

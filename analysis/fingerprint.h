@@ -25,7 +25,8 @@ inline constexpr const char* kRunningHash = "tick_hash";  // its column in a tra
 std::uint64_t fingerprint(const PointCloud& cloud);
 
 // The running hash of columns of equal length: row i holds hash_i = mixed(hash_(i-1), r_i), where r_i is the
-// chain over the words of row i of every column in turn (doubles as their bits, integers sign-extended) and
+// chain over the words of row i of every column in turn (doubles as their bits, -0 as 0 and
+// every NaN as 0x7ff8000000000000, so that equal rows have equal hashes; integers sign-extended) and
 // both chains begin with 0. So rows of two runs are equal up to the first tick at which anything differs, and
 // different from there on: the tick is found by bisection, with log2(ticks) numbers of each run. Texts are
 // not taken.

@@ -14,14 +14,13 @@ namespace remote_touch {
 // Every member throws InputError naming the file when it is damaged.
 class Hdf5Reader {
  public:
-  // Throws InputError when the file is missing, not HDF5, or its seal is broken. A file without a seal is
-  // taken: one of a sweep at work has none.
+  // Throws InputError when the file is missing, not HDF5, or its seal is broken; also when a finished result
+  // of this program has none.
   explicit Hdf5Reader(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }
-  // Throw InputError unless the file is of that schema (allowed: what makes one), or is sealed.
+  // Throws InputError unless the file is of that schema; allowed: what makes one.
   void require_schema(const std::string& schema, const std::string& allowed) const;
-  void require_seal() const;
   const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
   std::vector<std::string> datasets() const;                        // paths, sorted
   bool has(const std::string& dataset) const;
@@ -34,6 +33,7 @@ class Hdf5Reader {
   [[noreturn]] void damaged(const std::string& how) const;
 
  private:
+  void require_seal() const;
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;

@@ -1,14 +1,13 @@
 #include "analysis/sweep_comparison.h"
 
 #include <algorithm>
-#include <charconv>
+#include <bit>
 #include <cmath>
 
 namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostParts = 36;
 using Problems = std::vector<std::string>;
 using Runs = std::vector<std::size_t>;  // rising
 
@@ -90,29 +89,38 @@ Runs check_states(const SweepResult& a, const SweepResult& b, SweepComparison& r
 struct Pairs {
   const std::vector<double>&baseline, &candidate;
   Tolerance tolerance;
+  bool event = false;  // then a candidate's value that is neither 0 nor 1 has no partner
 
-  bool finite(std::size_t run) const { return std::isfinite(baseline[run]) && std::isfinite(candidate[run]); }
+  bool finite(std::size_t run) const {
+    const double value = candidate[run];
+    return std::isfinite(baseline[run]) && std::isfinite(value) && (!event || value == 0 || value == 1);
+  }
   bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }
 };
 
-bool is_event(const Pairs& pairs, const Runs& runs) {
-  bool any = false;
-  for (const std::size_t run : runs)
-    for (const double value : {pairs.baseline[run], pairs.candidate[run]}) {
-      if (!std::isfinite(value)) continue;
-      if (value != 0 && value != 1) return false;
-      any = true;
-    }
-  return any;
+bool is_0_or_1(double value) {
+  return value == 0 || value == 1 || !std::isfinite(value);
+}
+
+// What is 0 in all of the baseline may be an event that did not happen: then the candidate tells.
+bool is_event(const std::vector<double>& baseline, const std::vector<double>& candidate, const Runs& runs) {
+  bool any = false, happened = false, in_candidate = true;
+  for (const std::size_t run : runs) {
+    if (!is_0_or_1(baseline[run])) return false;
+    any |= std::isfinite(baseline[run]), happened |= baseline[run] == 1;
+    in_candidate &= is_0_or_1(candidate[run]);
+  }
+  return any && (happened || in_candidate);
 }
 
 MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
   MeasureComparison result;
-  result.tolerance = pairs.tolerance, result.event = is_event(pairs, runs);
+  result.tolerance = pairs.tolerance, result.event = pairs.event;
   result.compared = static_cast<std::int64_t>(runs.size());
   std::vector<double> deviations;
   for (const std::size_t run : runs) {
-    if (pairs.finite(run)) deviations.push_back(std::abs(pairs.candidate[run] - pairs.baseline[run]));
+    const double deviation = std::abs(pairs.candidate[run] - pairs.baseline[run]);
+    if (std::isfinite(deviation)) deviations.push_back(deviation);
     if (pairs.equal(run)) continue;
     if (result.outside++ == 0) result.first_outside = run;
   }
@@ -138,50 +146,6 @@ std::optional<FirstDifference> first_difference(const SweepResult& a, const Swee
   return first;
 }
 
-// --- regions ---
-
-std::string text_of(const Column& axis, std::size_t place) {
-  if (const auto* texts = std::get_if<std::vector<std::string>>(&axis.values)) return (*texts)[place];
-  const auto number_at = [place](const auto& values) {
-    if constexpr (std::is_same_v<decltype(values), const std::vector<std::string>&>)
-      return 0.0;
-    else
-      return static_cast<double>(values[place]);
-  };
-  const double number = std::visit(number_at, axis.values);
-  if (!axis.value_names.empty()) return axis.value_names[static_cast<std::size_t>(number)];
-  char text[32];  // 6 digits: 0.3 for 0.30000000000000004
-  return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
-}
-
-std::vector<Region> regions_of(const std::vector<Column>& axes) {
-  std::vector<Region> parts = {{"", {}}};
-  Region whole{"all runs", {}};
-  for (const Column& axis : axes) {
-    const std::size_t length = axis.length();
-    const bool named =
-        !axis.value_names.empty() || std::holds_alternative<std::vector<std::string>>(axis.values);
-    whole.places.emplace_back(0, length);
-    std::size_t count = length <= 4 ? length : length >= 6 && !named ? 3 : 1;
-    if (parts.size() * count > kMostParts) count = 1;
-    std::vector<Region> finer;
-    for (const Region& part : parts)
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t from = i * length / count, to = (i + 1) * length / count;
-        finer.push_back(part);
-        finer.back().places.emplace_back(from, to);
-        if (count == 1) continue;
-        std::string& label = finer.back().label;
-        label += (label.empty() ? "" : ", ") + axis.name + " " + text_of(axis, from);
-        if (to - from > 1) label += " to " + text_of(axis, to - 1);
-      }
-    parts = std::move(finer);
-  }
-  if (parts.size() == 1) parts.clear();
-  parts.insert(parts.begin(), whole);
-  return parts;
-}
-
 std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const std::vector<Region>& regions) {
   std::vector<Runs> split(regions.size());
   for (const std::size_t run : runs) {
@@ -194,10 +158,19 @@ std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const s
 
 // --- paired tests ---
 
-RegionComparison tested(const Pairs& pairs, const Runs& runs, bool event) {
+double standard_deviation(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  double sum = 0;
+  for (const double value : values) sum += value / static_cast<double>(values.size());
+  std::vector<double> centred;
+  for (const double value : values) centred.push_back(value - sum);
+  return root_mean_square(centred);
+}
+
+RegionComparison tested(const Pairs& pairs, const Runs& runs) {
   RegionComparison result;
   result.runs = static_cast<std::int64_t>(runs.size());
-  std::vector<double> all, outside;
+  std::vector<double> all, outside, before;
   for (const std::size_t run : runs) {
     const bool finite = pairs.finite(run), equal = pairs.equal(run);
     result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
@@ -205,30 +178,38 @@ RegionComparison tested(const Pairs& pairs, const Runs& runs, bool event) {
     const double b = pairs.baseline[run], c = pairs.candidate[run];
     ++result.pairs;
     result.up += !equal && c > b ? 1 : 0, result.down += !equal && c < b ? 1 : 0;
-    if (event) {
+    if (pairs.event) {
       result.baseline_events += b == 1 ? 1 : 0, result.candidate_events += c == 1 ? 1 : 0;
       continue;
     }
-    all.push_back(c - b);
+    all.push_back(c - b), before.push_back(b);
     if (!equal && std::isfinite(c - b)) outside.push_back(c - b);
   }
   result.difference = paired_difference_interval(result.up, result.down, result.pairs);
   result.sign_p = sign_test(result.up, result.down);
-  if (event) {
+  if (pairs.event) {
     result.baseline_share = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
     result.candidate_share = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
   } else {
     result.mean = mean_difference(all);
+    result.baseline_spread = standard_deviation(before);
     result.symmetry_p = symmetry_test(outside);
   }
   return result;
 }
 
-Judgement judgement(const RegionComparison& c, double margin, double alpha) {
+bool holds(const std::pair<double, double>& interval, double margin) {
+  return interval.first >= -margin && interval.second <= margin;
+}
+
+Judgement judgement(const RegionComparison& c, bool event, const PairedRule& rule) {
   if (c.runs > 0 && c.outside == 0) return Judgement::equal;
-  if (c.adjusted_p < alpha) return Judgement::changed;
-  const bool within = c.difference.first >= -margin && c.difference.second <= margin;
-  return within && c.pairs > 0 && c.unpaired == 0 ? Judgement::within_margin : Judgement::undecided;
+  if (c.adjusted_p < rule.alpha || c.unpaired > 0) return Judgement::changed;
+  if (c.pairs == 0) return Judgement::undecided;
+  const bool within = event ? holds(c.difference, rule.margin)
+                            : holds(c.difference, rule.shift_margin) &&
+                                  holds({c.mean.low, c.mean.high}, rule.shift_margin * c.baseline_spread);
+  return within ? Judgement::within_margin : Judgement::undecided;
 }
 
 // Both tests of a measure that is no event are members of the family that is adjusted together.
@@ -243,13 +224,19 @@ void judge(const PairedRule& rule, SweepComparison& result) {
   for (RegionComparison& c : result.by_region) {
     c.adjusted_p = *next++;
     if (!result.measures[c.measure].event) c.adjusted_p = std::min(c.adjusted_p, *next++);
-    const double margin = result.measures[c.measure].event ? rule.margin : rule.shift_margin;
-    c.judgement = judgement(c, margin, rule.alpha);
+    c.judgement = judgement(c, result.measures[c.measure].event, rule);
   }
 }
 
-PairedVerdict paired_verdict(const SweepComparison& result) {
-  if (!result.baseline_only.empty() || !result.candidate_only.empty()) return PairedVerdict::runs_missing;
+// Of a refined sweep the first round: what was run later follows from what came out.
+bool is_planned(const SweepResult& sweep, std::size_t run) {
+  return sweep.round.empty() || sweep.round[run] == 0;
+}
+
+PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison& result) {
+  for (const auto* only : {&result.baseline_only, &result.candidate_only})
+    for (const std::size_t run : *only)
+      if (is_planned(baseline, run)) return PairedVerdict::runs_missing;
   if (!result.first) return PairedVerdict::equal;
   bool undecided = false;
   for (const RegionComparison& c : result.by_region) {
@@ -260,12 +247,6 @@ PairedVerdict paired_verdict(const SweepComparison& result) {
 }
 
 }  // namespace
-
-bool Region::contains(const std::vector<std::size_t>& place) const {
-  for (std::size_t i = 0; i < places.size(); ++i)
-    if (place[i] < places[i].first || place[i] >= places[i].second) return false;
-  return true;
-}
 
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
                         const Tolerances& tolerances, const PairedRule& rule) {
@@ -278,23 +259,27 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
   const Runs both = check_states(baseline, candidate, result);
   if (!result.problems.empty()) return result;
   result.regions = regions_of(baseline.axes);
-  const std::vector<Runs> runs = by_region(baseline, both, result.regions);
+  Runs planned;
+  for (const std::size_t run : both)
+    if (is_planned(baseline, run)) planned.push_back(run);
+  const std::vector<Runs> runs = by_region(baseline, planned, result.regions);
   std::vector<Pairs> pairs;
   for (const Column& measure : baseline.measures) {
     pairs.push_back({baseline.measure(measure.name), candidate.measure(measure.name),
-                     tolerance_of(tolerances, measure.name)});
+                     tolerance_of(tolerances, measure.name),
+                     is_event(baseline.measure(measure.name), candidate.measure(measure.name), both)});
     result.measures.push_back(compare_values(pairs.back(), both));
     result.measures.back().name = measure.name, result.measures.back().units = measure.units;
   }
   for (std::size_t region = 0; region < runs.size(); ++region)
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      result.by_region.push_back(tested(pairs[i], runs[region], result.measures[i].event));
+      result.by_region.push_back(tested(pairs[i], runs[region]));
       result.by_region.back().region = region, result.by_region.back().measure = i;
     }
   result.first = first_difference(baseline, candidate, result);
   result.exact = result.first ? ExactVerdict::different : ExactVerdict::equal;
   judge(rule, result);
-  result.paired = paired_verdict(result);
+  result.paired = paired_verdict(baseline, result);
   return result;
 }
 

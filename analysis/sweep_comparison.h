@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "analysis/paired_test.h"
+#include "analysis/sweep_regions.h"
 #include "analysis/sweep_result.h"
 #include "analysis/tolerance.h"
 
@@ -22,7 +23,8 @@ namespace remote_touch {
 struct MeasureComparison {
   std::string name, units;
   Tolerance tolerance;
-  // All finite values in both are 0 or 1, and there is one: the share of 1 is a probability.
+  // All finite values of the baseline are 0 or 1 (and those of the candidate, where the baseline has no 1):
+  // the share of 1 is a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
   double largest_deviation = 0, rms_deviation = 0;  // |candidate - baseline| where both are finite
@@ -38,20 +40,10 @@ struct FirstDifference {
   double baseline = 0, candidate = 0;
 };
 
-// A box of cells: on each axis the values [first, second). Region 0 is the whole. Then come the parts, last
-// axis running first: numeric axes of 6 values or more in three parts of equal length, axes of 2 to 4 values
-// in their single values, all others whole. In the order of the axes, one whose split would make more than
-// 36 parts stays whole. No parts when no axis is split.
-struct Region {
-  std::string label;  // of the axes that are split: "noise_sigma_m 0 to 0.005, velocity_estimate true"
-  std::vector<std::pair<std::size_t, std::size_t>> places = {};
-  bool contains(const std::vector<std::size_t>& place) const;
-};
-
 enum class Judgement {
   equal,          // every pair is within the tolerance
-  within_margin,  // the interval of the difference lies within +-margin
-  changed,        // one direction prevails: adjusted p < alpha, whether or not the margin holds it
+  within_margin,  // the intervals of the differences lie within the margins
+  changed,        // one direction prevails: adjusted p < alpha, whatever the margins; or a number is none now
   undecided       // none of these
 };
 
@@ -62,15 +54,16 @@ struct RegionComparison {
   std::int64_t runs = 0;
   std::int64_t pairs = 0;     // finite in both
   std::int64_t outside = 0;   // the tolerance
-  std::int64_t unpaired = 0;  // of those: not finite in one or both
+  std::int64_t unpaired = 0;  // of those: not finite in one or both, or an event neither 0 nor 1
   std::int64_t up = 0, down = 0;
   std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
 
   // Events only: how often in either, with Wilson's intervals of the shares of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_share = {0, 1}, candidate_share = {0, 1};
-  // Other measures only: over all pairs, in the measure's unit. Not judged.
+  // Other measures only: over all pairs, in the measure's unit; and the baseline's standard deviation.
   MeanDifference mean = {};
+  double baseline_spread = 0;
 
   double sign_p = 1;
   double symmetry_p = 1;  // over the pairs outside; 1 for an event, where it tells nothing more
@@ -79,9 +72,11 @@ struct RegionComparison {
 };
 
 struct PairedRule {
-  double margin = 0.02;       // of a difference of shares of an event
-  double shift_margin = 0.1;  // of the share that got larger less the share that got smaller, else
-  double alpha = 0.01;        // probability of calling anything changed where nothing is
+  double margin = 0.02;  // of a difference of shares of an event
+  // Of other measures: of the share that got larger less the share that got smaller, and of the mean
+  // difference in units of the baseline's standard deviation.
+  double shift_margin = 0.1;
+  double alpha = 0.01;  // probability of calling anything changed where nothing is
 };
 
 enum class ExactVerdict {
@@ -93,19 +88,19 @@ enum class ExactVerdict {
 // In this order, the first that holds; equal and within_margin are a pass.
 //
 // A pass beside equal has to be shown, not only not refuted: over the whole, every measure that differs
-// anywhere needs an interval within +-margin. At the default margin that takes 190 runs with one flip, and
-// more with more; 4 runs of which one differs are undecided, 5396 with 30 flips evenly both ways are
-// known to +-0.2 %. It needs no correction for the number of measures, as all of them have to pass.
-// Parts have fewer runs, so an undecided part fails nothing, but a changed one does: a change that is
+// anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
+// with one flip, and more with more; 4 runs of which one differs are undecided, 5396 with 30 flips evenly
+// both ways are known to +-0.2 %. It needs no correction for the number of measures, as all of them have to
+// pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: a change that is
 // lost in the flips of the whole is found where it is. What a pass does not exclude in a part is what the
-// part's interval says.
-// For measures that are no events the same is asked of the share of runs that got larger less the share
-// that got smaller, with a margin of its own: where every run differs, both ways alike, it takes about 400
-// runs. A tolerance takes away what does not matter. A systematic change, however small, is changed.
-// A number against none is never a pass.
+// part's interval says. For measures that are no events: the share of runs that got larger less the share
+// that got smaller (about 400 runs where all differ, both ways alike), and the mean difference in units of
+// how far the baseline's runs lie apart, so that few runs that got much worse are no pass. A tolerance takes
+// away what does not matter. A systematic change, however small, is changed. A number against none is
+// changed. Of a refined sweep the first round is judged: which runs follow depends on what came out.
 enum class PairedVerdict {
   not_comparable,
-  runs_missing,   // some runs are done in one only, which no test excuses
+  runs_missing,   // some runs of the first round are done in one only, which no test excuses
   equal,          // as ExactVerdict
   changed,        // some measure in some region
   undecided,      // some measure over the whole

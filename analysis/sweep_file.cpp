@@ -184,7 +184,6 @@ class SweepReader {
   std::vector<Value> values(const std::string& name, std::size_t length) const {
     return std::get<std::vector<Value>>(column<Value>(name, length).values);
   }
-  void require_seal() const { hdf5_.require_seal(); }
   [[noreturn]] void damaged(const std::string& how) const { hdf5_.damaged(how); }
 
  private:
@@ -213,7 +212,6 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   SweepResult& result = stored.result;
   stored.attributes = reader.provenance();
   stored.in_progress = reader.has("checksum");
-  if (!stored.in_progress) reader.require_seal();
   for (const std::string& name : split(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
   const std::size_t runs = result.run_count();

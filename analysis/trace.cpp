@@ -73,7 +73,12 @@ std::vector<Column> Trace::columns() const {
        status,
        1,
        {"ok", "stale_frame_dropped", "degenerate_normal", "no_frame", "device_not_finite"}},
-      {"frame_hash", "1", "fingerprint of the points of the newest frame", frame_hash, 1, {}},
+      {"frame_hash",
+       "1",
+       "fingerprint of the newest frame that was delivered: its points and time of capture",
+       frame_hash,
+       1,
+       {}},
   };
   list.push_back(
       {kRunningHash, "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});

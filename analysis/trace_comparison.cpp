@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 bool is_input(const std::string& column) {
-  for (const char* input : {"time", "hip_position", "hip_orientation", "frame_index", "frame_hash"})
+  for (const char* input : {"time", "hip_position", "hip_orientation", "frame_hash"})
     if (column == input) return true;
   return false;
 }
@@ -37,6 +37,8 @@ class PartingPlace {
     const std::vector<std::string> inputs = differing_inputs();
     if (!inputs.empty())
       return {Cause::input, joined(inputs) + " differs; the renderer was given something else"};
+    if (differs("frame_index"))
+      return {Cause::frame_update, "both were given the same frames, but one did not take the newest"};
     if (new_frame(baseline_) || new_frame(candidate_))
       return {Cause::frame_update, "frame " + std::to_string(frame(baseline_, tick_)) +
                                        " came in with this tick, the same in both"};
@@ -116,6 +118,14 @@ double deviation_at(const ColumnSource& baseline, const ColumnSource& candidate,
   return deviations(baseline.rows(column, tick, 1), candidate.rows(column, tick, 1)).at(0);
 }
 
+// 0 where the trace does not tell it.
+double time_of(const ColumnSource& trace, std::size_t tick) {
+  if (!trace.has("time")) return 0;
+  const Column time = trace.column("time");
+  const auto* time_s = std::get_if<std::vector<double>>(&time.values);
+  return time_s && tick < time_s->size() ? (*time_s)[tick] : 0;
+}
+
 std::optional<Divergence> find_divergence(const ColumnSource& baseline, const ColumnSource& candidate,
                                           const std::vector<ColumnComparison>& columns,
                                           const std::vector<std::string>& configuration) {
@@ -133,8 +143,7 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
     found.deviation = deviation_at(baseline, candidate, column.name, found.tick);
     break;
   }
-  if (baseline.has("time"))
-    found.time_s = std::get<std::vector<double>>(baseline.rows("time", found.tick, 1).values).at(0);
+  found.time_s = time_of(baseline, found.tick);
   const PartingPlace place(baseline, candidate, columns, found.parted);
   std::tie(found.situation, found.seen) = place.situation();
   found.cause = configuration.empty() ? found.situation : Cause::configuration;

@@ -14,8 +14,8 @@ namespace remote_touch {
 // first tick at which any value differs; what in the program brought it about is for the reader to find.
 enum class Cause {
   configuration,  // the experiments are not the same
-  input,         // what the renderer was given: time, HIP, frames (their order or their points), or the truth
-  frame_update,  // inputs are the same, and a frame came in with this tick
+  input,          // what the renderer was given: time, HIP, a frame (points, time of capture); or the truth
+  frame_update,   // inputs are the same, and a frame came in with this tick, or one did not take it
   state_transition,  // none came, and the proxy's state differs, or changed with this tick
   drift              // none of these: within a steady state
 };
@@ -24,7 +24,7 @@ const char* name_of(Cause cause);
 // The first divergent tick.
 struct Divergence {
   std::size_t tick = 0;                     // the first with a value outside its tolerance
-  double time_s = 0;                        // of the baseline
+  double time_s = 0;                        // of the baseline; 0 where it has none
   std::string quantity;                     // the column, the first in the trace's order
   double deviation = 0;                     // there, in its units; NaN against a number: NaN
   std::size_t parted = 0;                   // the first tick with any difference, inside or not; at most tick

@@ -46,6 +46,12 @@ void flush_folder(const std::filesystem::path& target) {
 
 }  // namespace
 
+void require_other(const std::filesystem::path& target, const std::filesystem::path& input) {
+  std::error_code absent;
+  if (std::filesystem::equivalent(target, input, absent))
+    throw InputError(target.string(), "is the input itself; allowed another file");
+}
+
 std::filesystem::path linked(const std::filesystem::path& target) {
   std::error_code unreachable;
   if (!std::filesystem::is_symlink(target, unreachable)) return target;

@@ -15,6 +15,9 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
 // the file.
 void require_writable(const std::filesystem::path& target);
 
+// Throws InputError, naming the target, when it is the file that is read.
+void require_other(const std::filesystem::path& target, const std::filesystem::path& input);
+
 // What a name that is a link leads to, if that is there; any other name as it is.
 std::filesystem::path linked(const std::filesystem::path& target);
 

@@ -15,6 +15,7 @@ TextAttributes provenance(const std::string& config, const std::string& command,
                          {"version", REMOTE_TOUCH_VERSION},
                          {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
                          {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
+                         {"sources", REMOTE_TOUCH_SOURCES},
                          {"compiler", REMOTE_TOUCH_COMPILER},
                          {"flags", REMOTE_TOUCH_FLAGS}};
   if (!isa.empty()) list.emplace_back("isa", isa);

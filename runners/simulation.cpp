@@ -1,5 +1,6 @@
 #include "runners/simulation.h"
 
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -21,7 +22,8 @@ class FrameStream {
            scenario_.captured_s(next_) + latency_s_ <= time_s + kSameTime_s) {
       const double captured = scenario_.captured_s(next_);
       const auto points = scenario_.points(next_);
-      if (hash_frames_) hash_ = hash_of(*points);
+      // Points that come with another time stamp are another frame.
+      if (hash_frames_) hash_ = mixed(hash_of(*points), std::bit_cast<std::uint64_t>(captured));
       renderer.on_frame({next_, captured, captured + latency_s_, points});
       ++next_;
     }

@@ -24,7 +24,7 @@ void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOpti
 // Adds the next round of refinement: its runs become pending. False when nothing is left to be asked.
 bool add_round(const Sweep& sweep, SweepResult& result);
 
-// All of it in memory: every round. Throws InputError when a run failed.
+// All of it in memory: every round. Runs that failed are in the result, with their errors.
 SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options);
 
 }  // namespace remote_touch

@@ -78,6 +78,23 @@ TEST(CompareColumns, AVectorsDeviationIsALength) {
   EXPECT_FALSE(compare_columns(numbers({3, 0, 4}, 3), numbers({3, 0, 4.6}, 3), {0, 0.1}).is_same());
 }
 
+// Their squares are 0.
+TEST(CompareColumns, TheSmallestVectorsAreToldApart) {
+  const auto c = compare_columns(numbers({0, 1e-170, 0}, 3), numbers({0, 2e-170, 0}, 3), {});
+  EXPECT_EQ(c.outside, 1u);
+  EXPECT_DOUBLE_EQ(c.largest, 1e-170);
+  EXPECT_EQ(compare_columns(numbers({0, 5e-324, 0}, 3), numbers({0, 0, 0}, 3), {}).outside, 1u);
+}
+
+// Nor do the largest let anything pass.
+TEST(CompareColumns, ARelativeToleranceNeedsAFiniteLength) {
+  EXPECT_FALSE(
+      compare_columns(numbers({kInfinity, 0, 0}, 3), numbers({kInfinity, 5, 0}, 3), {0, 1e-12}).is_same());
+  EXPECT_FALSE(compare_columns(numbers({1e200}), numbers({5e200}), {0, 1e-9}).is_same());
+  EXPECT_TRUE(
+      compare_columns(numbers({1e200, 0, 0}, 3), numbers({1.0001e200, 0, 0}, 3), {0, 1e-3}).is_same());
+}
+
 TEST(CompareColumns, NoNumberIsNeverAPassAgainstANumber) {
   for (const double none : {kNaN, kInfinity}) {
     const auto c = compare_columns(numbers({none, 1}), numbers({0, 1}), {1e9, 1e9});

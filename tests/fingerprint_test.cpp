@@ -42,6 +42,15 @@ TEST(Fingerprint, RunningHashIsWhatTheHeaderSays) {
   EXPECT_EQ(mixed(0, 1), 0x9e3779b9e17d05acu);  // as any other program computes it
 }
 
+TEST(Fingerprint, EqualNumbersHaveEqualHashes) {
+  const auto of = [](double value) {
+    return running_hash({{"a", "1", "", std::vector<double>{value}, 1, {}}});
+  };
+  EXPECT_EQ(of(0.0), of(-0.0));
+  EXPECT_EQ(of(std::nan("1")), of(-std::nan("2")));
+  EXPECT_NE(of(0.0), of(5e-324));
+}
+
 TEST(Fingerprint, RunningHashDiffersFromTheFirstDifferenceOn) {
   const Trace trace = simulate(Experiment::load("fig4.12"));
   std::vector<Column> columns = trace.columns();

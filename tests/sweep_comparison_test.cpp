@@ -124,9 +124,44 @@ TEST(CompareSweeps, ANumberAgainstNoneIsNeverAPass) {
       EXPECT_EQ(c.measures[1].largest_deviation, 0);
       EXPECT_EQ(c.at(0, 1).unpaired, 1);
       EXPECT_EQ(c.at(0, 1).pairs, 5395);
-      EXPECT_EQ(whole(c, 1), Judgement::undecided);
-      EXPECT_EQ(c.paired, PairedVerdict::undecided);
+      EXPECT_EQ(whole(c, 1), Judgement::changed);
+      EXPECT_EQ(c.paired, PairedVerdict::changed);
     }
+}
+
+TEST(CompareSweeps, AnEventThatIsNeitherIsNoPass) {
+  SweepResult a = map();
+  event(a)[6] = 1;
+  SweepResult b = a;
+  event(b)[7] = 0.5;
+  const SweepComparison c = compare(a, b);
+  EXPECT_TRUE(c.measures[0].event);
+  EXPECT_EQ(c.at(0, 0).unpaired, 1);
+  EXPECT_EQ(c.paired, PairedVerdict::changed);
+}
+
+// As likely up as down, but far beyond what the runs lie apart: not shown to be within the margin.
+TEST(CompareSweeps, LargeChangesBothWaysAreNoPass) {
+  SweepResult a = map(), b = a;
+  for (std::size_t run = 0; run < depth(b).size(); ++run) depth(b)[run] += run % 2 == 0 ? 1e6 : -1e6;
+  EXPECT_EQ(compare(a, b).paired, PairedVerdict::undecided);
+  SweepResult few = a;
+  for (std::size_t run = 0; run < 4; ++run) depth(few)[run] += 1e6;
+  EXPECT_EQ(compare(a, few).paired, PairedVerdict::undecided);
+}
+
+// Which runs a refinement adds follows from what came out: only the first round has to be there.
+TEST(CompareSweeps, RefinedSweepsAreJudgedByTheirFirstRound) {
+  SweepResult a = map(), b = a;
+  a.round.assign(a.run_count(), 0), a.round[3] = a.round[4] = 1;
+  b.round = a.round;
+  b.state[3] = RunState::not_sampled, b.round[3] = -1;
+  flip(a, b, 4, true);
+  EXPECT_EQ(compare(a, b).exact, ExactVerdict::different);
+  EXPECT_EQ(compare(a, b).at(0, 0).runs, static_cast<std::int64_t>(a.run_count()) - 2);
+  EXPECT_EQ(compare(a, b).paired, PairedVerdict::within_margin);
+  b.state[5] = RunState::failed;
+  EXPECT_EQ(compare(a, b).paired, PairedVerdict::runs_missing);
 }
 
 TEST(CompareSweeps, ARunDoneInOneOnlyIsNamedAndNoPass) {
@@ -313,7 +348,10 @@ TEST(PairedVerdictOf, PassesFromTheRunsOnThatItSays) {
   EXPECT_EQ(with_one_flip(190), PairedVerdict::within_margin);
   const auto with_jitter = [](std::size_t runs) {
     SweepResult a = row(runs), b = a;
-    for (std::size_t run = 0; run < runs; ++run) depth(b)[run] = run % 2 == 0 ? 1e-12 : -1e-12;
+    for (std::size_t run = 0; run < runs; ++run) {
+      depth(a)[run] = 0.25 * static_cast<double>(run % 3);
+      depth(b)[run] = depth(a)[run] + (run % 2 == 0 ? 1e-12 : -1e-12);
+    }
     EXPECT_EQ(compare(a, b, {{"*", {1e-9, 0}}}).paired, PairedVerdict::equal);
     return compare(a, b).paired;
   };
@@ -372,9 +410,12 @@ TEST(PairedVerdictOf, FindsAChangeOfOnePart) {
 // Depths differ in the last bits everywhere, both ways; in 60 runs they get a lot worse.
 TEST(PairedVerdictOf, FindsLargeDifferencesAmongSmallOnes) {
   SweepResult a = sweep({numbers("x", 100, 1)}, 200), b = a;
-  for (std::size_t run = 0; run < 20000; ++run) depth(b)[run] = run % 2 == 0 ? 1e-15 : -1e-15;
+  for (std::size_t run = 0; run < 20000; ++run) {
+    depth(a)[run] = 0.01 * static_cast<double>(run % 3);
+    depth(b)[run] = depth(a)[run] + (run % 2 == 0 ? 1e-15 : -1e-15);
+  }
   EXPECT_EQ(compare(a, b).paired, PairedVerdict::within_margin);
-  for (std::size_t i = 0; i < 60; ++i) depth(b)[i * 333] = 0.01;
+  for (std::size_t i = 0; i < 60; ++i) depth(b)[i * 333] += 0.01;
   const SweepComparison c = compare(a, b);
   EXPECT_GT(c.at(0, 1).sign_p, 0.5);
   EXPECT_EQ(whole(c, 1), Judgement::changed);
@@ -398,7 +439,8 @@ TEST(PairedVerdictOf, IsRarelyAFalseAlarm) {
     for (std::size_t run = 0; run < 5396; ++run) {
       const std::uint64_t drawn = random() % 40;
       if (drawn < 2) flip(a, b, run, drawn == 0);
-      depth(b)[run] = drawn == 2 ? 1 : drawn == 3 ? -1 : 0;
+      depth(a)[run] = static_cast<double>(run % 5);
+      depth(b)[run] = depth(a)[run] + (drawn == 2 ? 1 : drawn == 3 ? -1 : 0);
     }
     const PairedVerdict verdict = compare(a, b, {}, {0.02, 0.1, 0.05}).paired;
     alarms += verdict == PairedVerdict::changed ? 1 : 0;

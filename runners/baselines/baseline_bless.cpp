@@ -1,8 +1,12 @@
 #include "runners/baselines/baseline_bless.h"
 
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "analysis/column_comparison.h"
 #include "analysis/column_source.h"
@@ -10,9 +14,12 @@
 #include "analysis/result_file.h"
 #include "analysis/sha256.h"
 #include "analysis/sweep_file.h"
+#include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/baselines/program_run.h"
 #include "runners/baselines/spread.h"
+#include "runners/json_parameters.h"
+#include "runners/sweep.h"
 
 namespace remote_touch {
 
@@ -21,9 +28,15 @@ namespace {
 // A folder for the runs, gone afterwards.
 class Scratch {
  public:
-  Scratch()
-      : path_(std::filesystem::temp_directory_path() / ("remote-touch-bless-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
+  Scratch() {
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
+    if (failure) throw InputError("TMPDIR", failure.message() + "; allowed a writable folder");
+    std::string name = folder / "remote-touch-bless-XXXXXX";
+    if (!::mkdtemp(name.data()))
+      throw InputError(
+          name, std::string("cannot be made (") + std::strerror(errno) + "); allowed a writable folder");
+    path_ = name;
   }
   ~Scratch() {
     std::error_code ignored;
@@ -37,6 +50,15 @@ class Scratch {
   std::filesystem::path path_;
 };
 
+// JSON holds no other text.
+void require_utf8(const std::string& option, const std::string& text) {
+  try {
+    static_cast<void>(Json(text).dump());
+  } catch (const Json::exception&) {
+    throw InputError(option, "allowed UTF-8 text");
+  }
+}
+
 void require_sense(const Blessing& blessing) {
   const bool blank = std::all_of(blessing.reason.begin(), blessing.reason.end(),
                                  [](unsigned char c) { return std::isspace(c) != 0; });
@@ -46,6 +68,13 @@ void require_sense(const Blessing& blessing) {
         "--also",
         "missing; allowed a build of the same source by another compiler (scripts/bless makes one), "
         "or --one-compiler");
+  if (!blessing.run.empty() && !blessing.sweep.empty())
+    throw InputError("--run, --sweep", "both are given; allowed one of them");
+  require_utf8("--reason", blessing.reason);
+  require_utf8("--run", blessing.run);
+  require_utf8("--sweep", blessing.sweep);
+  if (blessing.name.empty())
+    throw InputError("baseline", "without a name; allowed letters, digits, . - and _");
   for (const char c : blessing.name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_')
       throw InputError("baseline " + blessing.name, "allowed letters, digits, . - and _");
@@ -54,6 +83,18 @@ void require_sense(const Blessing& blessing) {
 Manifest manifest_or_new(const std::filesystem::path& folder) {
   std::error_code unreachable;
   return std::filesystem::exists(folder / "manifest.json", unreachable) ? read_manifest(folder) : Manifest{};
+}
+
+// Before anything is run.
+void require_places(const std::filesystem::path& folder) {
+  std::error_code unreachable;
+  if (std::filesystem::exists(folder, unreachable)) require_writable(folder / "manifest.json");
+}
+void require_runnable(const std::filesystem::path& folder, const Baseline& baseline) {
+  if (baseline.command == "sweep")
+    Sweep::load(subject_of(folder, baseline), baseline.overrides);
+  else
+    Experiment::load(subject_of(folder, baseline), baseline.overrides);
 }
 
 // What is to be run: as stored, or as now asked for.
@@ -121,6 +162,18 @@ std::vector<Column> old_columns(const std::filesystem::path& file, const Baselin
   }
 }
 
+bool same_definition(const Baseline& a, const Baseline& b) {
+  return a.command == b.command && a.subject == b.subject && a.overrides == b.overrides;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw InputError(folder.string(),
+                     "cannot be made (" + failure.message() + "); allowed a writable folder");
+}
+
 void enter(const Baseline& baseline, Manifest& manifest) {
   const auto place = std::find_if(manifest.baselines.begin(), manifest.baselines.end(),
                                   [&](const Baseline& one) { return one.name == baseline.name; });
@@ -135,7 +188,11 @@ void enter(const Baseline& baseline, Manifest& manifest) {
 std::string spread_text(const Tolerances& spread) {
   if (spread.empty()) return "exact";
   std::string text = "spread";
-  for (const auto& [name, tolerance] : spread) text += " " + name + " " + std::to_string(tolerance.absolute);
+  for (const auto& [name, tolerance] : spread) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", tolerance.absolute);
+    text += " " + name + " " + number;
+  }
   return text;
 }
 
@@ -145,27 +202,35 @@ std::string bless(const Blessing& blessing) {
   require_sense(blessing);
   Manifest manifest = manifest_or_new(blessing.folder);
   Baseline baseline = definition(blessing, manifest);
+  require_places(blessing.folder);
+  require_runnable(blessing.folder, baseline);
   std::vector<std::string> programs = {this_program()};
   programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
   const Scratch scratch;
-  const Measured measured = measure_spread(blessing.folder, baseline, programs, scratch.path());
+  const Measured measured =
+      measure_spread(blessing.folder, baseline, programs, scratch.path(), blessing.stop);
+  if (measured.compilers.size() < 2 && !blessing.one_compiler)
+    throw InputError("--also", "by the same compiler, " + *measured.compilers.begin() +
+                                   "; allowed a build by another compiler, or --one-compiler");
 
   const std::filesystem::path file = file_of(blessing.folder, baseline);
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);
   std::vector<Column> now = judged_columns(measured.reference, baseline.command);
   if (!old.empty()) now = keep_old_bits(old, std::move(now), baseline.tolerances);
   const bool is_new = old.empty() || !same_values(old, now);
-  if (!is_new && measured.spread == baseline.tolerances && sha256_of_file(file) == baseline.sha256)
+  const Baseline* stored = manifest.find(blessing.name);
+  if (!is_new && stored && same_definition(*stored, baseline) && measured.spread == baseline.tolerances &&
+      sha256_of_file(file) == baseline.sha256)
     return baseline.name + ": nothing to store, every number is within the spread of the stored one";
   if (is_new) {
-    std::filesystem::create_directories(blessing.folder);
+    make_folder(blessing.folder);
     store(file, baseline.command, measured.reference, std::move(now));
   }
   baseline.sha256 = sha256_of_file(file), baseline.reason = blessing.reason;
   baseline.builds = measured.over, baseline.tolerances = measured.spread;
   enter(baseline, manifest);
   write_manifest(blessing.folder, manifest);
-  return baseline.name + ": " + (is_new ? "stored" : "the spread is new, the numbers are kept") + ", " +
+  return baseline.name + ": " + (is_new ? "stored" : "the manifest is new, the numbers are kept") + ", " +
          spread_text(baseline.tolerances);
 }
 

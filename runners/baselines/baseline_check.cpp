@@ -6,6 +6,7 @@
 #include "analysis/sha256.h"
 #include "analysis/sweep_file.h"
 #include "core/input_error.h"
+#include "runners/input_hashes.h"
 #include "runners/json_parameters.h"
 #include "runners/provenance.h"
 #include "runners/sweep_run.h"
@@ -44,10 +45,10 @@ ResultComparison compare_run(const std::filesystem::path& folder, const Baseline
   const std::string config = present_form(attribute(stored.attributes(), "config"), [](const auto& text) {
     return Experiment::from_json(text, "config").to_json();
   });
-  return compare_trace(
-      stored, with_config(stored.attributes(), config), made,
-      provenance(experiment.to_json(), attribute(stored.attributes(), "command"), kernels.isa),
-      {baseline.tolerances});
+  return compare_trace(stored, with_config(stored.attributes(), config), made,
+                       provenance(experiment.to_json(), attribute(stored.attributes(), "command"),
+                                  kernels.isa, input_hashes(experiment.inputs())),
+                       {baseline.tolerances});
 }
 
 ResultComparison compare_sweep_again(const std::filesystem::path& folder, const Baseline& baseline,
@@ -58,9 +59,10 @@ ResultComparison compare_sweep_again(const std::filesystem::path& folder, const 
   const std::string config = present_form(attribute(stored.attributes, "config"), [](const auto& text) {
     return Sweep::from_json(text, "config").to_json();
   });
-  return compare_sweep(stored.result, with_config(stored.attributes, config), made,
-                       provenance(sweep.to_json(), attribute(stored.attributes, "command"), kernels.isa),
-                       {baseline.tolerances});
+  return compare_sweep(
+      stored.result, with_config(stored.attributes, config), made,
+      provenance(sweep.to_json(), attribute(stored.attributes, "command"), "", input_hashes(sweep.inputs())),
+      {baseline.tolerances});
 }
 
 BaselineCheck concluded(const Baseline& baseline, ResultComparison comparison) {

@@ -17,12 +17,19 @@ std::filesystem::path manifest_file(const std::filesystem::path& folder) {
   return folder / "manifest.json";
 }
 
-Baseline baseline_of(const Json& json) {
+Baseline baseline_of(const Json& json, const std::filesystem::path& file) {
   Baseline baseline{json.at("name"), json.at("command"), json.at("subject")};
+  if (baseline.command != "run" && baseline.command != "sweep")
+    throw InputError(file.string(), "baseline " + baseline.name + ": command; allowed run, sweep");
   baseline.overrides = json.at("set").get<std::vector<std::string>>();
   baseline.sha256 = json.at("sha256"), baseline.reason = json.at("reason");
   baseline.builds = json.at("measured_over").get<std::vector<std::string>>();
-  for (const auto& [name, spread] : json.at("spread").items()) baseline.tolerances[name].absolute = spread;
+  for (const auto& [name, spread] : json.at("spread").get_ref<const Json::object_t&>()) {
+    if (!(spread.get<double>() >= 0))
+      throw InputError(file.string(),
+                       "baseline " + baseline.name + ": spread of " + name + "; allowed 0 or more");
+    baseline.tolerances[name].absolute = spread;
+  }
   return baseline;
 }
 
@@ -45,7 +52,8 @@ const Baseline* Manifest::find(const std::string& name) const {
 Manifest read_manifest(const std::filesystem::path& folder) {
   const std::filesystem::path file = manifest_file(folder);
   std::ifstream in(file, std::ios::binary);
-  if (!in)
+  std::error_code unreachable;
+  if (!in || std::filesystem::is_directory(file, unreachable))
     throw InputError(
         file.string(),
         "cannot be read; allowed a folder of baselines (--folder), or the project's root as working folder");
@@ -53,11 +61,12 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   const Json json = parse_json(text, file.string());
   try {
     Manifest manifest{json.at("complete")};
-    for (const Json& one : json.at("baselines")) manifest.baselines.push_back(baseline_of(one));
+    for (const Json& one : json.at("baselines")) manifest.baselines.push_back(baseline_of(one, file));
     return manifest;
   } catch (const Json::exception& error) {
-    throw InputError(file.string(),
-                     std::string(error.what()) + "; allowed what remote-touch baseline bless writes");
+    std::string what = error.what();  // "[json.exception...] key 'spread' not found"
+    if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+    throw InputError(file.string(), what + "; allowed what remote-touch baseline bless writes");
   }
 }
 

@@ -1,6 +1,8 @@
 // Running this program, or another build of it, as a user would.
 #pragma once
 
+#include <atomic>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -9,9 +11,11 @@ namespace remote_touch {
 
 std::string this_program();  // the path of the running program
 
-// Runs to its end, without output; environment: set in addition. Throws InputError, naming the program, when
-// it cannot be started, or says anything but 0.
+// Runs to its end, without output; environment: set in addition; errors: a file for what it writes to stderr.
+// Throws InputError, naming the program, when it cannot be started, or says anything but 0; the last line of
+// its errors tells why. When stop is set, ends it and throws Interrupted.
 void run_program(const std::string& program, const std::vector<std::string>& arguments,
-                 const std::map<std::string, std::string>& environment);
+                 const std::map<std::string, std::string>& environment, const std::filesystem::path& errors,
+                 const std::atomic<bool>* stop);
 
 }  // namespace remote_touch

@@ -17,22 +17,33 @@ namespace {
 
 constexpr int kThreads[] = {1, 2, 8};
 
-TextAttributes attributes_of(const std::filesystem::path& file) {
-  return Hdf5Reader(file).attributes();
-}
-
 void make(const std::filesystem::path& folder, const Baseline& baseline, const std::string& program,
-          const std::string& level, int threads, const std::filesystem::path& output) {
+          const std::string& level, int threads, const std::filesystem::path& output,
+          const std::atomic<bool>* stop) {
   std::vector<std::string> words = {baseline.command, subject_of(folder, baseline)};
   for (const std::string& assignment : baseline.overrides) words.insert(words.end(), {"--set", assignment});
   words.insert(words.end(), {"--quiet", "-o", output.string()});
   if (baseline.command == "sweep") words.insert(words.end(), {"--threads", std::to_string(threads)});
-  run_program(program, words, {{"REMOTE_TOUCH_ISA", level}, {"OMP_NUM_THREADS", std::to_string(threads)}});
+  run_program(program, words, {{"REMOTE_TOUCH_ISA", level}, {"OMP_NUM_THREADS", std::to_string(threads)}},
+              output.parent_path() / "errors", stop);
+}
+
+struct Made {
+  TextAttributes attributes;
+  std::vector<Column> columns;
+};
+Made read_made(const std::string& program, const std::string& command, const std::filesystem::path& output) {
+  try {
+    return {Hdf5Reader(output).attributes(), judged_columns(output, command)};
+  } catch (const InputError& error) {
+    throw InputError(program,
+                     "wrote no result (" + std::string(error.what()) + "); allowed a build of remote-touch");
+  }
 }
 
 void require_same_source(const std::string& program, const TextAttributes& reference,
                          const TextAttributes& other) {
-  for (const char* name : {"version", "git_commit", "config"})
+  for (const char* name : {"version", "git_commit", "sources", "config"})
     if (attribute(reference, name) != attribute(other, name))
       throw InputError(program, std::string("is of another ") + name + ", " + attribute(other, name) +
                                     "; allowed a build of the same source as this program");
@@ -62,11 +73,18 @@ std::vector<std::string> levels_of_this_machine() {
   return levels;
 }
 
+// Names and fingerprints have none, as compare_columns sees it.
+bool has_tolerance(const Column& column) {
+  return std::holds_alternative<std::vector<double>>(column.values) ||
+         (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
+}
+
+// Where the deviation is at most what is allowed; NaN is not.
 template <class Values>
-void keep_rows(const Values& old, const std::vector<double>& deviation, const std::vector<bool>& inside,
-               std::size_t width, Values& now) {
+void keep_rows(const Values& old, const std::vector<double>& deviation, double allowed, std::size_t width,
+               Values& now) {
   for (std::size_t row = 0; row < deviation.size(); ++row)
-    if (inside[row])
+    if (deviation[row] <= allowed)
       std::copy_n(old.begin() + static_cast<std::ptrdiff_t>(row * width), width,
                   now.begin() + static_cast<std::ptrdiff_t>(row * width));
 }
@@ -83,7 +101,8 @@ std::vector<Column> judged_columns(const std::filesystem::path& file, const std:
 }
 
 Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
-                        const std::vector<std::string>& programs, const std::filesystem::path& scratch) {
+                        const std::vector<std::string>& programs, const std::filesystem::path& scratch,
+                        const std::atomic<bool>* stop) {
   Measured measured{scratch / "reference.h5"};
   std::vector<Column> reference;
   TextAttributes first;
@@ -92,37 +111,38 @@ Measured measure_spread(const std::filesystem::path& folder, const Baseline& bas
       for (const int threads : kThreads) {
         const auto output = reference.empty() ? measured.reference : scratch / "variant.h5";
         std::filesystem::remove(scratch / "variant.h5");
-        make(folder, baseline, program, level, threads, output);
-        const TextAttributes attributes = attributes_of(output);
-        const std::string compiler = attribute(attributes, "compiler");
+        make(folder, baseline, program, level, threads, output, stop);
+        const Made made = read_made(program, baseline.command, output);
+        const std::string compiler = attribute(made.attributes, "compiler");
         for (const std::string& what : {compiler, level, std::to_string(threads) + " threads"})
           note(measured.over, what);
+        measured.compilers.insert(compiler);
         if (reference.empty()) {
-          reference = judged_columns(output, baseline.command), first = attributes;
+          reference = made.columns, first = made.attributes;
           continue;
         }
-        require_same_source(program, first, attributes);
-        add(compiler + ", " + level + ", " + std::to_string(threads) + " threads", reference,
-            judged_columns(output, baseline.command), measured.spread);
+        require_same_source(program, first, made.attributes);
+        add(compiler + ", " + level + ", " + std::to_string(threads) + " threads", reference, made.columns,
+            measured.spread);
       }
   return measured;
 }
 
 std::vector<Column> keep_old_bits(const std::vector<Column>& old, std::vector<Column> now,
                                   const Tolerances& tolerances) {
-  for (std::size_t i = 0; i < now.size() && i < old.size(); ++i) {
-    const Tolerance tolerance = tolerance_of(tolerances, now[i].name);
-    if (!compare_columns(old[i], now[i], tolerance).problem.empty()) continue;
-    const std::vector<double> deviation = deviations(old[i], now[i]);
-    std::vector<bool> inside;
-    for (const double d : deviation) inside.push_back(d <= tolerance.absolute);
+  for (Column& column : now) {
+    const auto before =
+        std::find_if(old.begin(), old.end(), [&](const Column& one) { return one.name == column.name; });
+    if (before == old.end() || !compare_columns(*before, column, {}).problem.empty()) continue;
+    const double allowed = has_tolerance(column) ? tolerance_of(tolerances, column.name).absolute : 0;
+    const std::vector<double> deviation = deviations(*before, column);
     std::visit(
         [&](auto& values) {
           using Kind = std::decay_t<decltype(values)>;
-          keep_rows(std::get<Kind>(old[i].values), deviation, inside, static_cast<std::size_t>(now[i].width),
-                    values);
+          keep_rows(std::get<Kind>(before->values), deviation, allowed,
+                    static_cast<std::size_t>(column.width), values);
         },
-        now[i].values);
+        column.values);
   }
   return now;
 }

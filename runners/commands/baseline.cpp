@@ -106,17 +106,19 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   return exit_code(checks);
 }
 
-int command_baseline_bless(const CommandLine&, const BaselineBlessRequest& request) {
+int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& request) {
   std::vector<std::string> names = request.names;
-  if (names.size() > 1 && !(request.run.empty() && request.sweep.empty()))
+  const bool all = names == std::vector<std::string>{"all"};
+  if ((all || names.size() > 1) && !(request.run.empty() && request.sweep.empty()))
     throw InputError("--run, --sweep", "with several names; allowed with one");
-  if (names == std::vector<std::string>{"all"}) {
+  if (all) {
     names.clear();
     for (const Baseline& baseline : read_manifest(request.folder).baselines) names.push_back(baseline.name);
+    if (names.empty()) throw InputError(request.folder, "holds no baselines; allowed a folder with some");
   }
   for (const std::string& name : names) {
     const std::string done = bless({request.folder, name, request.reason, request.run, request.sweep,
-                                    request.overrides, request.also, request.one_compiler});
+                                    request.overrides, request.also, request.one_compiler, line.stop});
     std::printf("%s\n", done.c_str());
     std::fflush(stdout);
   }

@@ -100,6 +100,11 @@ void add_compare(Subcommands& commands) {
   command->add_option("--margin", compare->margin, "largest change of a share of runs that counts as none")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
+  command
+      ->add_option("--shift-margin", compare->shift_margin,
+                   "the same for measures that are no events: of runs up less runs down, and of the mean")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   command->add_option("--alpha", compare->alpha, "probability of calling a region changed when none is")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

@@ -68,7 +68,7 @@ struct CompareRequest {
   std::string baseline, candidate;
   std::vector<std::string> tolerances;  // "force=1e-9,1e-6"
   bool paired = false;
-  double margin = 0.02, alpha = 0.01;
+  double margin = 0.02, shift_margin = 0.1, alpha = 0.01;
   std::string json, junit, plot;  // files to write; empty: none
 };
 int command_compare(const CommandLine& line, const CompareRequest& request);

@@ -1,5 +1,6 @@
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/column_source.h"
 #include "analysis/deviation_figure.h"
@@ -7,8 +8,10 @@
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
+#include "runners/commands/shell_command.h"
 #include "runners/comparison/comparison_report.h"
 #include "runners/comparison/comparison_text.h"
+#include "runners/json_parameters.h"
 #include "runners/provenance.h"
 
 namespace remote_touch {
@@ -28,13 +31,21 @@ void add_tolerance(const std::string& text, Tolerances& tolerances) {
   const char *next = text.data() + equals + 1, *end = text.data() + text.size();
   for (double* part : {&tolerance.absolute, &tolerance.relative}) {
     const auto [stop, error] = std::from_chars(next, end, *part);
-    if (error != std::errc() || !(*part >= 0)) refuse();
+    if (error != std::errc() || !(*part >= 0) || std::isinf(*part)) refuse();
     next = stop;
     if (next == end) break;
     if (*next++ != ',' || part == &tolerance.relative) refuse();
   }
   if (next != end) refuse();
   tolerances[text.substr(0, equals)] = tolerance;
+}
+
+// What makes the plot again.
+std::string normalised(const CompareRequest& request) {
+  std::vector<std::string> words = {"remote-touch", "compare", request.baseline, request.candidate};
+  for (const std::string& tolerance : request.tolerances)
+    words.insert(words.end(), {"--tolerance", tolerance});
+  return shell_command(words);
 }
 
 void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
@@ -44,8 +55,10 @@ void require_plot_of_traces(const CompareRequest& request, const ResultCompariso
 
 void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {
   const StoredTrace baseline(request.baseline), candidate(request.candidate);
+  const Json config = {{"baseline_digest", attribute(baseline.attributes(), "digest")},
+                       {"candidate_digest", attribute(candidate.attributes(), "digest")}};
   write_figure(request.plot, deviation_figure(baseline, candidate, *comparison.columns),
-               provenance("", "remote-touch compare", line.kernels->isa));
+               provenance(config.dump(), normalised(request), line.kernels->isa));
 }
 
 }  // namespace
@@ -54,9 +67,12 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   ComparisonRules rules;
   for (const std::string& text : request.tolerances) add_tolerance(text, rules.tolerances);
   rules.paired = request.paired;
-  rules.rule.margin = request.margin, rules.rule.alpha = request.alpha;
-  for (const std::string& file : {request.json, request.junit, request.plot})
-    if (!file.empty()) require_writable(file);
+  rules.rule = {request.margin, request.shift_margin, request.alpha};
+  for (const std::string& file : {request.json, request.junit, request.plot}) {
+    if (file.empty()) continue;
+    for (const std::string& input : {request.baseline, request.candidate}) require_other(file, input);
+    require_writable(file);
+  }
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
   require_plot_of_traces(request, comparison);
   print_comparison(comparison);

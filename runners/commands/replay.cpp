@@ -69,9 +69,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
-  std::error_code absent;
-  if (std::filesystem::equivalent(request.map, request.output, absent))
-    throw InputError(request.output, "is the sweep itself; allowed another file");
+  require_other(request.output, request.map);
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
   const SweepResult& result = stored.result;

@@ -1,4 +1,6 @@
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 #include "analysis/column_source.h"
 #include "analysis/fingerprint.h"
@@ -21,6 +23,22 @@ namespace remote_touch {
 
 namespace {
 
+// For a shell to skip, whatever the text holds.
+void comment(const std::string& text) {
+  std::string lines = "# ";
+  for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+  std::printf("%s\n", lines.c_str());
+}
+
+// "3,4"; anything else gives a place that no sweep has.
+std::vector<std::size_t> place_of(const std::string& cell) {
+  std::vector<std::size_t> place;
+  std::istringstream in(cell);
+  for (std::string number; std::getline(in, number, ',');)
+    place.push_back(std::strtoull(number.c_str(), nullptr, 10));
+  return place;
+}
+
 // A stored result, and the program's own build to hold against it.
 class Repro {
  public:
@@ -31,27 +49,25 @@ class Repro {
 
   // Comments about the build, then what to type.
   void print() const {
-    std::printf("# %s: version %s, commit %s%s, %s, %s%s%s\n", file_.c_str(), of("version").c_str(),
-                of("git_commit").c_str(), of("git_dirty") == "yes" ? " with local changes" : "",
-                of("compiler").c_str(), of("flags").c_str(), of("isa").empty() ? "" : ", ",
-                of("isa").c_str());
+    comment(file_ + ": version " + of("version") + ", commit " + of("git_commit") +
+            (of("git_dirty") == "yes" ? " with local changes, " : ", ") + of("compiler") + ", " +
+            of("flags") + (of("isa").empty() ? "" : ", " + of("isa")));
     for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
       if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
-        std::printf("# this program has another %s: %s\n", name.c_str(), value.c_str());
-    if (!of("inputs").empty()) std::printf("# it read:\n# %s\n", of("inputs").c_str());
-    if (kind_ == "figure" || command_makes_it())
+        comment("this program has another " + name + ": " + value);
+    if (!of("inputs").empty()) comment("it read:\n" + of("inputs"));
+    if (kind_ == "figure")
+      print_figure_command();
+    else if (command_makes_it())
       print_command();
     else
-      std::printf(
-          "# its command no longer makes this configuration (another file, or another default)\n"
-          "%s\n%s -o again.h5\n",
-          shell_command({"remote-touch", "repro", file_, "--config", "again.json"}).c_str(),
-          shell_command({"remote-touch", kind_ == "sweep" ? "sweep" : "run", "again.json"}).c_str());
+      print_detour();
   }
 
   void write_config(const std::string& target) const {
     if (kind_ == "figure")
       throw InputError("--config", "of a figure; allowed with a trace, a sweep or hashes");
+    require_other(target, file_);
     const std::string text = of("config") + "\n";
     write_whole_file(target, text.data(), text.size());
     std::printf("# configuration written to %s\n", target.c_str());
@@ -70,20 +86,10 @@ class Repro {
 
  private:
   // A replay's command is that of its sweep, and then its own.
-  std::vector<std::vector<std::string>> commands() const {
-    const std::string all = of("command"), mark = "; ";
-    const std::size_t cut = all.find(mark);
-    if (cut == std::string::npos) return {words_of(all)};
-    return {words_of(all.substr(0, cut)), words_of(all.substr(cut + mark.size()))};
-  }
   void print_command() const {
-    auto all = commands();
-    if (kind_ == "figure") {
-      all[0].insert(all[0].end(), {"-o", "again"});
-    } else {
-      all[0].insert(all[0].end(), {"-o", all.size() > 1 ? "map.h5" : "again.h5"});
-      if (!of("shard").empty()) all[0].insert(all[0].end(), {"--shard", of("shard")});
-    }
+    auto all = commands_of(of("command"));
+    all[0].insert(all[0].end(), {"-o", all.size() > 1 ? "map.h5" : "again.h5"});
+    add_shard(all[0]);
     std::printf("%s\n", shell_command(all[0]).c_str());
     if (all.size() < 2) return;
     all[1].insert(all[1].begin() + 2, "map.h5");
@@ -91,21 +97,59 @@ class Repro {
     std::printf("%s\n", shell_command(all[1]).c_str());
   }
 
-  // remote-touch run|sweep SUBJECT --set a=b ...
+  void print_figure_command() const {
+    std::vector<std::string> words = words_of(of("command"));
+    if (words.size() < 3 || words[0] != "remote-touch" || (words[1] != "figure" && words[1] != "compare"))
+      return comment("no command of this program made it");
+    const bool is_plot = words[1] == "compare";
+    words.insert(words.end(), {is_plot ? "--plot" : "-o", is_plot ? "again.h5" : "again"});
+    std::printf("%s\n", shell_command(words).c_str());
+  }
+
+  // From the configuration alone.
+  void print_detour() const {
+    comment("its command no longer makes this configuration (another file, or another default)");
+    std::vector<std::string> words = {"remote-touch", kind_ == "sweep" ? "sweep" : "run", "again.json", "-o",
+                                      "again.h5"};
+    add_shard(words);
+    std::printf("%s\n%s\n", shell_command({"remote-touch", "repro", file_, "--config", "again.json"}).c_str(),
+                shell_command(words).c_str());
+  }
+  void add_shard(std::vector<std::string>& words) const {
+    if (!of("shard").empty()) words.insert(words.end(), {"--shard", of("shard")});
+  }
+
   bool command_makes_it() const {
-    const auto all = commands();
-    if (all.size() > 1) return true;  // a cell: its sweep's file tells whether it is the same
-    const std::vector<std::string>& words = all.front();
-    if (words.size() < 3) return false;
-    std::vector<std::string> overrides;
-    for (std::size_t i = 4; i < words.size(); i += 2) overrides.push_back(words[i]);
+    const auto all = commands_of(of("command"));
     try {
-      const std::string now = words[1] == "sweep" ? Sweep::load(words[2], overrides).to_json()
-                                                  : Experiment::load(words[2], overrides).to_json();
-      return configuration_differences(of("config"), now).empty();
+      const std::string now = configuration_of(all);
+      return !now.empty() && configuration_differences(of("config"), now).empty();
     } catch (const InputError&) {
       return false;
     }
+  }
+  // What the commands would make now; empty for other commands than
+  //   remote-touch run|sweep SUBJECT --set a=b ...
+  //   remote-touch sweep SUBJECT --set a=b ...; remote-touch replay --cell 3,4 --replicate 0
+  static std::string configuration_of(const std::vector<std::vector<std::string>>& commands) {
+    const std::vector<std::string>& words = commands.front();
+    if (words.size() < 3 || words[0] != "remote-touch") return {};
+    std::vector<std::string> overrides;
+    for (std::size_t i = 4; i < words.size(); i += 2) overrides.push_back(words[i]);
+    if (commands.size() == 1 && words[1] == "run") return Experiment::load(words[2], overrides).to_json();
+    if (words[1] != "sweep") return {};
+    const Sweep sweep = Sweep::load(words[2], overrides);
+    return commands.size() == 1 ? sweep.to_json() : configuration_of(sweep, commands[1]);
+  }
+  static std::string configuration_of(const Sweep& sweep, const std::vector<std::string>& replay) {
+    if (replay.size() != 6 || replay[0] != "remote-touch" || replay[1] != "replay") return {};
+    const SweepResult plan = sweep.plan();
+    const std::vector<std::size_t> place = place_of(replay[3]);
+    const int replicate = std::atoi(replay[5].c_str());
+    if (place.size() != plan.axes.size() || replicate < 0 || replicate >= plan.replicates) return {};
+    for (std::size_t i = 0; i < place.size(); ++i)
+      if (place[i] >= plan.axes[i].length()) return {};
+    return sweep.experiment(plan.cell_at(place), replicate).to_json();
   }
 
   std::vector<Column> columns_again(const Experiment& experiment, Progress& progress) const {

@@ -27,20 +27,26 @@ std::string shell_command(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> words_of(const std::string& command) {
-  std::vector<std::string> words(1);
+  return commands_of(command).front();
+}
+
+std::vector<std::vector<std::string>> commands_of(const std::string& text) {
+  std::vector<std::vector<std::string>> commands = {{""}};
   bool inside = false;
-  for (std::size_t i = 0; i < command.size(); ++i) {
-    const char c = command[i];
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (c == '\'')
       inside = !inside;
-    else if (c == '\\' && !inside && i + 1 < command.size())
-      words.back() += command[++i];
+    else if (c == '\\' && !inside && i + 1 < text.size())
+      commands.back().back() += text[++i];
     else if (c == ' ' && !inside)
-      words.emplace_back();
+      commands.back().emplace_back();
+    else if (text.compare(i, 2, "; ") == 0 && !inside)
+      commands.push_back({""}), ++i;
     else
-      words.back() += c;
+      commands.back().back() += c;
   }
-  return words;
+  return commands;
 }
 
 }  // namespace remote_touch

@@ -11,5 +11,7 @@ std::string shell_command(const std::vector<std::string>& words);
 
 // The words of what shell_command made; not for other texts.
 std::vector<std::string> words_of(const std::string& command);
+// The words of each of such commands with "; " between them.
+std::vector<std::vector<std::string>> commands_of(const std::string& text);
 
 }  // namespace remote_touch

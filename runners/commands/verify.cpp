@@ -26,19 +26,20 @@ std::string text(const CheckResult& result) {
 
 // One line a check over all scenes: the worst of each quantity that has a tolerance or is off.
 void print_check(const CheckName& check, const std::vector<CheckResult>& results) {
-  int scenes = 0, failed = 0;
+  int scenes = 0, failed = 0, ticks = 0;
   std::map<std::string, Deviation> worst;
   std::string reason;
   for (const CheckResult& result : results) {
     if (result.check != check.name) continue;
-    ++scenes, failed += result.passed() ? 0 : 1, reason = result.reason;
+    ++scenes, failed += result.passed() ? 0 : 1, ticks += result.comparison.ticks;
+    reason = result.reason;
     for (const Deviation& d : result.comparison.deviations) {
       const auto [place, is_new] = worst.try_emplace(d.quantity, d);
       if (!is_new && d.largest > place->second.largest) place->second = d;
     }
   }
-  std::printf("  %-4s %-18s %d scene(s)  %s\n", failed > 0 ? "FAIL" : "pass", check.name, scenes,
-              check.meaning);
+  std::printf("  %-4s %-18s %d scene(s), %4d ticks  %s\n", failed > 0 ? "FAIL" : "pass", check.name, scenes,
+              ticks, check.meaning);
   bool explained = false;
   for (const auto& [quantity, d] : worst) {
     if (d.tolerance == 0 && d.largest == 0) continue;
@@ -72,7 +73,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
   std::vector<ReportSuite> suites;
   bool all_pass = true;
   for (const RendererEntry* entry : chosen) {
-    const auto results = verify_renderer(*entry, request.overrides, *line.kernels);
+    const auto results = verify_renderer(*entry, request.overrides, *line.kernels, line.stop);
     std::printf("%s: %zu checks\n", entry->name, results.size());
     for (const CheckName& check : check_names()) print_check(check, results);
     for (const CheckResult& result : results) all_pass &= result.passed();

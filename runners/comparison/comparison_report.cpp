@@ -37,15 +37,17 @@ Json column_json(const ColumnComparison& column) {
           {"first_outside", optional_json(column.first_outside)}};
 }
 
-// Row after row, as lists; names of an enumeration in place of its numbers.
+// Row after row, as lists; names of an enumeration in place of those numbers that have one.
 Json rows_json(const std::vector<Column>& columns) {
   Json all = Json::object();
   for (const Column& column : columns) {
     Json values = Json::array();
     if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values);
         integers && !column.value_names.empty()) {
-      for (const std::int32_t value : *integers)
-        values.push_back(column.value_names.at(static_cast<std::size_t>(value)));
+      for (const std::int32_t value : *integers) {
+        const auto place = static_cast<std::size_t>(value);
+        values.push_back(place < column.value_names.size() ? Json(column.value_names[place]) : Json(value));
+      }
     } else {
       std::visit([&](const auto& v) { values = v; }, column.values);
     }
@@ -88,7 +90,11 @@ Json region_json(const SweepComparison& sweep, const RegionComparison& region) {
           {"candidate_events", region.candidate_events},
           {"baseline_share", interval(region.baseline_share)},
           {"candidate_share", interval(region.candidate_share)},
+          {"unpaired", region.unpaired},
           {"mean_difference", region.mean.mean},
+          {"mean_interval", interval({region.mean.low, region.mean.high})},
+          {"baseline_spread", region.baseline_spread},
+          {"symmetry_p", region.symmetry_p},
           {"p", region.sign_p},
           {"adjusted_p", region.adjusted_p},
           {"judgement", name_of(region.judgement)}};
@@ -155,7 +161,8 @@ std::string escaped(const std::string& text) {
         safe += "&quot;";
         break;
       default:
-        safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        // Control characters XML does not have; what is not ASCII may not be UTF-8.
+        safe += static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e ? '?' : c;
     }
   }
   return safe;

@@ -4,10 +4,12 @@
 #include <cstdio>
 
 #include "analysis/column_source.h"
+#include "analysis/fingerprint.h"
 #include "analysis/result_file.h"
 #include "analysis/sweep_file.h"
 #include "core/input_error.h"
 #include "runners/configuration_difference.h"
+#include "runners/input_hashes.h"
 
 namespace remote_touch {
 
@@ -22,10 +24,13 @@ ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
   };
   result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
   for (const char* name :
-       {"command", "version", "git_commit", "git_dirty", "compiler", "flags", "isa", "inputs"})
+       {"command", "version", "git_commit", "git_dirty", "sources", "compiler", "flags", "isa"})
     if (attribute(baseline, name) != attribute(candidate, name))
       result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
                                   attribute(candidate, name));
+  for (const ChangedInput& input :
+       changed_inputs(attribute(baseline, "inputs"), attribute(candidate, "inputs")))
+    result.provenance.push_back("input " + input.path + " " + input.before + " against " + input.now);
   return result;
 }
 
@@ -59,6 +64,10 @@ void judge_columns(ResultComparison& result) {
   std::string text = count_text(failed, columns.size(), "columns");
   if (const auto& first = result.columns->divergence)
     text += ", from tick " + std::to_string(first->tick) + " on (" + name_of(first->cause) + ")";
+  if (const ColumnComparison& first = columns.front(); first.baseline_rows != first.candidate_rows)
+    text += "; the baseline has " + std::to_string(first.baseline_rows) + " rows, the candidate " +
+            std::to_string(first.candidate_rows) +
+            (result.columns->divergence ? "" : ", and they are the same as far as both go");
   conclude(result, Outcome::regressed, text);
 }
 
@@ -87,17 +96,32 @@ void judge_exactly(ResultComparison& result) {
            exact_text(*result.sweep));
 }
 
+// The measures that are of this judgement, over the whole or in any region.
+std::string measures_that_are(const SweepComparison& sweep, Judgement wanted, bool in_parts) {
+  std::string names;
+  for (std::size_t measure = 0; measure < sweep.measures.size(); ++measure) {
+    bool found = false;
+    for (std::size_t region = 0; region < (in_parts ? sweep.regions.size() : 1); ++region)
+      found |= sweep.at(region, measure).judgement == wanted;
+    if (found) names += (names.empty() ? "" : ", ") + sweep.measures[measure].name;
+  }
+  return names;
+}
+
 void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
-  char margin[32];
-  std::snprintf(margin, sizeof margin, "%.3g", rule.margin);
+  const SweepComparison& sweep = *result.sweep;
+  char margins[160];
+  std::snprintf(margins, sizeof margins, "the margins (%.3g of the runs for events, %.3g for other measures)",
+                rule.margin, rule.shift_margin);
   switch (result.sweep->paired) {
     case PairedVerdict::equal:
       return conclude(result, Outcome::same, exact_text(*result.sweep));
     case PairedVerdict::within_margin:
       return conclude(result, Outcome::same,
-                      exact_text(*result.sweep) + "; no share changed by more than " + margin);
+                      exact_text(*result.sweep) + "; all changes are within " + margins);
     case PairedVerdict::changed:
-      return conclude(result, Outcome::regressed, exact_text(*result.sweep) + "; a region has changed");
+      return conclude(result, Outcome::regressed,
+                      exact_text(sweep) + "; changed: " + measures_that_are(sweep, Judgement::changed, true));
     case PairedVerdict::runs_missing:
       return conclude(result, Outcome::regressed, exact_text(*result.sweep));
     case PairedVerdict::undecided:
@@ -105,7 +129,8 @@ void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
       break;
   }
   conclude(result, Outcome::not_comparable,
-           exact_text(*result.sweep) + "; too few runs to tell whether a share changed by " + margin);
+           exact_text(sweep) + "; undecided, too few runs to be sure of " + margins + ": " +
+               measures_that_are(sweep, Judgement::undecided, false));
 }
 
 StoredHashes hashes_of(const std::filesystem::path& file, const std::string& kind) {
@@ -177,7 +202,9 @@ ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
-  check_names(rules.tolerances, baseline.columns());
+  std::vector<std::string> names = baseline.columns();
+  std::erase(names, std::string(kRunningHash));  // follows from the others
+  check_names(rules.tolerances, names);
   ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
   judge_columns(result);

@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "core/input_error.h"
 #include "runners/sweep_run.h"
 
 namespace remote_touch {
@@ -71,7 +72,10 @@ SweepResult Laboratory::sweep(const Sweep& sweep) const {
   inputs_.add(sweep.inputs());
   const double runs = static_cast<double>(sweep.plan().runs_in(RunState::pending).size());
   double done = 0;
-  return run_sweep(sweep, {&kernels_, stop_, [&](std::size_t) { progress_(++done / runs); }});
+  SweepResult result = run_sweep(sweep, {&kernels_, stop_, [&](std::size_t) { progress_(++done / runs); }});
+  const auto failed = result.runs_in(RunState::failed);
+  if (!failed.empty()) throw InputError(sweep.title(), "a run failed: " + result.error[failed.front()]);
+  return result;
 }
 
 }  // namespace remote_touch

@@ -6,6 +6,7 @@
 
 #include "core/input_error.h"
 #include "runners/json_parameters.h"
+#include "runners/simulation.h"
 #include "runners/verification/metamorphic_relation.h"
 #include "runners/verification/verification_scenes.h"
 
@@ -104,12 +105,14 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 }  // namespace
 
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
-                                         const std::vector<std::string>& assignments,
-                                         const Kernels& kernels) {
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::atomic<bool>* stop) {
   const Subject subject(entry, assignments, kernels);
   std::vector<CheckResult> results;
-  for (const MetamorphicScene& scene : verification_scenes(kernels))
+  for (const MetamorphicScene& scene : verification_scenes(kernels)) {
+    if (stop && *stop) throw Interrupted{};
     for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
+  }
   return results;
 }
 

@@ -3,6 +3,7 @@
 // so whatever is added to the catalog is checked as it is.
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -21,15 +22,17 @@ struct CheckResult {
   Comparison comparison;
   std::string remark;  // for a failure that may be the scene's and not the renderer's; else empty
 
-  bool passed() const { return comparison.first_violation < 0; }
+  bool passed() const { return comparison.ticks > 0 && comparison.first_violation < 0; }
 };
 
 // All results, scene by scene. The first of each scene, "touch", is that the renderer pushes back in most
 // ticks: without that the others would say little. assignments: "r1_m=0.004". Throws InputError for an
 // assignment that the renderer refuses, and for a parameter that a change of units cannot follow (see
 // dimension.h).
+// stop: when set, ends between two scenes with Interrupted.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
-                                         const std::vector<std::string>& assignments, const Kernels& kernels);
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::atomic<bool>* stop = nullptr);
 
 struct CheckName {
   const char* name;

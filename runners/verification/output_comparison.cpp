@@ -16,12 +16,8 @@ double difference(double a, double b) {
 }
 
 double difference(const Vec3& a, const Vec3& b) {
-  double squared = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double d = difference(a[i], b[i]);
-    squared += d * d;
-  }
-  return std::sqrt(squared);
+  // Squares of the smallest numbers would vanish.
+  return std::hypot(difference(a.x(), b.x()), difference(a.y(), b.y()), difference(a.z(), b.z()));
 }
 
 bool others_agree(const RenderOutput& a, const RenderOutput& b, bool rounded) {

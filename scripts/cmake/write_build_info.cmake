@@ -13,12 +13,24 @@ else()
     set(dirty "no")
   endif()
 endif()
+# What the program was made from, committed or not: builds with equal SHA-256 are of equal sources.
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/core/*.h ${SOURCE}/core/*.cpp ${SOURCE}/scenarios/*.h
+  ${SOURCE}/scenarios/*.cpp ${SOURCE}/analysis/*.h ${SOURCE}/analysis/*.cpp ${SOURCE}/runners/*.h
+  ${SOURCE}/runners/*.cpp ${SOURCE}/data/experiments/*.json ${SOURCE}/data/sweeps/*.json)
+list(SORT files)
+set(sums "")
+foreach(file ${files} CMakeLists.txt)
+  file(SHA256 ${SOURCE}/${file} sum)
+  string(APPEND sums "${sum}  ${file}\n")
+endforeach()
+string(SHA256 sources "${sums}")
 string(REGEX REPLACE " +" " " FLAGS "${FLAGS}")
 string(STRIP "${FLAGS}" FLAGS)
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT
 "#define REMOTE_TOUCH_VERSION \"@VERSION@\"
 #define REMOTE_TOUCH_GIT_COMMIT \"@commit@\"
 #define REMOTE_TOUCH_GIT_DIRTY \"@dirty@\"
+#define REMOTE_TOUCH_SOURCES \"@sources@\"
 #define REMOTE_TOUCH_COMPILER \"@COMPILER@\"
 #define REMOTE_TOUCH_FLAGS \"@FLAGS@\"
 ")
