@@ -85,8 +85,7 @@ TEST(Manifest, DamagedOnesAreRefusedByName) {
   folder.write("manifest.json", manifest_text([](auto&, auto&) {}));
   EXPECT_EQ(read_manifest(folder.path()).baselines.size(), 1u);
 
-  for (const char* text :
-       {"", " ", "text", "{", "{\"complete\": tru", "\x89HDF\r\n\x1a\n"})
+  for (const char* text : {"", " ", "text", "{", "{\"complete\": tru", "\x89HDF\r\n\x1a\n"})
     refused(text, "parse error");
   refused("{\"complete\": NaN}", "parse error");
   for (const char* text : {"[]", "3", "null", "\"text\"", "[[]]"}) refused(text, "cannot use at()");

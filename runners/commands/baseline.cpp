@@ -78,6 +78,7 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
   const auto any = [&](State state) {
     return std::any_of(checks.begin(), checks.end(), [&](const auto& check) { return check.state == state; });
   };
+  if (!any(State::same) && !any(State::changed)) return kBadInput;  // nothing was compared
   return any(State::not_comparable) ? kBadInput : any(State::changed) ? kCheckFailed : kDone;
 }
 

@@ -163,11 +163,13 @@ void add_repro_and_verify(Subcommands& commands) {
 
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<std::string> left = app.remaining();
-  if (!app.get_subcommands().empty() || left.empty())
+  const std::vector<std::string> left = app.remaining(true);
+  CLI::App* place = &app;
+  while (!place->get_subcommands().empty()) place = place->get_subcommands().front();
+  if (place->get_subcommands(nullptr).empty() || left.empty())
     return InputError(error.what(), "see remote-touch --help");
   std::string known;
-  for (const CLI::App* command : app.get_subcommands(nullptr))
+  for (const CLI::App* command : place->get_subcommands(nullptr))
     known += (known.empty() ? "" : ", ") + command->get_name();
   return InputError(left.front(), "unknown; allowed " + known);
 }
