@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/result_file.h"
 
@@ -13,7 +14,7 @@ bool ColumnSource::has(const std::string& name) const {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-StoredTrace::StoredTrace(const std::filesystem::path& file) : hdf5_(file) {
+StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
   hdf5_.require_schema(kTraceSchema, "a trace of remote-touch run or replay");
   std::istringstream list(attribute(hdf5_.attributes(), "columns"));
   for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
@@ -27,7 +28,7 @@ Column StoredTrace::rows(const std::string& name, std::size_t first, std::size_t
   return hdf5_.rows("/trace/" + name, first, count);
 }
 
-StoredFigure::StoredFigure(const std::filesystem::path& file) : hdf5_(file) {
+StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
   hdf5_.require_schema(kFigureSchema, "a figure of remote-touch figure");
   const std::string tables = "/tables/";
   for (const std::string& path : hdf5_.datasets())

@@ -23,7 +23,8 @@ class ColumnSource {
 // written.
 class StoredTrace final : public ColumnSource {
  public:
-  explicit StoredTrace(const std::filesystem::path& file);
+  explicit StoredTrace(Hdf5Reader hdf5);
+  explicit StoredTrace(const std::filesystem::path& file) : StoredTrace(Hdf5Reader(file)) {}
   std::vector<std::string> columns() const override { return columns_; }
   Column column(const std::string& name) const override;
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
@@ -37,7 +38,7 @@ class StoredTrace final : public ColumnSource {
 // The tables of a figure; columns are named table/column.
 class StoredFigure final : public ColumnSource {
  public:
-  explicit StoredFigure(const std::filesystem::path& file);
+  explicit StoredFigure(Hdf5Reader hdf5);
   std::vector<std::string> columns() const override { return columns_; }
   Column column(const std::string& name) const override { return hdf5_.column("/tables/" + name); }
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override {

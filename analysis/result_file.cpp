@@ -6,6 +6,14 @@
 
 namespace remote_touch {
 
+TextAttributes provenance_of(const TextAttributes& attributes) {
+  TextAttributes kept;
+  for (const auto& [name, value] : attributes)
+    if (name != "schema" && name != "digest" && name != "default" && name != "columns")
+      kept.emplace_back(name, value);
+  return kept;
+}
+
 namespace {
 // In the order of the digest, which the file's own order of datasets is not.
 std::string names(const std::vector<Column>& columns) {

@@ -13,6 +13,9 @@ namespace remote_touch {
 inline constexpr const char* kTraceSchema = "remote-touch-trace/1";
 inline constexpr const char* kFigureSchema = "remote-touch-figure/1";
 
+// What of a result's root attributes tells where it came from: all that its writer does not add by itself.
+TextAttributes provenance_of(const TextAttributes& attributes);
+
 // columns: of Trace::columns(). provenance: config, command, version and so on, as root attributes. Adds
 // schema, digest and the names of the columns in order. step_duration_s: wall clock of each tick, stored
 // outside the digest as /timing; empty: not stored. Returns the digest.

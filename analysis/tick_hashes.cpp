@@ -1,12 +1,12 @@
 #include "analysis/tick_hashes.h"
 
-#include "analysis/column_source.h"
+#include "analysis/fingerprint.h"
 #include "analysis/hdf5_reader.h"
 
 namespace remote_touch {
 
-TickHashes hashes_of_trace(const std::filesystem::path& trace, int every) {
-  const Column stored = StoredTrace(trace).column("tick_hash");
+TickHashes hashes_of_trace(const ColumnSource& trace, int every) {
+  const Column stored = trace.column(kRunningHash);
   const auto& all = std::get<std::vector<std::uint64_t>>(stored.values);
   TickHashes some;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/column_source.h"
 #include "analysis/hdf5_file.h"
 
 namespace remote_touch {
@@ -17,8 +18,8 @@ struct TickHashes {
   std::vector<std::uint64_t> hash;  // the running hash at that tick (fingerprint.h)
 };
 
-// Every n-th tick of a stored trace, and the last; pre: every > 0. Throws InputError as StoredTrace does.
-TickHashes hashes_of_trace(const std::filesystem::path& trace, int every);
+// Every n-th tick of a trace, and the last; pre: every > 0.
+TickHashes hashes_of_trace(const ColumnSource& trace, int every);
 
 void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
                   const TextAttributes& provenance);

@@ -474,7 +474,8 @@ TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
   write_changed("b.h5", [](Trace& trace) { trace.force_N[3 * 410] += 1e-9; });
   for (const char* name : {"a", "b"})
     write_hashes(folder_ / (std::string(name) + "_hashes.h5"),
-                 hashes_of_trace(folder_ / (std::string(name) + ".h5"), 100), {{"git_commit", name}});
+                 hashes_of_trace(StoredTrace(folder_ / (std::string(name) + ".h5")), 100),
+                 {{"git_commit", name}});
   for (const auto& [baseline, candidate] :
        {std::pair("a_hashes.h5", "a.h5"), std::pair("a.h5", "a_hashes.h5"),
         std::pair("a_hashes.h5", "a_hashes.h5")}) {
@@ -499,7 +500,7 @@ TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
 
 TEST_F(CompareTraceFiles, HashesOfLongerRunsAndOfNothing) {
   write("a.h5"), write("b.h5", {"duration_s=0.5"});
-  write_hashes(folder_ / "b_hashes.h5", hashes_of_trace(folder_ / "b.h5", 1), {});
+  write_hashes(folder_ / "b_hashes.h5", hashes_of_trace(StoredTrace(folder_ / "b.h5"), 1), {});
   const ResultComparison longer = compare("a.h5", "b_hashes.h5");
   EXPECT_EQ(longer.outcome, Outcome::regressed);
   EXPECT_HAS(longer.verdict, "500 hashes compared, all the same, but one run is longer");
@@ -511,7 +512,7 @@ TEST_F(CompareTraceFiles, HashesOfLongerRunsAndOfNothing) {
 // A hash has no deviation, so a tolerance of it means nothing.
 TEST_F(CompareTraceFiles, HashesHaveNoTolerances) {
   write("a.h5");
-  write_hashes(folder_ / "hashes.h5", hashes_of_trace(folder_ / "a.h5", 1), {});
+  write_hashes(folder_ / "hashes.h5", hashes_of_trace(StoredTrace(folder_ / "a.h5"), 1), {});
   ComparisonRules rules;
   rules.tolerances = {{"force", {1, 0}}};
   for (const char* baseline : {"a.h5", "hashes.h5"})
@@ -521,7 +522,7 @@ TEST_F(CompareTraceFiles, HashesHaveNoTolerances) {
 TEST_F(CompareTraceFiles, DifferentKindsAreRefused) {
   write("trace.h5");
   write_figure(folder_ / "figure.h5", Figure{"4.99", "", ""}, {});
-  write_hashes(folder_ / "hashes.h5", hashes_of_trace(folder_ / "trace.h5", 1), {});
+  write_hashes(folder_ / "hashes.h5", hashes_of_trace(StoredTrace(folder_ / "trace.h5"), 1), {});
   SweepResult sweep;
   sweep.axes = {{"x", "1", "x", std::vector<double>{1}, 1, {}}};
   sweep.measures = {{"y", "1", "", {}, 1, {}}};

@@ -78,7 +78,7 @@ TEST(TickHashes, EveryNthTickAndTheLast) {
     const fs::path file = stored(folder, "x.h5", columns);
     for (const int every : {1, 2, 3, 7, 10, 100, ticks - 1, ticks, ticks + 1, 2000000000}) {
       if (every < 1) continue;
-      const TickHashes some = hashes_of_trace(file, every);
+      const TickHashes some = hashes_of_trace(StoredTrace(file), every);
       const auto count = static_cast<std::size_t>((ticks - 1) / every + 1 + ((ticks - 1) % every != 0));
       ASSERT_EQ(some.tick.size(), count) << ticks << " ticks, every " << every;
       ASSERT_EQ(some.hash.size(), count);
@@ -94,7 +94,7 @@ TEST(TickHashes, WhatIsWrittenComesBack) {
   const TestFolder folder("tick_hashes_test");
   for (const int ticks : {0, 1, kTicks}) {
     const fs::path trace = stored(folder, "x.h5", walk(ticks));
-    const TickHashes all = hashes_of_trace(trace, 1);
+    const TickHashes all = hashes_of_trace(StoredTrace(trace), 1);
     EXPECT_EQ(all.tick.size(), static_cast<std::size_t>(ticks));
     write_hashes(folder / "h.h5", all, kProvenance);
     const StoredHashes again = read_hashes(folder / "h.h5");
@@ -105,7 +105,7 @@ TEST(TickHashes, WhatIsWrittenComesBack) {
     EXPECT_EQ(bytes_of(folder / "again.h5"), bytes_of(folder / "h.h5"));
   }
   // Random numbers do not compress: 8 bytes for each hash, little for the ticks, and what every file needs.
-  const TickHashes all = hashes_of_trace(stored(folder, "x.h5", walk()), 1);
+  const TickHashes all = hashes_of_trace(StoredTrace(stored(folder, "x.h5", walk())), 1);
   write_hashes(folder / "h.h5", all, {});
   EXPECT_LT(fs::file_size(folder / "h.h5"), static_cast<std::size_t>(kTicks) * 8 + 20000);
 }
@@ -114,8 +114,9 @@ TEST(TickHashes, OtherFilesAndDamageAreRefused) {
   const TestFolder folder("tick_hashes_test");
   const fs::path trace = stored(folder, "trace.h5", walk(100));
   EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/1");
-  write_hashes(folder / "h.h5", hashes_of_trace(trace, 1), {});
-  EXPECT_HAS(refusal([&] { hashes_of_trace(folder / "h.h5", 1); }), "is of schema remote-touch-hashes/1");
+  write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(trace), 1), {});
+  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(folder / "h.h5"), 1); }),
+             "is of schema remote-touch-hashes/1");
   const std::string whole = bytes_of(folder / "h.h5");
   for (std::size_t i = 0; i < whole.size(); i += 397) {
     std::string flipped = whole;
@@ -129,7 +130,7 @@ TEST(TickHashes, OtherFilesAndDamageAreRefused) {
 
 TEST(CompareHashes, TheSameAreTheSame) {
   const TestFolder folder("tick_hashes_test");
-  const TickHashes all = hashes_of_trace(stored(folder, "x.h5", walk()), 1);
+  const TickHashes all = hashes_of_trace(StoredTrace(stored(folder, "x.h5", walk())), 1);
   for (const int every : {1, 3, 2000})
     for (const int other : {1, 5, 7000}) {
       const HashComparison same = compare_hashes(every_nth(all, every), every_nth(all, other));
@@ -236,9 +237,10 @@ TEST(Bisection, TakesALogarithmOfLooksAndFindsTheSameTick) {
     ASSERT_TRUE(whole.divergence);
     EXPECT_EQ(whole.divergence->tick, from);
     EXPECT_EQ(whole.divergence->parted, from);
-    EXPECT_EQ(
-        compare_hashes(hashes_of_trace(folder / "a.h5", 1), hashes_of_trace(folder / "b.h5", 1)).different,
-        static_cast<int>(from));
+    EXPECT_EQ(compare_hashes(hashes_of_trace(StoredTrace(folder / "a.h5"), 1),
+                             hashes_of_trace(StoredTrace(folder / "b.h5"), 1))
+                  .different,
+              static_cast<int>(from));
   }
 }
 

@@ -123,15 +123,6 @@ bool same_values(const std::vector<Column>& a, const std::vector<Column>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), equal);
 }
 
-// The attributes that make a result's provenance: the writer adds the others.
-TextAttributes kept(const TextAttributes& all) {
-  TextAttributes some;
-  for (const auto& [name, value] : all)
-    if (name != "schema" && name != "digest" && name != "default" && name != "columns")
-      some.emplace_back(name, value);
-  return some;
-}
-
 void store(const std::filesystem::path& file, const std::string& command, const std::filesystem::path& made,
            std::vector<Column> columns) {
   if (command == "sweep") {
@@ -139,9 +130,10 @@ void store(const std::filesystem::path& file, const std::string& command, const 
     sweep.result.measures = std::move(columns);
     write_sweep(file, sweep.result, sweep.attributes);
   } else {
-    columns.push_back(StoredTrace(made).column(kRunningHash));
+    const StoredTrace trace(made);
+    columns.push_back(trace.column(kRunningHash));
     columns.back().values = running_hash({columns.begin(), columns.end() - 1});
-    write_trace(file, columns, kept(StoredTrace(made).attributes()), {});
+    write_trace(file, columns, provenance_of(trace.attributes()), {});
   }
 }
 

@@ -42,8 +42,7 @@ std::vector<std::size_t> place_of(const std::string& cell) {
 // A stored result, and the program's own build to hold against it.
 class Repro {
  public:
-  Repro(const CommandLine& line, const std::string& file)
-      : line_(line), file_(file), kind_(kind_of(file)), attributes_(Hdf5Reader(file).attributes()) {}
+  Repro(const CommandLine& line, const std::string& file) : Repro(line, Hdf5Reader(file)) {}
 
   std::string of(const char* name) const { return attribute(attributes_, name); }
 
@@ -85,6 +84,9 @@ class Repro {
   }
 
  private:
+  Repro(const CommandLine& line, const Hdf5Reader& result)
+      : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {}
+
   // A replay's command is that of its sweep, and then its own.
   void print_command() const {
     auto all = commands_of(of("command"));
@@ -200,7 +202,7 @@ class Repro {
           column.name = table.name + "/" + column.name;
           columns.push_back(std::move(column));
         }
-      return compare_figure(StoredFigure(file_), ColumnsInMemory(std::move(columns)), {});
+      return compare_figure(StoredFigure(Hdf5Reader(file_)), ColumnsInMemory(std::move(columns)), {});
     }
     throw InputError(file_, "is figure " + of("figure") + ", which this program does not know");
   }

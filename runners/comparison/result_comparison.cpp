@@ -133,14 +133,15 @@ void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
                measures_that_are(sweep, Judgement::undecided, false));
 }
 
-StoredHashes hashes_of(const std::filesystem::path& file, const std::string& kind) {
-  if (kind == "hashes") return read_hashes(file);
-  return {hashes_of_trace(file, 1), StoredTrace(file).attributes()};
+StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
+  if (kind == "hashes") return read_hashes(result.file());
+  return {hashes_of_trace(StoredTrace(result), 1), result.attributes()};
 }
 
 ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
                                const ComparisonRules& rules) {
-  const std::string ours = kind_of(baseline), theirs = kind_of(candidate);
+  const Hdf5Reader first_file(baseline), second_file(candidate);
+  const std::string ours = kind_of(first_file), theirs = kind_of(second_file);
   const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
   const bool hashed = ours == "hashes" || theirs == "hashes";
   if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
@@ -149,11 +150,11 @@ ResultComparison compare_files(const std::filesystem::path& baseline, const std:
     if (!rules.tolerances.empty())
       throw InputError("tolerance of " + rules.tolerances.begin()->first,
                        "hashes are equal or not; allowed with traces, sweeps and figures");
-    return compare_hashes(hashes_of(baseline, ours), hashes_of(candidate, theirs));
+    return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
   }
-  if (ours == "figure") return compare_figure(StoredFigure(baseline), StoredFigure(candidate), rules);
+  if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
   if (ours == "trace") {
-    const StoredTrace first(baseline), second(candidate);
+    const StoredTrace first(first_file), second(second_file);
     return compare_trace(first, first.attributes(), second, second.attributes(), rules);
   }
   const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
@@ -162,11 +163,11 @@ ResultComparison compare_files(const std::filesystem::path& baseline, const std:
 
 }  // namespace
 
-std::string kind_of(const std::filesystem::path& file) {
-  const std::string schema = attribute(Hdf5Reader(file).attributes(), "schema");
+std::string kind_of(const Hdf5Reader& result) {
+  const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
-  throw InputError(file.string(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
+  throw InputError(result.file(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
                                       "; allowed a trace, a sweep, a figure or hashes of this program");
 }
 

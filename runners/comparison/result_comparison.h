@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/hdf5_reader.h"
 #include "analysis/sweep_comparison.h"
 #include "analysis/tick_hashes.h"
 #include "analysis/trace_comparison.h"
@@ -36,7 +37,7 @@ struct ResultComparison {
 
 // "trace", "sweep", "figure" or "hashes", as the schema says; another version is for its reader to refuse.
 // Throws InputError for any other file.
-std::string kind_of(const std::filesystem::path& file);
+std::string kind_of(const Hdf5Reader& result);
 
 // Throws InputError for files that cannot be read or are of different kinds (but hashes go with traces), and
 // for tolerances of columns that there are not; hashes have none.
