@@ -11,19 +11,18 @@ void push(std::vector<double>& column, const Vec3& v) {
 }  // namespace
 
 void Trace::reserve(std::size_t ticks) {
-  for (auto* column : {&time_s, &surface_velocity_m_per_s, &nearest_m, &signed_distance_m})
+  for (auto* column : {&time_s, &surface_velocity_m_per_s, &nearest_m, &signed_distance_m, &slave_distance_m})
     column->reserve(ticks);
-  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal, &carried_m}) column->reserve(3 * ticks);
+  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal, &carried_m, &slave_m}) column->reserve(3 * ticks);
   for (auto* column : {&state, &proxy_steps, &converged, &contact_count, &frame_index, &status})
     column->reserve(ticks);
   frame_hash.reserve(ticks);
 }
 
-void Trace::append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance,
-                   std::uint64_t hash_of_frame) {
+void Trace::append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth) {
   time_s.push_back(time);
   push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
-      push(normal, out.normal_W), push(carried_m, out.carried_m);
+      push(normal, out.normal_W), push(carried_m, out.carried_m), push(slave_m, out.slave_W);
   state.push_back(static_cast<std::int32_t>(out.state));
   proxy_steps.push_back(out.steps);
   converged.push_back(out.converged ? 1 : 0);
@@ -32,8 +31,9 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   status.push_back(static_cast<std::int32_t>(out.status));
   surface_velocity_m_per_s.push_back(out.surface_velocity_m_per_s);
   nearest_m.push_back(out.nearest_m);
-  signed_distance_m.push_back(signed_distance);
-  frame_hash.push_back(hash_of_frame);
+  signed_distance_m.push_back(truth.proxy_distance_m);
+  slave_distance_m.push_back(truth.slave_distance_m);
+  frame_hash.push_back(truth.frame_hash);
 }
 
 std::vector<Column> Trace::columns() const {
@@ -67,6 +67,8 @@ std::vector<Column> Trace::columns() const {
        signed_distance_m,
        1,
        {}},
+      {"slave_command", "m", "where the slave robot is sent, world frame", slave_m, 3, {}},
+      {"slave_distance", "m", "distance of the slave's command to the true surface", slave_distance_m, 1, {}},
       {"status",
        "1",
        "why the output is not an ordinary one",

@@ -11,22 +11,27 @@ namespace remote_touch {
 
 struct Trace {
   std::vector<double> time_s;
-  std::vector<double> hip_m, proxy_m, force_N, normal, carried_m;  // three numbers a row
+  std::vector<double> hip_m, proxy_m, force_N, normal, carried_m, slave_m;  // three numbers a row
   std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
-  std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m;
+  std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m, slave_distance_m;
   std::vector<std::uint64_t> frame_hash;
 
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
-  // hash_of_frame: fingerprint of the newest frame that the scenario delivered, 0 where it was not made.
-  void append(double time, const DeviceState& device, const RenderOutput& out, double signed_distance,
-              std::uint64_t hash_of_frame = 0);
+  // What is true about a tick, beside what the renderer answered.
+  struct Truth {
+    double proxy_distance_m = 0;   // to the true surface, of the proxy
+    double slave_distance_m = 0;   // and of the slave's command
+    std::uint64_t frame_hash = 0;  // fingerprint of the newest frame delivered, 0 where it was not made
+  };
+  void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth);
 
   Vec3 hip(std::size_t i) const { return row(hip_m, i); }
   Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
   Vec3 force(std::size_t i) const { return row(force_N, i); }
   Vec3 normal_at(std::size_t i) const { return row(normal, i); }
   Vec3 carried(std::size_t i) const { return row(carried_m, i); }
+  Vec3 slave(std::size_t i) const { return row(slave_m, i); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 

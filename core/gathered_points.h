@@ -38,7 +38,7 @@ class GatheredPoints {
   // Room for every point of a cloud. Keeps what it has when that is enough.
   void reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness);
   void clear() { count_ = 0; }
-  // Appends those points of the run that lie in the ball. pre: reserve() for the run's cloud.
+  // Appends those points of the run whose regions meet the ball. pre: reserve() for the run's cloud.
   void add(const PointRun& run, const Ball& ball, const Kernels& kernels);
   // Pads to whole lanes; to be called once after the last add().
   void finish();

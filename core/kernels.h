@@ -13,7 +13,7 @@
 namespace remote_touch {
 
 // A view of gathered points, padded with far-away points to a multiple of kLanes. radius is r_f of each point
-// and stiffness k_s; both are null where the cloud has no such column.
+// and stiffness k_s (NaN: the renderer's own); both are null where the cloud has no such column.
 struct PointsView {
   const double* x;
   const double* y;
@@ -26,10 +26,11 @@ struct PointsView {
 inline constexpr std::size_t kLanes = 8;
 inline constexpr double kFarAway = 1e100;  // coordinate of a padding point; its square is still finite
 
-// The radii that define the proxy's regions, Fig 4.2, and the grid for exact sums.
+// The radii that define the proxy's regions, Fig 4.2, and what the sums over the points need.
 struct ProxyRegions {
   double r1, r2, r3;
-  double sum_grid;  // M above, at least 1.5 * the number of points, a power of two times 1.5
+  double sum_grid;   // M above, at least 1.5 * the number of points, a power of two times 1.5
+  double stiffness;  // of points without one of their own
 };
 
 // What one pass over the points tells about a proxy position. r_n = |P - x| - r_f, (5.5).
@@ -74,10 +75,10 @@ struct NoiseStream {
 
 struct Kernels {
   const char* isa;
-  // Appends the points of the run with |x - centre|^2 <= radius_squared, all in double; NaN never qualifies.
+  // Appends the points of the run with |x - centre|^2 <= (reach + r_f)^2, all in double; NaN never qualifies.
   // Returns the new count.
-  std::size_t (*append_within)(const PointRun&, const double centre[3], double radius_squared,
-                               const PointSink&, std::size_t count);
+  std::size_t (*append_within)(const PointRun&, const double centre[3], double reach, const PointSink&,
+                               std::size_t count);
   Survey (*survey)(const PointsView&, const double p[3], const ProxyRegions&);
   // (4.9), (5.9): the smallest d > 0 at which a proxy that moves from p along the unit vector meets a point
   // ahead, |p + d direction - x| = reach + r_f; infinite when it meets none.

@@ -66,7 +66,7 @@ void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, Gathere
   const CameraIntrinsics& camera = cloud_.image->camera;
   const Vec3 c_C = X_CW_ * ball.centre;
   // Rounding of the transform and of the points, far above what double leaves at room scale.
-  const double radius = ball.radius * (1 + 1e-9) + 1e-9;
+  const double radius = widened(ball).radius * (1 + 1e-9) + 1e-9;
   PixelRange columns{0, camera.width - 1}, rows{0, camera.height - 1};
   // Behind all that was measured there is nothing to find in front of it: a ball at the camera need not see
   // it all.
@@ -147,7 +147,7 @@ void UniformGridSearch::sort_points_by_cell() {
 }
 
 void UniformGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
-  const double reach = ball.radius * (1 + 1e-9);
+  const double reach = widened(ball).radius * (1 + 1e-9);
   int first[3], last[3];
   for (int axis = 0; axis < 3; ++axis) {
     if (ball.centre[axis] + reach < low_[axis] || ball.centre[axis] - reach > high_[axis]) return;

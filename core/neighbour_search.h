@@ -1,5 +1,6 @@
-// Finding the points near a position. Every search returns the same set: all points with |x - centre| <=
-// radius, compared as squares in double. They differ in which points they look at.
+// Finding the points near a position. Every search returns the same set: all points whose forbidden regions
+// meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0. They
+// differ in which points they look at.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,10 @@ namespace remote_touch {
 class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
-  // Adds the points of the ball to out, which has room for size() points. Does not call finish(). One reader
-  // at a time: an implementation may keep what it made for the next call.
+  // Adds the points whose regions meet the ball to out, which has room for size() points. Does not call
+  // finish(). One reader at a time: an implementation may keep what it made for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
-  // Largest r_f in the cloud: a region reaches that far beyond its point.
-  virtual double largest_fixture_radius() const { return 0; }
   virtual bool has_fixture_radius() const { return false; }
   virtual bool has_stiffness() const { return false; }
 };
@@ -29,13 +28,14 @@ class CloudSearch : public NeighbourSearch {
  public:
   explicit CloudSearch(PointCloud cloud);
   std::size_t size() const override { return cloud_.size(); }
-  double largest_fixture_radius() const override { return largest_fixture_radius_; }
   bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
   const PointCloud& cloud() const { return cloud_; }
 
  protected:
   PointRun run(std::size_t first, std::size_t count) const;
+  // In which the points lie whose regions meet the ball: wider by the largest r_f of the cloud.
+  Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + largest_fixture_radius_}; }
   PointCloud cloud_;
 
  private:

@@ -15,12 +15,14 @@ constexpr double kMostHops = 64;
 }  // namespace
 
 Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
-    : reach_(reach), pitch_(kPitch * reach), kernels_(kernels) {}
+    : reach_(reach),
+      pitch_(kPitch * reach),
+      // 0.8661 > sqrt(3)/2: from a cube's centre to its corner, with room for rounding.
+      list_radius_(reach_ + 0.8661 * pitch_),
+      kernels_(kernels) {}
 
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);
-  // 0.8661 > sqrt(3)/2: from a cube's centre to its corner, with room for rounding.
-  list_radius_ = reach_ + points_->largest_fixture_radius() + 0.8661 * pitch_;
   const auto reserve = [this](GatheredPoints& columns) {
     columns.reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
   };
@@ -50,25 +52,25 @@ void Neighbourhood::gather(Kept& kept) {
 
 const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {
   tube_.clear();
-  points_->gather({p, (radius + points_->largest_fixture_radius()) * (1 + 1e-9)}, kernels_, tube_);
+  points_->gather({p, radius * (1 + 1e-9)}, kernels_, tube_);
   tube_.finish();
   return tube_;
 }
 
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
-  const double girth = radius + points_->largest_fixture_radius();
   const Kept& here = kept_[present_];
-  const bool covered = here.valid && (p - here.centre).norm() + limit + girth <= list_radius_;
+  const bool covered = here.valid && (p - here.centre).norm() + limit + radius <= list_radius_;
   if (covered) return std::min(limit, kernels_.first_hit(here.points.view(), p.data(), u.data(), radius));
 
-  // A point first met between two hops lies within girth of that part of the axis, so it is in that hop's
-  // ball; the root is taken from p itself, whatever the hop, so the result does not depend on the hops.
+  // The region of a point first met between two hops comes within radius of that part of the axis, so it
+  // meets that hop's ball; the root is taken from p itself, whatever the hop, so the result does not depend
+  // on the hops.
   const double hop = std::max(2 * reach_, limit / kMostHops);
   for (double start = 0; start < limit; start += hop) {
     const double end = std::min(start + hop, limit);
     const double rounding = 1e-9 * (1 + end);
     tube_.clear();
-    points_->gather({p + 0.5 * (start + end) * u, 0.5 * (end - start) + girth + rounding}, kernels_, tube_);
+    points_->gather({p + 0.5 * (start + end) * u, 0.5 * (end - start) + radius + rounding}, kernels_, tube_);
     tube_.finish();
     const double hit = kernels_.first_hit(tube_.view(), p.data(), u.data(), radius);
     if (hit <= end) return hit;

@@ -41,7 +41,7 @@ class Neighbourhood {
 
   double reach_;
   double pitch_;  // edge of the cubes
-  double list_radius_ = 0;
+  double list_radius_;
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> points_;
   std::array<Kept, 4> kept_;

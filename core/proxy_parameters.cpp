@@ -6,7 +6,7 @@ namespace remote_touch {
 
 Parameters parameters(ProxyParameters& p) {
   return {
-      {"r1_m", &p.r1_m, 1e-6, 1, "a point nearer than this entrenches the proxy, Fig 4.2"},
+      {"r1_m", &p.r1_m, 1e-6, 1, "a region r_n nearer than this (5.5) entrenches the proxy, Fig 4.2, 5.3"},
       {"r2_m", &p.r2_m, 1e-6, 1,
        "a point nearer than this touches it; the contact radius r_c is (r1 + r2) / 2"},
       {"r3_m", &p.r3_m, 1e-6, 1, "points nearer than this form the normal (4.1)"},
@@ -24,13 +24,17 @@ Parameters parameters(ProxyParameters& p) {
        "step sizes of 4.2.4, or fixed small steps as in the predecessor [1]"},
       {"fixed_step_m", &p.fixed_step_m, 1e-7, 0.01, "step length of the fixed rule"},
       {"free_root", choice(p.free_root, {"ahead", "smallest_magnitude"}), 0, 0,
-       "root of (4.9): of points ahead only, or of smallest magnitude as printed"},
+       "root of (4.9), (5.9): of points ahead only, or of smallest magnitude as printed"},
+      {"exit_rule", choice(p.exit_rule, {"towards_hip", "out_of_contact"}), 0, 0,
+       "in contact with the HIP outside: straight to the HIP (4.7), or r2 - r1 along the normal (5.17)"},
       {"velocity_force", choice(p.velocity_force, {"minus", "plus", "none"}), 0, 0,
        "sign of the velocity term of (4.15); plus is printed and doubles the jump it should remove"},
       {"damping_sign", choice(p.damping_sign, {"plus", "minus"}), 0, 0,
        "sign of the damping term inside the bracket of (4.16); minus is printed and feeds energy in"},
       {"force_gate", choice(p.force_gate, {"latest_contact", "contact_now"}), 0, 0,
        "send (4.16) from the latest contact, or only when the tick ends in contact as printed"},
+      {"slave_command", choice(p.slave_command, {"proxy", "hip"}), 0, 0,
+       "where the slave robot is sent: to the proxy, a hard constraint, or to the HIP, a soft one, 5.2"},
   };
 }
 

@@ -9,9 +9,11 @@ namespace remote_touch {
 
 enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
 enum class FreeRoot { ahead, smallest_magnitude };  // of (4.9); the second is the printed text
-enum class VelocityForce { minus, plus, none };     // sign of the velocity term of (4.15); plus is printed
+enum class ExitRule { towards_hip, out_of_contact };  // in contact with the HIP outside: (4.7) or (5.17)
+enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
 enum class DampingSign { plus, minus };  // of the k_d term inside the bracket of (4.16); minus is printed
 enum class ForceGate { latest_contact, contact_now };  // when (4.16) is sent; the second is printed
+enum class SlaveCommand { proxy, hip };  // a hard constraint on the slave robot, or a soft one, 5.2
 
 struct ProxyParameters {
   double r1_m = 0.00499;
@@ -28,9 +30,11 @@ struct ProxyParameters {
   StepRule step_rule = StepRule::variable;
   double fixed_step_m = 1e-4;
   FreeRoot free_root = FreeRoot::ahead;
+  ExitRule exit_rule = ExitRule::towards_hip;
   VelocityForce velocity_force = VelocityForce::minus;
   DampingSign damping_sign = DampingSign::plus;
   ForceGate force_gate = ForceGate::latest_contact;
+  SlaveCommand slave_command = SlaveCommand::proxy;
 
   // The contact point lies in the middle of the contact region, 4.2.1.
   double contact_radius_m() const { return 0.5 * (r1_m + r2_m); }

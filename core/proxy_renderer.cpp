@@ -41,6 +41,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   const Vec3& hip_W = device.position_W;
   RenderOutput out;
   out.proxy_W = proxy_W_, out.normal_W = normal_W_;
+  out.slave_W = slave_W_;
   out.frame_index = frame_index_;
   out.carried_m = std::exchange(carried_m_, Vec3::Zero());
   if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
@@ -60,7 +61,10 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
     out.nearest_m = std::numeric_limits<double>::infinity();
     out.converged = true;
     out.status = RenderStatus::no_frame;
+    slave_W_ = hip_W;
   }
+  if (p_.slave_command == SlaveCommand::hip) slave_W_ = hip_W;
+  out.slave_W = slave_W_;
   stale_frame_ = false;
   return out;
 }
@@ -69,7 +73,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
 const ProxyRenderer::Look& ProxyRenderer::look() {
   if (has_look_ && proxy_W_ == looked_from_W_) return look_;
   look_.points = near_.around(proxy_W_).view();
-  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid()};
+  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
   look_.survey = kernels_.survey(look_.points, proxy_W_.data(), regions);
   look_.state = classify(look_.survey.nearest, p_);
   looked_from_W_ = proxy_W_;
@@ -91,6 +95,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
       contact_stiffness_N_per_m_ = stiffness(here.survey);
     }
     touched |= here.state != ContactState::free;
+    if (here.state != ContactState::entrenched) slave_W_ = proxy_W_;
 
     const Vec3 s = next_step(here, u);
     velocity_.on_step(s);  // (4.13)
@@ -124,6 +129,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   const Look& here = look();
   out.proxy_W = proxy_W_;
   out.state = here.state;
+  if (here.state != ContactState::entrenched) slave_W_ = proxy_W_;
   out.normal_W = unit_normal(here.survey, normal_W_);
   out.surface_velocity_m_per_s = velocity_.m_per_s();
   // The list of neighbours goes further than r3 in some directions: what it finds there is chance.

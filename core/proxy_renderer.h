@@ -43,9 +43,10 @@ class ProxyRenderer final : public Renderer {
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
-  bool placed_ = false;                  // the proxy starts at the first HIP
-  bool in_contact_ = false;              // until the proxy is free and unhindered again
-  Vec3 contact_proxy_W_ = Vec3::Zero();  // the latest proxy position in contact state
+  Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
+  bool placed_ = false;                    // the proxy starts at the first HIP
+  bool in_contact_ = false;                // until the proxy is free and unhindered again
+  Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   double frame_captured_s_ = 0, frame_arrived_s_ = 0;
   int frame_index_ = -1;

@@ -88,6 +88,8 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
 
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   const double height = u.dot(normal);
+  if (p.exit_rule == ExitRule::out_of_contact && height >= 0 && !u.isZero(0))
+    return (p.r2_m - p.r1_m) * normal;
   return step_towards(height < 0 ? Vec3(u - height * normal) : u, p);
 }
 

@@ -1,6 +1,8 @@
 // The seam of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
 #pragma once
 
+#include <limits>
+
 #include "core/frame.h"
 #include "core/vector.h"
 
@@ -22,6 +24,9 @@ enum class RenderStatus {
 struct RenderOutput {
   Vec3 proxy_W = Vec3::Zero();
   Vec3 force_N = Vec3::Zero();
+  // Where the slave robot is to go, 5.2: never a position of the proxy inside a region, so a command is
+  // repeated while there is no better one. NaN before the first.
+  Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   ContactState state = ContactState::free;  // of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
   double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)

@@ -91,7 +91,10 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    trace.append(time_s, device, out, scenario->signed_distance(out.proxy_W, time_s), frames.newest_hash());
+    const double proxy_distance = scenario->signed_distance(out.proxy_W, time_s);
+    const double slave_distance =
+        out.slave_W == out.proxy_W ? proxy_distance : scenario->signed_distance(out.slave_W, time_s);
+    trace.append(time_s, device, out, {proxy_distance, slave_distance, frames.newest_hash()});
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }

@@ -148,7 +148,7 @@ cp "$made" "$2"
     for (int i = 0; i < 20; ++i) {
       RenderOutput out;
       out.force_N = Vec3(1, 2, 0.5 * i), out.state = ContactState::contact;
-      made.append(0.001 * i, {Vec3(0, 0.01, 0)}, out, 0.01, 77);
+      made.append(0.001 * i, {Vec3(0, 0.01, 0)}, out, {0.01, 0.01, 77});
     }
     change(made);
     write_trace(folder_ / name, made, attributes, {});
@@ -224,7 +224,7 @@ TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
     EXPECT_HAS(message, "(row 11)");
   }
   trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) {
-    made.append(1, {}, {}, 0);  // a row more
+    made.append(1, {}, {}, {});  // a row more
   });
   EXPECT_HAS(refused(programs), "20 rows of 1 against 21 rows of 1");
 }

@@ -18,7 +18,7 @@ using Real = long double;
 using std::nextafter;
 constexpr double kReach = 0.005;  // r_c
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr ProxyRegions kRegions{0.00499, 0.00501, 0.01, 1.5 * 1024};
+constexpr ProxyRegions kRegions{0.00499, 0.00501, 0.01, 1.5 * 1024, 600};
 constexpr double kOnGrid =
     kRegions.sum_grid / 1.5 * 0x1p-53;  // half a step of the grid that terms are rounded to
 const Vec3 kOrigin = Vec3::Zero();
@@ -264,11 +264,9 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
   for (std::size_t length = 0; length <= 40; ++length) lengths.push_back(length);
 
   const std::size_t before = 3;
-  const double at_point = cloud.point(2).x() * cloud.point(2).x() + cloud.point(2).y() * cloud.point(2).y() +
-                          cloud.point(2).z() * cloud.point(2).z();
   for (const Kernels* kernels : every_level())
     for (const std::size_t length : lengths)
-      for (const double squared : {at_point, 0.0, kInfinity})
+      for (const double reach : {0.007, 0.0, kInfinity})
         for (const bool named : {false, true}) {
           const std::size_t room = before + length + kLanes;
           std::vector<double> out[5];
@@ -278,13 +276,14 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
               {cloud.x.data(), cloud.y.data(), cloud.z.data(),
                named ? cloud.fixture_radius_m.data() : nullptr, cloud.stiffness_N_per_m.data(),
                named ? names.data() : nullptr, 900, length},
-              kOrigin.data(), squared,
+              kOrigin.data(), reach,
               {out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), index.data()},
               before);
           std::size_t n = before;
           for (std::size_t i = 0; i < length; ++i) {
             const Vec3 p = cloud.point(i);
-            if (!(p.x() * p.x() + p.y() * p.y() + p.z() * p.z() <= squared)) continue;
+            const double far = named ? reach + cloud.fixture_radius_m[i] : reach;
+            if (!(p.x() * p.x() + p.y() * p.y() + p.z() * p.z() <= far * far)) continue;
             ASSERT_LT(n, count);
             EXPECT_EQ(Vec3(out[0][n], out[1][n], out[2][n]), p);
             EXPECT_EQ(index[n], named ? names[i] : 900 + i);

@@ -26,7 +26,8 @@ Trace trace_of(const std::vector<Tick>& ticks) {
     out.converged = tick.converged;
     out.frame_index = tick.frame;
     out.nearest_m = tick.nearest;
-    trace.append(0.001 * static_cast<double>(trace.length()), {}, out, tick.signed_distance);
+    trace.append(0.001 * static_cast<double>(trace.length()), {}, out,
+                 {tick.signed_distance, tick.signed_distance, 0});
   }
   return trace;
 }

@@ -50,18 +50,18 @@ TEST_F(CompareTraceFiles, TheSameRunTwice) {
   EXPECT_EQ(same.kind, "trace");
   EXPECT_EQ(same.baseline, (folder_ / "a.h5").string());
   EXPECT_EQ(same.candidate, (folder_ / "b.h5").string());
-  EXPECT_EQ(same.verdict, "16 columns, every number is the same");
+  EXPECT_EQ(same.verdict, "18 columns, every number is the same");
   EXPECT_TRUE(same.configuration.empty() && same.provenance.empty());
   const json told = json_of(same);
   EXPECT_EQ(told["outcome"], "same");
   EXPECT_TRUE(told["divergence"].is_null());
-  EXPECT_EQ(told["columns"].size(), 16u);
+  EXPECT_EQ(told["columns"].size(), 18u);
   for (const json& column : told["columns"]) {
     EXPECT_EQ(column["same"], true);
     EXPECT_EQ(column["rows"], 867);
     EXPECT_TRUE(column["first_difference"].is_null());
   }
-  EXPECT_HAS(junit_of(same), counts(17, 0, 0));
+  EXPECT_HAS(junit_of(same), counts(19, 0, 0));
   EXPECT_FALSE(contains(junit_of(same), "<failure"));
 }
 
@@ -117,7 +117,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   rules.tolerances = {{"force", {1e-6, 1e-9}}, {"*", {1e-12, 0}}};
   const ResultComparison other = compare("a.h5", "b.h5", rules);
   EXPECT_EQ(other.outcome, Outcome::regressed);
-  EXPECT_HAS(other.verdict, "force and 2 more of 16 columns, from tick 410 on (");
+  EXPECT_HAS(other.verdict, "force and 2 more of 18 columns, from tick 410 on (");
   const json told = json_of(other), divergence = told["divergence"];
   EXPECT_EQ(told["outcome"], "regressed");
   EXPECT_EQ(told["verdict"], other.verdict);
@@ -158,7 +158,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
     }
   }
   const std::string xml = junit_of(other);
-  EXPECT_HAS(xml, counts(17, 4, 0));
+  EXPECT_HAS(xml, counts(19, 4, 0));
   EXPECT_HAS(xml, "<testcase classname=\"baseline.h5\" name=\"time\"/>");
   EXPECT_HAS(xml, "name=\"force\"><failure message=\"2 of 867 rows outside, the largest deviation 0.25\"/>");
   EXPECT_HAS(xml, "name=\"trace\"><failure message=\"force and 2 more");
@@ -208,8 +208,8 @@ TEST_F(CompareTraceFiles, AShorterRunIsARegression) {
     const ResultComparison other = compare(baseline, candidate);
     EXPECT_EQ(other.outcome, Outcome::regressed);
     EXPECT_FALSE(other.columns->divergence);
-    EXPECT_HAS(other.verdict, "time and 15 more of 16 columns");
-    EXPECT_HAS(junit_of(other), counts(17, 17, 0));
+    EXPECT_HAS(other.verdict, "time and 17 more of 18 columns");
+    EXPECT_HAS(junit_of(other), counts(19, 19, 0));
   }
 }
 

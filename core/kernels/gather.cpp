@@ -13,12 +13,13 @@ namespace {
 #if defined(__AVX512F__)
 
 template <bool kIndexed, bool kExtra>
-std::size_t append_columns(PointRun run, const double centre[3], double radius_squared, const PointSink& to,
+std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
   const bool skip = run.rows == 1;
   const __m512d cx = _mm512_set1_pd(centre[0]), cy = _mm512_set1_pd(centre[1]),
-                cz = _mm512_set1_pd(centre[2]), limit = _mm512_set1_pd(radius_squared);
+                cz = _mm512_set1_pd(centre[2]), ball = _mm512_set1_pd(reach),
+                all = _mm512_set1_pd(reach * reach);
   __m256i row_index = _mm256_add_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
                                        _mm256_set1_epi32(static_cast<int>(run.first_index)));
   const __m256i row_step = _mm256_set1_epi32(static_cast<int>(run.stride));
@@ -34,6 +35,12 @@ std::size_t append_columns(PointRun run, const double centre[3], double radius_s
       const __m512d dx = _mm512_sub_pd(x, cx), dy = _mm512_sub_pd(y, cy), dz = _mm512_sub_pd(z, cz);
       const __m512d squared =
           _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
+      __m512d radius = ball, limit = all;
+      if (kExtra && run.radius) {
+        radius = _mm512_maskz_loadu_pd(live, run.radius + i);
+        const __m512d far = _mm512_add_pd(ball, radius);
+        limit = _mm512_mul_pd(far, far);
+      }
       const __mmask8 in = _mm512_mask_cmp_pd_mask(live, squared, limit, _CMP_LE_OQ);
       if (kIndexed) index = _mm256_maskz_loadu_epi32(live, run.index + i);
       const __m256i found = _mm256_maskz_compress_epi32(in, index);
@@ -43,9 +50,7 @@ std::size_t append_columns(PointRun run, const double centre[3], double radius_s
       _mm512_storeu_pd(sink.y + n, _mm512_maskz_compress_pd(in, y));
       _mm512_storeu_pd(sink.z + n, _mm512_maskz_compress_pd(in, z));
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(sink.index + n), found);
-      if (kExtra && run.radius)
-        _mm512_storeu_pd(sink.radius + n,
-                         _mm512_maskz_compress_pd(in, _mm512_maskz_loadu_pd(live, run.radius + i)));
+      if (kExtra && run.radius) _mm512_storeu_pd(sink.radius + n, _mm512_maskz_compress_pd(in, radius));
       if (kExtra && run.stiffness)
         _mm512_storeu_pd(sink.stiffness + n,
                          _mm512_maskz_compress_pd(in, _mm512_maskz_loadu_pd(live, run.stiffness + i)));
@@ -71,12 +76,13 @@ struct Squeeze {
 constexpr Squeeze kSqueeze;
 
 template <bool kIndexed, bool kExtra>
-std::size_t append_columns(PointRun run, const double centre[3], double radius_squared, const PointSink& to,
+std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
   const bool skip = run.rows == 1;
   const __m256d cx = _mm256_set1_pd(centre[0]), cy = _mm256_set1_pd(centre[1]),
-                cz = _mm256_set1_pd(centre[2]), limit = _mm256_set1_pd(radius_squared);
+                cz = _mm256_set1_pd(centre[2]), ball = _mm256_set1_pd(reach),
+                all = _mm256_set1_pd(reach * reach);
   const __m256i lanes = _mm256_setr_epi64x(0, 1, 2, 3);
   const __m128i words = _mm_setr_epi32(0, 1, 2, 3);
   __m128i row_index = _mm_add_epi32(words, _mm_set1_epi32(static_cast<int>(run.first_index)));
@@ -92,6 +98,12 @@ std::size_t append_columns(PointRun run, const double centre[3], double radius_s
       const __m256d dx = _mm256_sub_pd(x, cx), dy = _mm256_sub_pd(y, cy), dz = _mm256_sub_pd(z, cz);
       const __m256d squared =
           _mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(dx, dx), _mm256_mul_pd(dy, dy)), _mm256_mul_pd(dz, dz));
+      __m256d radius = ball, limit = all;
+      if (kExtra && run.radius) {
+        radius = _mm256_maskload_pd(run.radius + i, live);
+        const __m256d far = _mm256_add_pd(ball, radius);
+        limit = _mm256_mul_pd(far, far);
+      }
       const int in = _mm256_movemask_pd(
           _mm256_and_pd(_mm256_cmp_pd(squared, limit, _CMP_LE_OQ), _mm256_castsi256_pd(live)));
       const __m128i here = index;
@@ -103,7 +115,7 @@ std::size_t append_columns(PointRun run, const double centre[3], double radius_s
                          _mm256_castsi256_pd(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(v), from)));
       };
       put(sink.x, x), put(sink.y, y), put(sink.z, z);
-      if (kExtra && run.radius) put(sink.radius, _mm256_maskload_pd(run.radius + i, live));
+      if (kExtra && run.radius) put(sink.radius, radius);
       if (kExtra && run.stiffness) put(sink.stiffness, _mm256_maskload_pd(run.stiffness + i, live));
       const __m128i source =
           kIndexed ? _mm_maskload_epi32(
@@ -123,8 +135,8 @@ std::size_t append_columns(PointRun run, const double centre[3], double radius_s
 
 // Every point is stored, and only a survivor moves the end on.
 template <bool kIndexed, bool kExtra>
-std::size_t append_short(const PointRun& run, std::size_t start, const double centre[3],
-                         double radius_squared, const PointSink& sink, std::size_t n) {
+std::size_t append_short(const PointRun& run, std::size_t start, const double centre[3], double reach,
+                         const PointSink& sink, std::size_t n) {
   const double cx = centre[0], cy = centre[1], cz = centre[2];
   const double *xs = run.x, *ys = run.y, *zs = run.z;
   const std::uint32_t *indices = run.index, first = run.first_index;
@@ -137,14 +149,15 @@ std::size_t append_short(const PointRun& run, std::size_t start, const double ce
     index_out[n] = kIndexed ? indices[i] : first + static_cast<std::uint32_t>(i);
     if (kExtra && run.radius) sink.radius[n] = run.radius[i];
     if (kExtra && run.stiffness) sink.stiffness[n] = run.stiffness[i];
-    n += dx * dx + dy * dy + dz * dz <= radius_squared ? 1 : 0;
+    const double far = kExtra && run.radius ? reach + run.radius[i] : reach;
+    n += dx * dx + dy * dy + dz * dz <= far * far ? 1 : 0;
   }
   return n;
 }
 
 // Distances first, in a loop the compiler turns into vectors, then the survivors, few among many.
 template <bool kIndexed, bool kExtra>
-std::size_t append_long(const PointRun& run, std::size_t start, const double centre[3], double radius_squared,
+std::size_t append_long(const PointRun& run, std::size_t start, const double centre[3], double reach,
                         const PointSink& sink, std::size_t n) {
   constexpr std::size_t kChunk = 64;
   double squared[kChunk];
@@ -157,7 +170,8 @@ std::size_t append_long(const PointRun& run, std::size_t start, const double cen
       squared[i] = dx * dx + dy * dy + dz * dz;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      if (!(squared[i] <= radius_squared)) continue;
+      const double far = kExtra && run.radius ? reach + run.radius[at + i] : reach;
+      if (!(squared[i] <= far * far)) continue;
       sink.x[n] = x[i], sink.y[n] = y[i], sink.z[n] = z[i];
       sink.index[n] = kIndexed ? run.index[at + i] : run.first_index + static_cast<std::uint32_t>(at + i);
       if (kExtra && run.radius) sink.radius[n] = run.radius[at + i];
@@ -169,11 +183,11 @@ std::size_t append_long(const PointRun& run, std::size_t start, const double cen
 }
 
 template <bool kIndexed, bool kExtra>
-std::size_t append_columns(const PointRun& run, const double centre[3], double radius_squared,
-                           const PointSink& sink, std::size_t n) {
+std::size_t append_columns(const PointRun& run, const double centre[3], double reach, const PointSink& sink,
+                           std::size_t n) {
   for (std::size_t row = 0, start = 0; row < run.rows; ++row, start += run.stride)
-    n = run.count <= 64 ? append_short<kIndexed, kExtra>(run, start, centre, radius_squared, sink, n)
-                        : append_long<kIndexed, kExtra>(run, start, centre, radius_squared, sink, n);
+    n = run.count <= 64 ? append_short<kIndexed, kExtra>(run, start, centre, reach, sink, n)
+                        : append_long<kIndexed, kExtra>(run, start, centre, reach, sink, n);
   return n;
 }
 
@@ -181,14 +195,14 @@ std::size_t append_columns(const PointRun& run, const double centre[3], double r
 
 }  // namespace
 
-std::size_t append_within(const PointRun& run, const double centre[3], double radius_squared,
-                          const PointSink& sink, std::size_t n) {
+std::size_t append_within(const PointRun& run, const double centre[3], double reach, const PointSink& sink,
+                          std::size_t n) {
   const bool extra = run.radius || run.stiffness;
   if (run.index)
-    return extra ? append_columns<true, true>(run, centre, radius_squared, sink, n)
-                 : append_columns<true, false>(run, centre, radius_squared, sink, n);
-  return extra ? append_columns<false, true>(run, centre, radius_squared, sink, n)
-               : append_columns<false, false>(run, centre, radius_squared, sink, n);
+    return extra ? append_columns<true, true>(run, centre, reach, sink, n)
+                 : append_columns<true, false>(run, centre, reach, sink, n);
+  return extra ? append_columns<false, true>(run, centre, reach, sink, n)
+               : append_columns<false, false>(run, centre, reach, sink, n);
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

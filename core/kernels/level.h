@@ -7,7 +7,7 @@
 
 #define REMOTE_TOUCH_DECLARE_KERNELS(level)                                                               \
   namespace remote_touch::level {                                                                         \
-  std::size_t append_within(const PointRun& run, const double centre[3], double radius_squared,           \
+  std::size_t append_within(const PointRun& run, const double centre[3], double reach,                    \
                             const PointSink& sink, std::size_t count);                                    \
   Survey survey(const PointsView& points, const double p[3], const ProxyRegions& regions);                \
   double first_hit(const PointsView& points, const double p[3], const double direction[3], double reach); \

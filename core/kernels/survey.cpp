@@ -103,6 +103,7 @@ Survey survey_columns(const PointsView& points, const double p[3], const ProxyRe
   const Lanes px = zero + p[0], py = zero + p[1], pz = zero + p[2];
   const Lanes r1 = zero + regions.r1, r2 = zero + regions.r2, r3 = zero + regions.r3;
   const Lanes scale = zero + 1.0 / (regions.r3 - regions.r1), grid = zero + regions.sum_grid;
+  const Lanes own = zero + regions.stiffness;
   const double stiffness_grid = regions.sum_grid * 1048576.0;  // k_s is at most 2^20 N/m
   const std::size_t vectors = points.padded_count / kWidth;
 
@@ -129,7 +130,8 @@ Survey survey_columns(const PointsView& points, const double p[3], const ProxyRe
     touching -= (Bits)(r <= r2);  // a true lane is -1
     if (kStiffness) {
       weights += (Bits)(psi + grid);
-      stiffness += (Bits)(psi * load(points.stiffness + i) + stiffness_grid);
+      const Lanes k = load(points.stiffness + i);
+      stiffness += (Bits)(psi * (k == k ? k : own) + stiffness_grid);
     }
   }
   const std::size_t count = points.padded_count;

@@ -24,7 +24,8 @@ Trace settled(const Trace& trace) {
     if (trace.time_s[i] < 1.0) continue;
     RenderOutput out;
     out.proxy_W = trace.proxy(i), out.force_N = trace.force(i), out.frame_index = trace.frame_index[i];
-    part.append(trace.time_s[i], {trace.hip(i)}, out, trace.signed_distance_m[i]);
+    part.append(trace.time_s[i], {trace.hip(i)}, out,
+                {trace.signed_distance_m[i], trace.slave_distance_m[i], 0});
   }
   return part;
 }

@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 double difference(double a, double b) {
-  if (a == b) return 0;  // two infinities too
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;  // two infinities too
   const double d = std::abs(a - b);
   return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
 }
@@ -30,7 +30,8 @@ constexpr std::size_t kQuantities = 6;
 std::array<double, kQuantities> differences(const RenderOutput& a, const RenderOutput& b, bool rounded) {
   // Far from the points the weights of a normal are as small as their own rounding.
   const bool normal_counts = !rounded || a.state != ContactState::free;
-  return {std::max(difference(a.proxy_W, b.proxy_W), difference(a.carried_m, b.carried_m)),
+  return {std::max({difference(a.proxy_W, b.proxy_W), difference(a.carried_m, b.carried_m),
+                    difference(a.slave_W, b.slave_W)}),
           difference(a.nearest_m, b.nearest_m),
           difference(a.force_N, b.force_N),
           difference(a.surface_velocity_m_per_s, b.surface_velocity_m_per_s),

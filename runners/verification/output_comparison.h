@@ -18,7 +18,7 @@ struct OutputTolerance {
 
 // The largest difference of one kind.
 struct Deviation {
-  const char* quantity;  // "position" (of the proxy, and carried), "nearest", "force", "velocity", "normal",
+  const char* quantity;  // "position" (of the proxy and slave, and carried), "nearest", "force", "velocity", "normal",
                          // or "other": 1 where state, steps, counts, frame or status differ
   const char* unit;
   double tolerance = 0;

@@ -80,7 +80,9 @@ Trace simulate_with(const Experiment& experiment, const Kernels& kernels, const 
       renderer->on_frame({next, scenario.captured_s(next), scenario.captured_s(next), scenario.points(next)});
     const DeviceState device = trajectory->at(time_s);
     const RenderOutput out = renderer->step(device, time_s);
-    trace.append(time_s, device, out, scenario.signed_distance(out.proxy_W, time_s));
+    trace.append(
+        time_s, device, out,
+        {scenario.signed_distance(out.proxy_W, time_s), scenario.signed_distance(out.slave_W, time_s), 0});
   }
   return trace;
 }

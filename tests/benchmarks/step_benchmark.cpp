@@ -63,7 +63,8 @@ struct NaiveStep {
 // State, normal and contact step from a list of points, as ProxyRenderer::look() and next_step() make them.
 naive::Step step_from(const GatheredPoints& list, double sum_grid, const Kernels& kernels,
                       const Vec3& proxy_W, const Vec3& hip_W) {
-  const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, sum_grid};
+  const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, sum_grid,
+                             kSettings.stiffness_N_per_m};
   const Survey survey = kernels.survey(list.view(), proxy_W.data(), regions);
   naive::Step out;
   out.nearest_m = survey.nearest;
