@@ -3,6 +3,7 @@
 // bits.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct NoiseKey {
 };
 
 // Independent uses of one key.
-enum class NoiseUse : std::uint32_t { point_position = 0, depth = 1 };
+enum class NoiseUse : std::uint32_t { point_position = 0, depth = 1, delivery = 2 };
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
 inline constexpr double kLargestNormal = 6.661;
@@ -29,6 +30,10 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
           {frame | static_cast<std::uint32_t>(use) << 28, static_cast<std::uint32_t>(key.cell),
            static_cast<std::uint32_t>(key.replicate)}};
 }
+
+// The random words of one point of the stream, as numbers evenly spread in (0, 1); the normals of the same
+// point are made of the same words.
+std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
 
 // What a normal must be, at least `least` towards positive values (or negative, where towards is below 0), as
 // a question about the two random words that it is made of: its radius falls with the first, its sign follows

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/fixtures/fixture_rule.h"
 #include "core/kernels.h"
 #include "core/noise.h"
 #include "core/parameter.h"
@@ -56,6 +57,7 @@ struct CatalogEntry {
 };
 
 using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
+using FixtureEntry = CatalogEntry<FixtureRule>;
 using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
 using RendererEntry = CatalogEntry<Renderer, double, const Kernels&>;  // the haptic rate in Hz
 

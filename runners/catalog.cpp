@@ -1,5 +1,9 @@
 #include "runners/catalog.h"
 
+#include "core/fixtures/everywhere.h"
+#include "core/fixtures/half_space.h"
+#include "core/fixtures/hue_range.h"
+#include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
 #include "runners/trajectories/follow_surface.h"
 #include "runners/trajectories/image_press.h"
@@ -8,6 +12,8 @@
 #include "runners/trajectories/waypoints.h"
 #include "scenarios/camera_scene.h"
 #include "scenarios/flat_grid.h"
+#include "scenarios/image_mask.h"
+#include "scenarios/listed_points.h"
 #include "scenarios/moving_lift.h"
 #include "scenarios/recorded_scene.h"
 #include "scenarios/triangle_wave.h"
@@ -28,6 +34,11 @@ ScenarioEntry scenario(const char* name, const char* summary) {
 }
 
 template <class Product>
+FixtureEntry fixture(const char* name, const char* summary) {
+  return {name, summary, blueprint<Product, typename Product::Settings, FixtureRule>};
+}
+
+template <class Product>
 TrajectoryEntry trajectory(const char* name, const char* summary) {
   return {name, summary, blueprint<Product, typename Product::Settings, Trajectory, const Scenario&>};
 }
@@ -43,7 +54,16 @@ const ScenarioEntry kScenarios[] = {
     scenario<TriangleWave>("triangle-wave", "sharp edges of growing height, 4.3.3"),
     scenario<CameraScene>("camera-scene",
                           "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
+    scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
     scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
+};
+
+const FixtureEntry kFixtures[] = {
+    fixture<Everywhere>("everywhere", "every point, 5.3.3"),
+    fixture<HalfSpace>("half-space", "the points on one side of a plane, 5.3.2"),
+    fixture<NearPoint>("near-point", "the points around a picked one: a place, or what a pixel sees"),
+    fixture<HueRange>("hue-range", "the points of a colour"),
+    fixture<ImageMask>("image-mask", "the points whose pixels a mask image marks"),
 };
 
 const TrajectoryEntry kTrajectories[] = {
@@ -56,13 +76,16 @@ const TrajectoryEntry kTrajectories[] = {
 };
 
 const RendererEntry kRenderers[] = {
-    renderer<ProxyRenderer, ProxyParameters>("proxy", "3-DOF point cloud proxy, chapter 4"),
+    renderer<ProxyRenderer, ProxyParameters>("proxy", "3-DOF point cloud proxy, chapters 4 and 5"),
 };
 
 }  // namespace
 
 std::span<const ScenarioEntry> scenarios() {
   return kScenarios;
+}
+std::span<const FixtureEntry> fixtures() {
+  return kFixtures;
 }
 std::span<const TrajectoryEntry> trajectories() {
   return kTrajectories;

@@ -1,5 +1,5 @@
-// Everything that an experiment can name. A new scenario, trajectory or renderer is one file pair and one
-// line here; tests/contract_test.cpp then holds it to its seam's contract.
+// Everything that an experiment can name. A new scenario, fixture rule, trajectory or renderer is one file
+// pair and one line here; tests/contract_test.cpp then holds it to its seam's contract.
 #pragma once
 
 #include <span>
@@ -11,6 +11,7 @@
 namespace remote_touch {
 
 std::span<const ScenarioEntry> scenarios();
+std::span<const FixtureEntry> fixtures();
 std::span<const TrajectoryEntry> trajectories();
 std::span<const RendererEntry> renderers();
 

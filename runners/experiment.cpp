@@ -12,7 +12,11 @@ Parameters parameters(RunSettings& s) {
       {"title", &s.title, 0, 0, "one line for lists"},
       {"duration_s", &s.duration_s, 0, 86400, "simulated time; 0: as long as the trajectory lasts"},
       {"haptic_rate_hz", &s.haptic_rate_hz, 100, 10000, "haptic ticks per second, f_h of (4.16)"},
-      {"frame_latency_s", &s.frame_latency_s, 0, 10, "time from the capture of a frame to its arrival"},
+      {"frame_latency_s", &s.delivery.latency_s, 0, 10,
+       "shortest time from the capture of a frame to its arrival"},
+      {"frame_jitter_s", &s.delivery.jitter_s, 0, 10,
+       "up to so much is added to it, evenly spread and drawn for each frame; they may overtake each other"},
+      {"frame_drop_probability", &s.delivery.drop_probability, 0, 1, "share of the frames that never arrive"},
       {"seed", &s.key.seed, 0, 18446744073709551615.0, "key of all noise"},
       {"cell", &s.key.cell, 0, 4294967295.0, "second key of the noise: the cell of a sweep"},
       {"replicate", &s.key.replicate, 0, 4294967295.0, "third key of the noise: the repetition of a cell"},
@@ -22,28 +26,43 @@ Parameters parameters(RunSettings& s) {
 namespace {
 
 template <class Entry>
-auto read_part(const Json& configuration, std::span<const Entry> entries, const std::string& part,
-               std::string& name) {
-  const auto found = configuration.find(part);
-  if (found != configuration.end() && found->is_object() && found->contains("name") &&
-      !(*found)["name"].is_string())
-    throw InputError(part + ".name = " + (*found)["name"].dump(),
-                     "allowed a name that remote-touch list prints");
-  if (found == configuration.end() || !found->is_object() || !found->contains("name"))
-    throw InputError(part, "missing; allowed {\"name\": ..., parameters}");
-  name = (*found)["name"].template get<std::string>();
-  auto blueprint = find_entry(entries, name, part + ".name").make();
-  read_parameters(*found, blueprint->settings(), part, true);
-  const std::string contradiction = blueprint->contradiction();
+Part<Entry> read_part(const Json& json, std::span<const Entry> entries, const std::string& path) {
+  if (json.is_object() && json.contains("name") && !json["name"].is_string())
+    throw InputError(path + ".name = " + json["name"].dump(), "allowed a name that remote-touch list prints");
+  if (!json.is_object() || !json.contains("name"))
+    throw InputError(path, "missing; allowed {\"name\": ..., parameters}");
+  Part<Entry> part;
+  part.name = json["name"].template get<std::string>();
+  part.blueprint = find_entry(entries, part.name, path + ".name").make();
+  read_parameters(json, part.blueprint->settings(), path, true);
+  const std::string contradiction = part.blueprint->contradiction();
   if (!contradiction.empty())
-    throw InputError(part + "." + contradiction, "together with the other settings");
-  return blueprint;
+    throw InputError(path + "." + contradiction, "together with the other settings");
+  return part;
 }
 
-template <class Blueprint>
-Json part_json(const std::string& name, const Blueprint& blueprint) {
-  Json json = {{"name", name}};
-  write_parameters(blueprint->settings(), json);
+// The value of a key, which is then no longer in the configuration.
+Json taken(Json& configuration, const std::string& key) {
+  const auto found = configuration.find(key);
+  if (found == configuration.end()) return {};
+  Json value = std::move(*found);
+  configuration.erase(found);
+  return value;
+}
+
+std::vector<Part<FixtureEntry>> read_fixtures(const Json& list) {
+  std::vector<Part<FixtureEntry>> parts;
+  if (list.is_null()) return parts;
+  if (!list.is_array()) throw InputError("fixtures", "allowed a list of {\"name\": ..., parameters}");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    parts.push_back(read_part(list[i], fixtures(), "fixtures." + std::to_string(i)));
+  return parts;
+}
+
+template <class Entry>
+Json part_json(const Part<Entry>& part) {
+  Json json = {{"name", part.name}};
+  write_parameters(part.blueprint->settings(), json);
   return json;
 }
 
@@ -59,11 +78,10 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
 
 Experiment Experiment::from_json(Json configuration) {
   Experiment experiment;
-  experiment.scenario_ = read_part(configuration, scenarios(), "scenario", experiment.scenario_name_);
-  experiment.renderer_ = read_part(configuration, renderers(), "renderer", experiment.renderer_name_);
-  experiment.trajectory_ =
-      read_part(configuration, trajectories(), "trajectory", experiment.trajectory_name_);
-  for (const char* part : {"scenario", "renderer", "trajectory"}) configuration.erase(part);
+  experiment.scenario_ = read_part(taken(configuration, "scenario"), scenarios(), "scenario");
+  experiment.fixtures_ = read_fixtures(taken(configuration, "fixtures"));
+  experiment.renderer_ = read_part(taken(configuration, "renderer"), renderers(), "renderer");
+  experiment.trajectory_ = read_part(taken(configuration, "trajectory"), trajectories(), "trajectory");
   read_parameters(configuration, parameters(experiment.settings_), "", false);
   return experiment;
 }
@@ -77,29 +95,40 @@ std::string Experiment::to_json() const {
   Json json = Json::object();
   RunSettings settings = settings_;
   write_parameters(parameters(settings), json);
-  json["scenario"] = part_json(scenario_name_, scenario_);
-  json["renderer"] = part_json(renderer_name_, renderer_);
-  json["trajectory"] = part_json(trajectory_name_, trajectory_);
+  json["scenario"] = part_json(scenario_);
+  json["fixtures"] = Json::array();
+  for (const auto& rule : fixtures_) json["fixtures"].push_back(part_json(rule));
+  json["renderer"] = part_json(renderer_);
+  json["trajectory"] = part_json(trajectory_);
   return json.dump();
 }
 
 std::vector<RecordingPart> Experiment::inputs() const {
-  std::vector<RecordingPart> all = scenario_->inputs();
-  for (const auto& parts : {renderer_->inputs(), trajectory_->inputs()})
+  std::vector<RecordingPart> all = scenario_.blueprint->inputs();
+  const auto add = [&](const std::vector<RecordingPart>& parts) {
     all.insert(all.end(), parts.begin(), parts.end());
+  };
+  for (const auto& rule : fixtures_) add(rule.blueprint->inputs());
+  add(renderer_.blueprint->inputs()), add(trajectory_.blueprint->inputs());
   return all;
 }
 
 std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) const {
-  return scenario_->build(settings_.key, kernels);
+  return scenario_.blueprint->build(settings_.key, kernels);
 }
 
 std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenario) const {
-  return trajectory_->build(scenario);
+  return trajectory_.blueprint->build(scenario);
 }
 
 std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels) const {
-  return renderer_->build(settings_.haptic_rate_hz, kernels);
+  return renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
+}
+
+FixtureAssignment Experiment::build_fixtures() const {
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  for (const auto& rule : fixtures_) rules.push_back(rule.blueprint->build());
+  return FixtureAssignment(std::move(rules));
 }
 
 }  // namespace remote_touch

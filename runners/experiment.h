@@ -1,4 +1,4 @@
-// One resolved configuration: scenario, renderer, trajectory, durations, seed.
+// One resolved configuration: scenario, fixtures, renderer, trajectory, durations, seed.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runners/catalog.h"
+#include "runners/frame_stream.h"
 #include "runners/stored.h"
 
 namespace remote_touch {
@@ -15,12 +16,19 @@ namespace remote_touch {
 struct RunSettings {
   double duration_s = 0;
   double haptic_rate_hz = 1000;
-  double frame_latency_s = 0;
+  Delivery delivery;
   NoiseKey key;
   std::string title;
 };
 
 Parameters parameters(RunSettings& s);
+
+// A catalog entry by its name, with settings.
+template <class Entry>
+struct Part {
+  std::string name;
+  decltype(Entry{}.make()) blueprint;
+};
 
 class Experiment {
  public:
@@ -40,13 +48,14 @@ class Experiment {
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
   std::unique_ptr<Renderer> build_renderer(const Kernels& kernels) const;
+  FixtureAssignment build_fixtures() const;
 
  private:
   RunSettings settings_;
-  std::string scenario_name_, renderer_name_, trajectory_name_;
-  decltype(ScenarioEntry{}.make()) scenario_;
-  decltype(RendererEntry{}.make()) renderer_;
-  decltype(TrajectoryEntry{}.make()) trajectory_;
+  Part<ScenarioEntry> scenario_;
+  std::vector<Part<FixtureEntry>> fixtures_;
+  Part<RendererEntry> renderer_;
+  Part<TrajectoryEntry> trajectory_;
 };
 
 }  // namespace remote_touch

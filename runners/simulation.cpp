@@ -1,48 +1,15 @@
 #include "runners/simulation.h"
 
-#include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
-#include "analysis/fingerprint.h"
 #include "core/input_error.h"
+#include "runners/frame_stream.h"
 
 namespace remote_touch {
 
 namespace {
-
-// Hands frames over when they arrive.
-class FrameStream {
- public:
-  FrameStream(const Scenario& scenario, double latency_s, bool hash_frames)
-      : scenario_(scenario), latency_s_(latency_s), hash_frames_(hash_frames) {}
-
-  void deliver_until(double time_s, Renderer& renderer) {
-    while (next_ < scenario_.frame_count() &&
-           scenario_.captured_s(next_) + latency_s_ <= time_s + kSameTime_s) {
-      const double captured = scenario_.captured_s(next_);
-      const auto points = scenario_.points(next_);
-      // Points that come with another time stamp are another frame.
-      if (hash_frames_) hash_ = mixed(hash_of(*points), std::bit_cast<std::uint64_t>(captured));
-      renderer.on_frame({next_, captured, captured + latency_s_, points});
-      ++next_;
-    }
-  }
-  std::uint64_t newest_hash() const { return hash_; }
-
- private:
-  std::uint64_t hash_of(const NeighbourSearch& points) const {
-    const auto* stored =
-        dynamic_cast<const CloudSearch*>(&points);  // else its points are made when asked for
-    return stored ? fingerprint(stored->cloud()) : fingerprint(scenario_.cloud(next_));
-  }
-
-  const Scenario& scenario_;
-  double latency_s_;
-  bool hash_frames_;
-  int next_ = 0;
-  std::uint64_t hash_ = 0;
-};
 
 std::size_t tick_count(const Experiment& experiment, const Trajectory& trajectory) {
   const RunSettings& settings = experiment.settings();
@@ -54,6 +21,17 @@ std::size_t tick_count(const Experiment& experiment, const Trajectory& trajector
     throw InputError("duration_s = " + std::to_string(duration),
                      "shorter than a tick; allowed 1 tick or more");
   return static_cast<std::size_t>(ticks);
+}
+
+Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s,
+                   std::uint64_t frame_hash) {
+  const double proxy_m = scenario.signed_distance(out.proxy_W, time_s);
+  double slave_m = proxy_m;
+  if (!out.slave_W.allFinite())
+    slave_m = std::numeric_limits<double>::quiet_NaN();
+  else if (out.slave_W != out.proxy_W)
+    slave_m = scenario.signed_distance(out.slave_W, time_s);
+  return {proxy_m, slave_m, frame_hash};
 }
 
 class StopWatch {
@@ -76,7 +54,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto scenario = experiment.build_scenario(kernels);
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto renderer = experiment.build_renderer(kernels);
-  FrameStream frames(*scenario, experiment.settings().frame_latency_s, options.hash_frames);
+  FrameStream frames(*scenario, experiment.build_fixtures(), experiment.settings().delivery,
+                     experiment.settings().key, options.hash_frames);
   const std::size_t ticks = tick_count(experiment, *trajectory);
 
   Trace trace;
@@ -91,10 +70,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    const double proxy_distance = scenario->signed_distance(out.proxy_W, time_s);
-    const double slave_distance =
-        out.slave_W == out.proxy_W ? proxy_distance : scenario->signed_distance(out.slave_W, time_s);
-    trace.append(time_s, device, out, {proxy_distance, slave_distance, frames.newest_hash()});
+    trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()));
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }

@@ -13,8 +13,10 @@ std::string find_recording(const std::string& path) {
   if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
     return (fs::path(data) / path).string();
   throw MissingRecording(
-      path, std::string("no such recording; allowed a folder or PCD file here or below REMOTE_TOUCH_DATA") +
-                (data != nullptr ? std::string(" = ") + data : " (not set)"));
+      path,
+      std::string(
+          "no such recording or image; allowed a folder, PCD or PNG file here or below REMOTE_TOUCH_DATA") +
+          (data != nullptr ? std::string(" = ") + data : " (not set)"));
 }
 
 FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording) {
@@ -29,6 +31,7 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 std::vector<InputFile> files_of(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);
+  if (found.extension() == ".png") return {{found.filename().generic_string(), found}};
   const RecordingIndex recording = list_recording(found);
   const FrameRange frames = frames_of(part, recording);
   // Absolute, because a list may name files by absolute paths: those come as ../../...

@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
+#include "core/kernels/philox.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
@@ -81,6 +82,12 @@ inline Bits product(Bits a, Bits b) {
   for (int i = 0; i < 2; ++i) x.part[i] = product(x.part[i], y.part[i]);
   return join<Bits>(x);
 }
+struct Product {
+  template <class Vector>
+  static Vector of(Vector a, Vector b) {
+    return product(a, b);
+  }
+};
 inline Lanes root(Lanes a) {
   Parts x = split(a);
   for (Part& part : x.part) part = root(part);
@@ -88,7 +95,6 @@ inline Lanes root(Lanes a) {
 }
 
 constexpr Bits kNone = {};
-constexpr std::uint64_t kWord = 0xFFFFFFFFu;
 
 using Half __attribute__((vector_size(sizeof(Bits) / 2))) = std::uint32_t;
 
@@ -101,38 +107,6 @@ inline Bits load(const std::uint32_t* words, std::size_t live) {
     for (std::size_t i = 0; i < live; ++i) half[i] = words[i];
   return __builtin_convertvector(half, Bits);
 }
-
-template <class Vector>
-struct Words {
-  Vector w[4];
-};
-
-// The generator of one stream, with the keys of its rounds made ready.
-template <class Vector>
-class Philox {
- public:
-  explicit Philox(const NoiseStream& stream)
-      : b_(kZero + stream.counter[0]), c_(kZero + stream.counter[1]), d_(kZero + stream.counter[2]) {
-    std::uint32_t left = stream.key[0], right = stream.key[1];
-    for (int round = 0; round < kRounds; ++round, left += 0x9E3779B9u, right += 0xBB67AE85u)
-      left_[round] = kZero + left, right_[round] = kZero + right;
-  }
-  Words<Vector> operator()(Vector point) const {
-    Vector a = point, b = b_, c = c_, d = d_;
-    for (int round = 0; round < kRounds; ++round) {
-      const Vector left = product(a, kZero + 0xD2511F53u), right = product(c, kZero + 0xCD9E8D57u);
-      a = (right >> 32) ^ b ^ left_[round];
-      c = (left >> 32) ^ d ^ right_[round];
-      b = right, d = left;
-    }
-    return {{a & kWord, b & kWord, c & kWord, d & kWord}};
-  }
-
- private:
-  static constexpr int kRounds = 10;
-  static constexpr Vector kZero = {};
-  Vector b_, c_, d_, left_[kRounds], right_[kRounds];
-};
 
 // Whole numbers below 2^51 in magnitude as doubles: they are the last digits of 1.5 * 2^52.
 inline Lanes number(Bits whole) {
@@ -219,7 +193,7 @@ inline std::size_t keep(NativeBits refused, std::uint32_t first, std::size_t liv
 
 void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x, double* y,
              double* z) {
-  const Philox<Bits> philox(stream);
+  const Philox<Bits, Product> philox(stream);
   for (std::size_t i = 0; i < count; i += kWidth) {
     const std::size_t live = count - i < kWidth ? count - i : kWidth;
     const Words<Bits> words = philox(load(index + i, live));
@@ -233,7 +207,7 @@ void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t 
 
 std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,
                        const std::uint64_t* x, std::uint64_t z, std::uint32_t* index) {
-  const Philox<NativeBits> philox(stream);
+  const Philox<NativeBits, Product> philox(stream);
   const NativeBits none = {}, asks_z = none + z;
   NativeBits lane = {};
   for (std::size_t i = 0; i < kNative; ++i) lane[i] = i;

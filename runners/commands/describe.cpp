@@ -66,6 +66,7 @@ bool describe_sweep(const std::string& name) {
 int command_describe(const CommandLine&, const DescribeRequest& request) {
   const std::string& name = request.name;
   bool found = describe_entry(scenarios(), "scenario", name);
+  found |= describe_entry(fixtures(), "fixture rule", name);
   found |= describe_entry(renderers(), "renderer", name);
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);

@@ -18,6 +18,8 @@ void row(const char* name, const std::string& text) {
 int command_list(const CommandLine&, const ListRequest&) {
   std::puts("scenarios");
   for (const auto& entry : scenarios()) row(entry.name, entry.summary);
+  std::puts("fixture rules");
+  for (const auto& entry : fixtures()) row(entry.name, entry.summary);
   std::puts("renderers");
   for (const auto& entry : renderers()) row(entry.name, entry.summary);
   std::puts("trajectories");

@@ -1,0 +1,18 @@
+// Hue, saturation and lightness of a colour: what segmentation by colour asks, 7.2.
+#pragma once
+
+#include <cstdint>
+
+namespace remote_touch {
+
+// The double cone (HSL): a grey has saturation 0 and no hue, which is then given as 0.
+struct HueSaturationLightness {
+  double hue_deg = 0;     // 0 red, 120 green, 240 blue; [0, 360)
+  double saturation = 0;  // 0 to 1
+  double lightness = 0;   // 0 black to 1 white
+};
+
+// rgb = 0xRRGGBB, as the sensor gives it: no gamma or colour profile.
+HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb);
+
+}  // namespace remote_touch

@@ -1,0 +1,67 @@
+#include "runners/frame_stream.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "analysis/fingerprint.h"
+
+namespace remote_touch {
+
+FrameStream::FrameStream(const Scenario& scenario, FixtureAssignment fixtures, const Delivery& delivery,
+                         const NoiseKey& key, bool hash_frames)
+    : scenario_(scenario),
+      fixtures_(std::move(fixtures)),
+      delivery_(delivery),
+      key_(key),
+      hash_frames_(hash_frames) {}
+
+bool FrameStream::exists(int frame) const {
+  return frame < scenario_.frame_count() || fixtures_.changes_with_time();
+}
+
+// Beyond the last frame the camera goes on at its rate and sees what it saw.
+double FrameStream::captured_s(int frame) const {
+  const int last = scenario_.frame_count() - 1;
+  if (frame <= last) return scenario_.captured_s(frame);
+  return scenario_.captured_s(last) + (frame - last) / scenario_.frame_rate_hz();
+}
+
+void FrameStream::send(int frame) {
+  const auto chance = uniforms(noise_stream(key_, NoiseUse::delivery, static_cast<std::uint32_t>(frame)), 0);
+  if (chance[0] < delivery_.drop_probability) return;
+  const OnTheWay sent{captured_s(frame) + delivery_.latency_s + chance[1] * delivery_.jitter_s, frame};
+  const auto after = [](const OnTheWay& a, const OnTheWay& b) { return a.arrives_s < b.arrives_s; };
+  on_the_way_.insert(std::upper_bound(on_the_way_.begin(), on_the_way_.end(), sent, after), sent);
+}
+
+void FrameStream::deliver_until(double time_s, Renderer& renderer) {
+  const double now_s = time_s + kSameTime_s;
+  while (exists(next_) && captured_s(next_) + delivery_.latency_s <= now_s) send(next_++);
+  while (!on_the_way_.empty() && on_the_way_.front().arrives_s <= now_s) {
+    const OnTheWay arrived = on_the_way_.front();
+    on_the_way_.erase(on_the_way_.begin());
+    const auto cloud = points(arrived.frame);
+    if (hash_frames_) hash_ = hash_of(arrived.frame, *cloud);
+    renderer.on_frame({arrived.frame, captured_s(arrived.frame), arrived.arrives_s, cloud});
+  }
+}
+
+std::shared_ptr<const NeighbourSearch> FrameStream::points(int frame) const {
+  const int seen = std::min(frame, scenario_.frame_count() - 1);
+  auto made = scenario_.points(seen);
+  if (fixtures_.empty()) return made;
+  const auto* stored = dynamic_cast<const CloudSearch*>(made.get());  // else points are made when asked for
+  PointCloud cloud = stored ? stored->cloud() : scenario_.cloud(seen);
+  fixtures_.assign(cloud, captured_s(frame));
+  return make_search(std::move(cloud));
+}
+
+std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
+  const auto* stored = dynamic_cast<const CloudSearch*>(&points);
+  const std::uint64_t hash = fingerprint(stored ? stored->cloud() : scenario_.cloud(frame));
+  // Points that come with another time stamp are another frame.
+  return mixed(hash, std::bit_cast<std::uint64_t>(captured_s(frame)));
+}
+
+}  // namespace remote_touch

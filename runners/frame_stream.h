@@ -1,0 +1,55 @@
+// The way of a frame from a scenario to a renderer: its points are assigned fixtures, and it arrives late, at
+// irregular times, or not at all.
+#pragma once
+
+#include <vector>
+
+#include "core/fixtures/fixture_assignment.h"
+#include "core/noise.h"
+#include "core/renderer.h"
+#include "scenarios/scenario.h"
+
+namespace remote_touch {
+
+// What happens to frames between capture and arrival, each for itself, drawn from the run's noise key.
+struct Delivery {
+  double latency_s = 0;         // shortest time from capture to arrival
+  double jitter_s = 0;          // up to so much is added, evenly spread; frames may overtake each other
+  double drop_probability = 0;  // of a frame that never arrives
+};
+
+class FrameStream {
+ public:
+  // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time it
+  // is sent on at its frame rate. With hash_frames every point of every frame is made for newest_hash().
+  FrameStream(const Scenario& scenario, FixtureAssignment fixtures, const Delivery& delivery,
+              const NoiseKey& key, bool hash_frames);
+
+  // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
+  // Throws InputError when a frame cannot be read or a fixture rule cannot be applied to it.
+  void deliver_until(double time_s, Renderer& renderer);
+  // Fingerprint of the newest frame handed over, 0 before the first or where it is not made.
+  std::uint64_t newest_hash() const { return hash_; }
+
+ private:
+  struct OnTheWay {
+    double arrives_s;
+    int frame;
+  };
+  bool exists(int frame) const;
+  double captured_s(int frame) const;
+  void send(int frame);
+  std::shared_ptr<const NeighbourSearch> points(int frame) const;
+  std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
+
+  const Scenario& scenario_;
+  FixtureAssignment fixtures_;
+  Delivery delivery_;
+  NoiseKey key_;
+  bool hash_frames_;
+  int next_ = 0;  // to be sent
+  std::vector<OnTheWay> on_the_way_;
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace remote_touch
