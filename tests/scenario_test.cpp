@@ -210,7 +210,7 @@ std::size_t pixel(int u, int v) {
 
 CameraScene camera(double noise, double quantisation) {
   CameraScene::Settings s;
-  s.noise_per_m = noise, s.quantisation_per_m = quantisation;
+  s.camera.noise_per_m = noise, s.camera.quantisation_per_m = quantisation;
   return made<CameraScene>(s);
 }
 
