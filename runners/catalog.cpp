@@ -10,6 +10,7 @@
 #include "runners/trajectories/image_scan.h"
 #include "runners/trajectories/press.h"
 #include "runners/trajectories/waypoints.h"
+#include "scenarios/beating_heart.h"
 #include "scenarios/camera_scene.h"
 #include "scenarios/flat_grid.h"
 #include "scenarios/image_mask.h"
@@ -55,6 +56,8 @@ const ScenarioEntry kScenarios[] = {
     scenario<CameraScene>("camera-scene",
                           "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
     scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
+    scenario<BeatingHeart>("beating-heart",
+                           "a simulated depth camera looks down on a beating organ on a table"),
     scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
 };
 

@@ -90,8 +90,8 @@ bool carries_unit(const std::string& name) {
       "columns",     "rows",   "rise_frames", "first_frame", "acceleration_frames",
       "last_frame",  "width",  "height",      "row",         "first_column",
       "last_column", "column", "seed",        "cell",        "replicate"};
-  static const char* const kUnits[] = {"_m",     "_s",       "_hz",       "_deg",     "_px",
-                                       "_per_m", "_N_per_m", "_Ns_per_m", "_m_per_s", "_m_per_s2"};
+  static const char* const kUnits[] = {"_m",       "_s",       "_hz",       "_deg",     "_px",      "_per_m",
+                                       "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s", "_m_per_s2"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }
