@@ -19,6 +19,8 @@ Parameters parameters(MovingLift::Settings& s) {
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, -1000, 1000, "acceleration a after the rise"},
       {"acceleration_frames", &s.acceleration_frames, 0, 100000,
        "updates with acceleration; the cloud then rests"},
+      {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
+       "distances are to the plane of the newest frame captured, or to the plane as it moves between frames"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;
@@ -41,6 +43,11 @@ double MovingLift::height(double time_s) const {
   const auto j = static_cast<std::size_t>(place);
   if (j + 1 >= height_m_.size()) return height_m_.back();
   return height_m_[j] + (place - static_cast<double>(j)) * (height_m_[j + 1] - height_m_[j]);
+}
+
+double MovingLift::signed_distance(const Vec3& p_W, double time_s) const {
+  const bool moving = settings_.truth == Truth::moving;
+  return p_W.y() - (moving ? height(time_s) : height_m_[static_cast<std::size_t>(newest_frame(time_s))]);
 }
 
 std::shared_ptr<const NeighbourSearch> MovingLift::points(int frame) const {

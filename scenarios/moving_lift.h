@@ -12,6 +12,7 @@ namespace remote_touch {
 
 class MovingLift final : public Scenario {
  public:
+  enum class Truth { newest_frame, moving };
   struct Settings {
     Grid grid{200, 200, 0.0015, 0, 0};
     double frame_rate_hz = 30;
@@ -21,6 +22,7 @@ class MovingLift final : public Scenario {
     int rise_frames = 15;
     double acceleration_m_per_s2 = 3;
     int acceleration_frames = 10;
+    Truth truth = Truth::newest_frame;
   };
 
   MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -29,10 +31,9 @@ class MovingLift final : public Scenario {
   int frame_count() const override { return settings_.rise_frames + settings_.acceleration_frames + 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Over the plane of the newest frame: pop-through is judged against what the camera has seen.
-  double signed_distance(const Vec3& p_W, double time_s) const override {
-    return p_W.y() - height_m_[static_cast<std::size_t>(newest_frame(time_s))];
-  }
+  // Over the plane of the newest frame, for pop-through is judged against what the camera has seen; or over
+  // the plane as it moves on between frames.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
   // Of the plane as it moves evenly from one frame's height to the next; it rests after the last.
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 

@@ -6,6 +6,10 @@
 
 namespace remote_touch {
 
+namespace {
+constexpr std::size_t kMostKept = 8;  // 12 MB each
+}  // namespace
+
 Parameters parameters(RecordedScene::Settings& s) {
   return {
       {"path", &s.path, 0, 0, "recording folder, TUM folder, folder of PCD files, or one PCD file"},
@@ -68,21 +72,28 @@ std::size_t RecordedScene::source_frame(int frame) const {
   return static_cast<std::size_t>(first_ + place);
 }
 
-PointCloud RecordedScene::cloud(int frame) const {
-  return read_frame(recording_, source_frame(frame), settings_.farthest_m);
-}
-
-const CloudSearch* RecordedScene::measured(std::size_t source) const {
-  if (!kept_ || kept_source_ != source) {
-    kept_ = make_search(read_frame(recording_, source, settings_.farthest_m));
-    kept_source_ = source;
+std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
+  const std::size_t source = source_frame(frame);
+  const auto found =
+      std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.source == source; });
+  if (found != kept_.end()) {
+    std::rotate(kept_.begin(), found, found + 1);
+  } else {
+    if (kept_.size() == kMostKept) kept_.pop_back();
+    kept_.insert(kept_.begin(), {source, make_search(read_frame(recording_, source, settings_.farthest_m))});
   }
-  return dynamic_cast<const CloudSearch*>(kept_.get());
+  return kept_.front().points;
 }
 
 std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
-  measured(source_frame(frame));
-  return kept_;
+  return measured(frame);
+}
+
+// A search by a grid has the points in another order than the file.
+PointCloud RecordedScene::cloud(int frame) const {
+  const auto points = measured(frame);
+  const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
+  return image ? image->cloud() : read_frame(recording_, source_frame(frame), settings_.farthest_m);
 }
 
 namespace {
@@ -120,7 +131,8 @@ Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!p_W.allFinite() || !(p_W.z() > 0)) return unknown;
-  const PointCloud& cloud = measured(source_frame(newest_frame(time_s)))->cloud();
+  const auto points = measured(newest_frame(time_s));
+  const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
   if (!cloud.image) return unknown;
   const CameraIntrinsics& camera = cloud.image->camera;
   const double u = std::floor(camera.fx * p_W.x() / p_W.z() + camera.cx + 0.5);

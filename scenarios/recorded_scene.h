@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/parameter.h"
 #include "scenarios/recording.h"
@@ -39,15 +40,19 @@ class RecordedScene final : public Scenario {
 
  private:
   std::size_t source_frame(int frame) const;
-  const CloudSearch* measured(std::size_t source) const;
+  std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
   RecordingIndex recording_;
   int first_ = 0, count_ = 0;
   double rate_hz_ = 0;
-  // The frame read last, kept because renderer and truth ask for it in turn.
-  mutable std::size_t kept_source_ = 0;
-  mutable std::shared_ptr<const NeighbourSearch> kept_;
+  // The frames asked for last, the newest in front: renderer, trajectory and truth ask in turn, and a short
+  // part is played many times.
+  struct Kept {
+    std::size_t source;
+    std::shared_ptr<const NeighbourSearch> points;
+  };
+  mutable std::vector<Kept> kept_;
 };
 
 Parameters parameters(RecordedScene::Settings& s);
