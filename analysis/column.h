@@ -38,4 +38,7 @@ struct Table {
   }
 };
 
+// A column of numbers by its name; throws std::out_of_range when the table has none.
+const std::vector<double>& numbers(const Table& table, const std::string& column);
+
 }  // namespace remote_touch

@@ -22,6 +22,8 @@ constexpr Measure kMeasures[] = {
     {"popped_through", "1", "1 when the proxy's centre ended below the true surface", popped_through},
     {"largest_penetration", "m", "how far the centre was at most behind the true surface",
      largest_penetration_m},
+    {"least_slave_distance", "m", "smallest distance of the slave's command to the true surface",
+     least_slave_distance_m},
     {"rms_surface_error", "m", "rms distance between the rendered surface and the true one, in contact",
      rms_surface_error_m},
     {"largest_force_jump", "N", "largest change of the force at a frame update", largest_force_jump_N},
@@ -46,6 +48,12 @@ double largest_penetration_m(const Trace& trace) {
   double deepest = 0;
   for (const double distance : trace.signed_distance_m) deepest = std::max(deepest, -distance);  // NaN loses
   return deepest;
+}
+
+double least_slave_distance_m(const Trace& trace) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double distance : trace.slave_distance_m) least = std::min(least, distance);  // NaN loses
+  return std::isinf(least) ? std::numeric_limits<double>::quiet_NaN() : least;
 }
 
 double rms_surface_error_m(const Trace& trace) {

@@ -13,6 +13,9 @@ double popped_through(const Trace& trace);
 // How far the centre was at most behind the true surface, m; 0 when never. Ticks without a known truth do not
 // count.
 double largest_penetration_m(const Trace& trace);
+// The smallest distance of the slave's command to the true surface, m, over the ticks with a known truth; NaN
+// without any. With a uniform radius a fixture is violated by r_f + r_c less this.
+double least_slave_distance_m(const Trace& trace);
 // How far the rendered surface is from the true one: rms difference of the centre's distance to the true
 // surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without
 // any.

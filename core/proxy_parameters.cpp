@@ -35,6 +35,8 @@ Parameters parameters(ProxyParameters& p) {
        "send (4.16) from the latest contact, or only when the tick ends in contact as printed"},
       {"slave_command", choice(p.slave_command, {"proxy", "hip"}), 0, 0,
        "where the slave robot is sent: to the proxy, a hard constraint, or to the HIP, a soft one, 5.2"},
+      {"slave_prediction", &p.slave_prediction, 0, 1,
+       "in contact, send the slave ahead of the proxy by the velocity estimate times the age of the frame"},
   };
 }
 

@@ -35,6 +35,7 @@ struct ProxyParameters {
   DampingSign damping_sign = DampingSign::plus;
   ForceGate force_gate = ForceGate::latest_contact;
   SlaveCommand slave_command = SlaveCommand::proxy;
+  bool slave_prediction = false;  // not in the dissertation
 
   // The contact point lies in the middle of the contact region, 4.2.1.
   double contact_radius_m() const { return 0.5 * (r1_m + r2_m); }

@@ -61,10 +61,9 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
     out.nearest_m = std::numeric_limits<double>::infinity();
     out.converged = true;
     out.status = RenderStatus::no_frame;
-    slave_W_ = hip_W;
+    clear_W_ = hip_W;
   }
-  if (p_.slave_command == SlaveCommand::hip) slave_W_ = hip_W;
-  out.slave_W = slave_W_;
+  out.slave_W = slave_W_ = slave_command(hip_W, time_s);
   stale_frame_ = false;
   return out;
 }
@@ -73,12 +72,17 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
 const ProxyRenderer::Look& ProxyRenderer::look() {
   if (has_look_ && proxy_W_ == looked_from_W_) return look_;
   look_.points = near_.around(proxy_W_).view();
-  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
-  look_.survey = kernels_.survey(look_.points, proxy_W_.data(), regions);
+  look_.survey = survey(look_.points, proxy_W_);
   look_.state = classify(look_.survey.nearest, p_);
   looked_from_W_ = proxy_W_;
   has_look_ = true;
   return look_;
+}
+
+// pre: the points are those of the present list of neighbours.
+Survey ProxyRenderer::survey(const PointsView& points, const Vec3& p_W) const {
+  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
+  return kernels_.survey(points, p_W.data(), regions);
 }
 
 // The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
@@ -95,7 +99,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
       contact_stiffness_N_per_m_ = stiffness(here.survey);
     }
     touched |= here.state != ContactState::free;
-    if (here.state != ContactState::entrenched) slave_W_ = proxy_W_;
+    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
 
     const Vec3 s = next_step(here, u);
     velocity_.on_step(s);  // (4.13)
@@ -129,7 +133,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   const Look& here = look();
   out.proxy_W = proxy_W_;
   out.state = here.state;
-  if (here.state != ContactState::entrenched) slave_W_ = proxy_W_;
+  if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
   out.normal_W = unit_normal(here.survey, normal_W_);
   out.surface_velocity_m_per_s = velocity_.m_per_s();
   // The list of neighbours goes further than r3 in some directions: what it finds there is chance.
@@ -139,6 +143,18 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   out.converged = has_converged(here.state, out.normal_W, hip_W - proxy_W_, p_);
   if (here.state == ContactState::entrenched && out.normal_W.isZero(0))
     out.status = RenderStatus::degenerate_normal;
+}
+
+// The frame shows the surface as it was when it was captured. Like (4.15), the prediction takes it to go on
+// along v_hat; a position that would lie in a region of the newest frame is not sent.
+Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
+  if (p_.slave_command == SlaveCommand::hip) return hip_W;
+  if (!p_.slave_prediction || !in_contact_) return clear_W_;
+  const double age_s = std::clamp(time_s - frame_captured_s_, 0.0, velocity_.horizon_s());
+  const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
+  const Survey there = survey(near_.around(ahead_W).view(), ahead_W);
+  has_look_ = false;  // what the proxy saw may have made room
+  return classify(there.nearest, p_) == ContactState::entrenched ? clear_W_ : ahead_W;
 }
 
 Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderOutput& out) {

@@ -30,6 +30,8 @@ class ProxyRenderer final : public Renderer {
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
   void report(const Vec3& hip_W, RenderOutput& out);
   double stiffness(const Survey& survey) const;
+  Survey survey(const PointsView& points, const Vec3& p_W) const;
+  Vec3 slave_command(const Vec3& hip_W, double time_s);
 
   const ProxyParameters p_;
   const Kernels& kernels_;
@@ -43,6 +45,7 @@ class ProxyRenderer final : public Renderer {
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
+  Vec3 clear_W_ = RenderOutput{}.slave_W;  // the latest proxy position outside all regions
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy starts at the first HIP
   bool in_contact_ = false;                // until the proxy is free and unhindered again

@@ -82,6 +82,9 @@ Figure figure_4_13_replicated(const Laboratory& laboratory);
 Figure figure_4_14(const Laboratory& laboratory);
 Figure figure_4_16(const Laboratory& laboratory);
 Figure figure_4_16_recorded(const Laboratory& laboratory);
+Figure figure_5_5(const Laboratory& laboratory);
+Figure figure_5_6(const Laboratory& laboratory);
+Figure figure_fixture_latency(const Laboratory& laboratory);
 Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
 

@@ -75,12 +75,6 @@ Panel map_panel(const std::string& title, std::vector<Curve> curves) {
   return panel;
 }
 
-const std::vector<double>& numbers(const Table& table, const std::string& column) {
-  for (const Column& candidate : table.columns)
-    if (candidate.name == column) return std::get<std::vector<double>>(candidate.values);
-  throw std::out_of_range(table.name + " has no column " + column);
-}
-
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }

@@ -35,7 +35,6 @@ double printed_bound(double noise_m);  // (4.25) with (4.23), (4.24), m/s^2
 // A map's panel: x noise, y acceleration, the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
 
-const std::vector<double>& numbers(const Table& table, const std::string& column);
 double mean(const std::vector<double>& values);
 
 }  // namespace remote_touch

@@ -191,9 +191,10 @@ def set_ticks(axis, limits, columns):
 
 
 def legend_below(panel):
-    """Where it would cover an area if it were inside, or a colour bar if it were beside."""
+    """Where it would cover an area, or much of a small panel, if it were inside, or a colour bar if it were beside."""
     styles = {curve.style for curve in panel.curves}
-    return "map" in styles or (panel.place is not None and not styles.isdisjoint(("squares", "band")))
+    crowded = len({curve.label for curve in panel.curves if curve.label}) > 3
+    return "map" in styles or (panel.place is not None and (crowded or not styles.isdisjoint(("squares", "band"))))
 
 
 def legend_place(axes, panel):
