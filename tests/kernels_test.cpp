@@ -122,6 +122,27 @@ TEST(Survey, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
   }
 }
 
+// A point without a stiffness of its own is one with the renderer's, bit for bit.
+TEST(Survey, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
+  const PointCloud at = scenes::random_cloud(20, 0.01, 4);
+  for (const bool with_radius : {false, true}) {
+    PointCloud some = random_points(601, 0.012, 3, with_radius, true), filled = some;
+    for (std::size_t i = 0; i < some.size(); i += 1 + i % 3)
+      some.stiffness_N_per_m[i] = (i % 2 ? -1 : 1) * std::nan(""),
+      filled.stiffness_N_per_m[i] = kRegions.stiffness;
+    const GatheredPoints with_nan = columns(some), with_own = columns(filled);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3 p = at.point(i);
+      const Survey want = every_level()[0]->survey(with_own.view(), p.data(), kRegions);
+      expect_survey(want, filled, p);
+      for (const Kernels* kernels : every_level()) {
+        const Survey got = kernels->survey(with_nan.view(), p.data(), kRegions);
+        EXPECT_EQ(std::memcmp(&got, &want, sizeof got), 0) << kernels->isa;
+      }
+    }
+  }
+}
+
 TEST(Survey, WeightFallsFromOneAtR1ToZeroAtR3) {
   const double halfway = 0.5 * (kRegions.r1 + kRegions.r3);  // (1/2)^4 (4/2 + 1) = 3/16
   const std::pair<double, double> cases[] = {

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball, const Kernels& kernels) {
   GatheredPoints out;
-  out.reserve(search.size(), false, false);
+  out.reserve(search.size(), search.has_fixture_radius(), false);
   search.gather(ball, kernels, out);
   out.finish();
   std::vector<std::uint32_t> index(out.index(), out.index() + out.size());
@@ -27,8 +27,8 @@ std::vector<std::uint32_t> expected(const PointCloud& cloud, const Ball& ball) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double dx = cloud.x[i] - ball.centre.x(), dy = cloud.y[i] - ball.centre.y(),
                  dz = cloud.z[i] - ball.centre.z();
-    if (dx * dx + dy * dy + dz * dz <= ball.radius * ball.radius)
-      index.push_back(static_cast<std::uint32_t>(i));
+    const double reach = ball.radius + (cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i]);
+    if (dx * dx + dy * dy + dz * dz <= reach * reach) index.push_back(static_cast<std::uint32_t>(i));
   }
   return index;
 }
@@ -45,6 +45,15 @@ PointCloud image_cloud() {
   X_WC.linear() = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   X_WC.translation() = Vec3(0.3, -0.2, 0.1);
   return cloud_from_depth(depth, camera, X_WC);
+}
+
+// Most points with a small region or none, a few with a wide one: the widest must not widen the others.
+PointCloud with_regions(PointCloud cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.fixture_radius_m.push_back(i % 97 == 0  ? 0.1
+                                     : i % 3 == 0 ? 0
+                                                  : 0.0003 * static_cast<double>(i % 50));
+  return cloud;
 }
 
 void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, double reach) {
@@ -79,6 +88,32 @@ TEST(NeighbourSearch, GridFindsTheSameSet) {
 TEST(NeighbourSearch, ImageWindowFindsTheSameSet) {
   const PointCloud cloud = image_cloud();
   expect_same_sets(cloud, ImageWindowSearch(cloud), 0.6);
+}
+
+TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
+  const PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
+  expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
+  for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
+  const PointCloud image = with_regions(image_cloud());
+  expect_same_sets(image, ImageWindowSearch(image), 0.6);
+  expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
+}
+
+// Where the list comes from another order of the points, the columns must follow it.
+TEST(NeighbourSearch, ARegionStaysWithItsPoint) {
+  PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));
+  GatheredPoints out;
+  out.reserve(cloud.size(), true, true);
+  UniformGridSearch(cloud, 0.01).gather({Vec3(0.02, 0.01, 0), 0.03}, scenes::kernels(), out);
+  out.finish();
+  ASSERT_GT(out.size(), 50u);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const std::uint32_t i = out.index()[k];
+    ASSERT_EQ(Vec3(out.view().x[k], out.view().y[k], out.view().z[k]), cloud.point(i));
+    ASSERT_EQ(out.view().radius[k], cloud.fixture_radius_m[i]);
+    ASSERT_EQ(out.view().stiffness[k], static_cast<double>(i));
+  }
 }
 
 TEST(NeighbourSearch, WindowAndGridAgreeOnOneCloud) {

@@ -37,6 +37,23 @@ TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
   }
 }
 
+// One wide region far off: the list does not take in the points between.
+TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
+  PointCloud cloud = scenes::random_cloud(4000, 0.05, 21);
+  const auto size_with = [&](double radius) {
+    PointCloud other = cloud;
+    other.append({0, 0, 0.3});
+    other.fixture_radius_m.assign(other.size(), 0);
+    other.fixture_radius_m.back() = radius;
+    Neighbourhood near(kReach, scenes::kernels());
+    near.set_points(make_search(other));
+    return near.around(Vec3::Zero()).size();
+  };
+  EXPECT_GT(size_with(0), 0u);
+  EXPECT_EQ(size_with(0.25), size_with(0));
+  EXPECT_EQ(size_with(0.295), size_with(0) + 1);
+}
+
 // Through hops as through the whole cloud at once, regions beside the tube included.
 TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   const auto points = cloud_with_fixtures();

@@ -209,6 +209,50 @@ TEST(ContactStep, ShareBelowR1AndSmallStepsFromThere) {
   EXPECT_EQ(contact_step(kUp, Vec3::Zero(), kDefault), Vec3(0, 0, 0));
 }
 
+TEST(ExitRule, AHipOutsideFreesTheProxyAlongTheNormal) {
+  ProxyParameters out;
+  out.exit_rule = ExitRule::out_of_contact;
+  const PointCloud normals = scenes::random_cloud(200, 1, 9), ways = scenes::random_cloud(200, 0.02, 10);
+  int outside = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vec3 n = normals.point(i).normalized(), u = ways.point(i), s = contact_step(n, u, out);
+    if (u.dot(n) < 0) {
+      EXPECT_EQ(s, contact_step(n, u, kDefault)) << "below the surface nothing changes";
+      continue;
+    }
+    EXPECT_NEAR(s.norm(), out.r2_m - out.r1_m, 1e-20);
+    EXPECT_LT((s - (out.r2_m - out.r1_m) * n).norm(), 1e-20);
+    ++outside;
+  }
+  EXPECT_GT(outside, 50);
+  const double width = out.r2_m - out.r1_m;
+  EXPECT_EQ(contact_step(kUp, {0.01, 0, 0}, out), width * kUp) << "a HIP in the tangent plane is outside";
+  EXPECT_EQ(contact_step(kUp, Vec3::Zero(), out), Vec3(0, 0, 0)) << "at the HIP there is nowhere to go";
+  EXPECT_LT(contact_step(kUp, {0.01, -1e-9, 0}, out).y(), 1e-12);
+}
+
+// From anywhere in the contact region, on one point and on a plane of them.
+TEST(ExitRule, TwoStepsFreeTheProxy) {
+  ProxyParameters out;
+  out.exit_rule = ExitRule::out_of_contact;
+  for (const int side : {1, 61})
+    for (const double height : {out.r1_m, out.contact_radius_m(), out.r2_m}) {
+      const PointCloud cloud = scenes::flat_grid(side);
+      Neighbourhood near = around(cloud);
+      const ProxyRegions regions{out.r1_m, out.r2_m, out.r3_m, 1.5 * 1024, 600};
+      Vec3 p(0, height, 0);
+      ASSERT_EQ(classify(nearest(cloud, p), out), ContactState::contact);
+      int steps = 0;
+      for (; steps < 9 && classify(nearest(cloud, p), out) == ContactState::contact; ++steps) {
+        const Survey survey = scenes::kernels().survey(near.around(p).view(), p.data(), regions);
+        p += contact_step(unit_normal(survey, kUp), Vec3(0.003, 0.02, 0) - p, out);
+      }
+      EXPECT_EQ(classify(nearest(cloud, p), out), ContactState::free);
+      EXPECT_LE(steps, 2) << height;
+      EXPECT_NEAR(p.y(), height + steps * (out.r2_m - out.r1_m), 1e-15);
+    }
+}
+
 TEST(FixedRule, TakesSmallStepsWhateverIsAhead) {
   ProxyParameters fixed;
   fixed.step_rule = StepRule::fixed;
