@@ -16,6 +16,8 @@ Parameters parameters(ProxyParameters& p) {
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s of the virtual coupling (4.16)"},
       {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper k_d of the virtual coupling (4.16)"},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000, "largest number of proxy steps in a haptic tick"},
+      {"closing_steps", &p.closing_steps, 0, 1000,
+       "further steps (5.11) of a tick that would end inside a region, then back outside; 0: as printed"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
        "carry the proxy with the cloud at updates (4.3), (4.13)"},
       {"longest_prediction_s", &p.longest_prediction_s, 0, 10,

@@ -25,6 +25,7 @@ struct ProxyParameters {
   double stiffness_N_per_m = 600;
   double damping_Ns_per_m = 0;
   int steps_per_tick = 30;
+  int closing_steps = 0;
   bool velocity_estimate = true;
   double longest_prediction_s = 0.1;
   StepRule step_rule = StepRule::variable;

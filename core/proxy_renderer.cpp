@@ -27,6 +27,7 @@ void ProxyRenderer::on_frame(const Frame& frame) {
   }
   near_.set_points(frame.points);
   has_look_ = false;
+  is_clear_ = false;
   frame_index_ = frame.index;
   frame_captured_s_ = frame.captured_s;
   frame_arrived_s_ = frame.arrives_s;
@@ -53,6 +54,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   if (!placed_) proxy_W_ = hip_W, placed_ = true;
   if (frame_index_ >= 0) {
     out.steps = move(hip_W);
+    if (p_.closing_steps > 0) out.steps += close(hip_W);
     report(hip_W, out);
     out.force_N = render_force(hip_W, time_s, out);
     if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
@@ -99,7 +101,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
       contact_stiffness_N_per_m_ = stiffness(here.survey);
     }
     touched |= here.state != ContactState::free;
-    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
+    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
 
     const Vec3 s = next_step(here, u);
     velocity_.on_step(s);  // (4.13)
@@ -114,6 +116,19 @@ int ProxyRenderer::move(const Vec3& hip_W) {
     }
   }
   return 0;
+}
+
+// Beyond the dissertation: where regions overlap the way out of one may end in another, and the budget of
+// steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
+// back. Returns the number of steps.
+int ProxyRenderer::close(const Vec3& hip_W) {
+  int steps = 0;
+  for (; steps < p_.closing_steps && look().state == ContactState::entrenched; ++steps) {
+    normal_W_ = unit_normal(look_.survey, normal_W_);
+    proxy_W_ += next_step(look_, hip_W - proxy_W_);
+  }
+  if (is_clear_ && look().state == ContactState::entrenched) proxy_W_ = clear_W_;
+  return steps;
 }
 
 Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {

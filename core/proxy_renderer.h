@@ -26,6 +26,7 @@ class ProxyRenderer final : public Renderer {
   };
   const Look& look();
   int move(const Vec3& hip_W);
+  int close(const Vec3& hip_W);
   Vec3 next_step(const Look& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
   void report(const Vec3& hip_W, RenderOutput& out);
@@ -46,6 +47,7 @@ class ProxyRenderer final : public Renderer {
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
   Vec3 clear_W_ = RenderOutput{}.slave_W;  // the latest proxy position outside all regions
+  bool is_clear_ = false;                  // outside those of the newest frame
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy starts at the first HIP
   bool in_contact_ = false;                // until the proxy is free and unhindered again

@@ -121,6 +121,51 @@ TEST(UnionOfSpheres, ATickMayEndInsideARegion) {
   }
 }
 
+// With one closing step the proxy has to go back now and then, with ten it never had to here.
+TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
+  for (ProxyParameters p : settings())
+    for (const int closing : {1, 10}) {
+      if (closing == 1 && p.velocity_estimate) continue;
+      p.closing_steps = closing;
+      int closed = 0, used_up = 0, touching = 0;
+      walk_all(p, [&](const PointCloud& cloud, const Vec3&, const RenderOutput& out) {
+        ASSERT_GE(nearest_region(cloud, out.proxy_W), p.r1_m - 1e-16);
+        ASSERT_NE(out.state, ContactState::entrenched);
+        ASSERT_EQ(out.slave_W, out.proxy_W);
+        ASSERT_LE(out.steps, p.steps_per_tick + closing);
+        touching += out.state == ContactState::contact;
+        closed += out.steps > p.steps_per_tick, used_up += out.steps == p.steps_per_tick + closing;
+      });
+      EXPECT_GT(closed, 0.02 * touching) << name(p);
+      if (closing == 10) {
+        EXPECT_LT(used_up, 1e-3 * closed) << name(p);
+      }
+    }
+}
+
+// The same when the cloud sways, and a frame brings regions to where the proxy is.
+TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutsideAMovingCloud) {
+  for (const double m_per_s : {0.02, 0.1, 0.3}) {
+    ProxyParameters p;
+    p.closing_steps = 10;
+    for (unsigned i = 0; i < kUnions; ++i) {
+      const PointCloud still = spheres::random_union(100 + i, half_width(i));
+      PointCloud cloud = still;
+      spheres::HandPath path(500 + i, half_width(i));
+      ProxyRenderer renderer = scenes::renderer(p);
+      for (int tick = 0; tick <= kTicks; ++tick) {
+        if (tick % 33 == 0) {
+          const double shift = 0.5 * m_per_s * std::sin(0.002 * tick);
+          for (std::size_t k = 0; k < cloud.size(); ++k) cloud.y[k] = still.y[k] + shift;
+          renderer.on_frame(scenes::frame(cloud, tick / 33));
+        }
+        const RenderOutput out = renderer.step({path.at(tick)}, 0.001 * tick);
+        ASSERT_GE(nearest_region(cloud, out.proxy_W), p.r1_m - 1e-16) << i << " " << tick;
+      }
+    }
+  }
+}
+
 // At a converged tick (5.18) no allowed position around is nearer to the HIP by more than what lies between
 // the ends of the contact shell and what an angle of theta leaves over.
 TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
