@@ -63,23 +63,29 @@ TEST(SlaveCommand, IsHeldWhileTheProxyIsInsideARegion) {
   }
 }
 
-// The tick ends inside, but on its way the proxy was outside: that is the newest position to go to.
+// A tick that ends inside was outside on its way: that is the newest position to go to. What a tick of many
+// steps passes is what as many ticks of one step show.
 TEST(SlaveCommand, IsTheLatestPositionOutsideWithinATick) {
-  ProxyParameters one_more;
-  one_more.steps_per_tick = 1;
-  ProxyRenderer renderer = scenes::renderer(one_more);
-  PointCloud cloud = scenes::flat_grid(2, 0.002);
-  renderer.on_frame(scenes::frame(cloud));
+  ProxyParameters many, one;
+  many.velocity_estimate = one.velocity_estimate = false;
+  many.steps_per_tick = 7, one.steps_per_tick = 1;
+  ProxyRenderer renderer = scenes::renderer(many), single = scenes::renderer(one);
+  for (ProxyRenderer* each : {&renderer, &single}) each->on_frame(scenes::frame(scenes::flat_grid(2, 0.002)));
   Vec3 outside = Vec3::Constant(std::nan(""));
-  int held = 0;
+  int held = 0, within = 0;
   for (int tick = 0; tick < 2000; ++tick) {
-    const RenderOutput out =
-        renderer.step({Vec3(0.004 * std::sin(0.01 * tick), 0.01 - 0.00001 * tick, 0)}, 0.001 * tick);
-    if (out.state != ContactState::entrenched) outside = out.proxy_W;
-    held += out.state == ContactState::entrenched;
+    const Vec3 hip(0.004 * std::sin(0.01 * tick), 0.01 - 0.00001 * tick, 0);
+    const RenderOutput out = renderer.step({hip}, 0.001 * tick);
+    bool passed = false;
+    for (int step = 0; step < many.steps_per_tick; ++step) {
+      const RenderOutput at = single.step({hip}, 0.001 * tick);
+      if (at.state != ContactState::entrenched) outside = at.proxy_W, passed = true;
+    }
     ASSERT_EQ(out.slave_W, outside) << tick;
+    if (out.state == ContactState::entrenched) ++held, within += passed;
   }
   EXPECT_GT(held, 10);
+  EXPECT_GT(within, 10);
 }
 
 TEST(SlaveCommand, IsTheHipWhereTheConstraintIsSoft) {
