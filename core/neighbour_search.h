@@ -20,6 +20,8 @@ class NeighbourSearch {
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
   virtual bool has_fixture_radius() const { return false; }
+  // Some radius is above 0: there are forbidden regions, chapter 5.
+  virtual bool has_regions() const { return false; }
   virtual bool has_stiffness() const { return false; }
 };
 
@@ -29,6 +31,7 @@ class CloudSearch : public NeighbourSearch {
   explicit CloudSearch(PointCloud cloud);
   std::size_t size() const override { return cloud_.size(); }
   bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
+  bool has_regions() const override { return largest_fixture_radius_ > 0; }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
   const PointCloud& cloud() const { return cloud_; }
 

@@ -27,6 +27,8 @@ class Neighbourhood {
   // limit when nothing is met before. Looks at the whole swept tube.
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
 
+  bool has_regions() const { return points_->has_regions(); }
+
   // M of kernels.h for sums over the present list.
   double sum_grid() const { return kept_[present_].sum_grid; }
 

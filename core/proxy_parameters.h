@@ -9,6 +9,7 @@ namespace remote_touch {
 
 enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
 enum class FreeRoot { ahead, smallest_magnitude };  // of (4.9); the second is the printed text
+enum class ContactRule { tangent_plane, regions };  // (4.6), (5.16), or every touching region by itself
 enum class ExitRule { towards_hip, out_of_contact };  // in contact with the HIP outside: (4.7) or (5.17)
 enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
 enum class DampingSign { plus, minus };  // of the k_d term inside the bracket of (4.16); minus is printed
@@ -25,12 +26,13 @@ struct ProxyParameters {
   double stiffness_N_per_m = 600;
   double damping_Ns_per_m = 0;
   int steps_per_tick = 30;
-  int closing_steps = 0;
+  int closing_steps = 10;
   bool velocity_estimate = true;
   double longest_prediction_s = 0.1;
   StepRule step_rule = StepRule::variable;
   double fixed_step_m = 1e-4;
   FreeRoot free_root = FreeRoot::ahead;
+  ContactRule contact_rule = ContactRule::tangent_plane;
   ExitRule exit_rule = ExitRule::towards_hip;
   VelocityForce velocity_force = VelocityForce::minus;
   DampingSign damping_sign = DampingSign::plus;

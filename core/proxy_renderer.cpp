@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/proxy_step.h"
+#include "core/touching_regions.h"
 
 namespace remote_touch {
 
@@ -54,7 +55,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   if (!placed_) proxy_W_ = hip_W, placed_ = true;
   if (frame_index_ >= 0) {
     out.steps = move(hip_W);
-    if (p_.closing_steps > 0) out.steps += close(hip_W);
+    if (near_.has_regions()) out.steps += close(hip_W);
     report(hip_W, out);
     out.force_N = render_force(hip_W, time_s, out);
     if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
@@ -122,6 +123,7 @@ int ProxyRenderer::move(const Vec3& hip_W) {
 // steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
 // back. Returns the number of steps.
 int ProxyRenderer::close(const Vec3& hip_W) {
+  if (p_.closing_steps == 0) return 0;
   int steps = 0;
   for (; steps < p_.closing_steps && look().state == ContactState::entrenched; ++steps) {
     normal_W_ = unit_normal(look_.survey, normal_W_);
@@ -140,7 +142,9 @@ Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
     case ContactState::contact:
       break;
   }
-  return contact_step(normal_W_, u, p_);
+  if (p_.contact_rule == ContactRule::tangent_plane) return contact_step(normal_W_, u, p_);
+  const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m);
+  return region_step(near_, proxy_W_, goal, u, p_);
 }
 
 // The output describes the position that the tick ends in; the state of the method is not touched.
@@ -155,7 +159,11 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   out.nearest_m =
       here.survey.nearest <= p_.r3_m ? here.survey.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(here.survey.touching);
-  out.converged = has_converged(here.state, out.normal_W, hip_W - proxy_W_, p_);
+  const Vec3 u = hip_W - proxy_W_;
+  if (p_.contact_rule == ContactRule::regions && here.state == ContactState::contact)
+    out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
+  else
+    out.converged = has_converged(here.state, out.normal_W, u, p_);
   if (here.state == ContactState::entrenched && out.normal_W.isZero(0))
     out.status = RenderStatus::degenerate_normal;
 }

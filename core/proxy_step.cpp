@@ -93,6 +93,21 @@ Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   return step_towards(height < 0 ? Vec3(u - height * normal) : u, p);
 }
 
+Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
+                 const ProxyParameters& p) {
+  if (goal == u) return free_step(near, p_W, u, p);
+  const Vec3 step = step_towards(goal, p);
+  const double length = step.norm();
+  if (!(length > 0)) return Vec3::Zero();
+  // Between r1 and r_c, so that what touches already, at r1 or more, is not met again.
+  const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
+  return step * (near.first_hit(p_W, step / length, reach, length) / length);
+}
+
+bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p) {
+  return goal.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
+}
+
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   if (state == ContactState::free) return u.isZero(0);
   if (state == ContactState::entrenched || !(u.dot(normal) < 0)) return false;

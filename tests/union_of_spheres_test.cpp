@@ -54,6 +54,7 @@ std::vector<ProxyParameters> settings() {
       for (const int steps : {30, 31}) {
         ProxyParameters p;
         p.velocity_estimate = velocity, p.exit_rule = rule, p.steps_per_tick = steps;
+        p.closing_steps = 0;  // as printed
         all.push_back(p);
       }
   return all;
@@ -193,6 +194,49 @@ TEST(UnionOfSpheres, ConvergedOnOneRegionIsNearestToTheHip) {
   RecordProperty("of_these_not_nearest", not_nearest);
   EXPECT_GT(alone, 500);
   EXPECT_GT(among_others, 500);
+}
+
+// --- the contact rule that keeps every touching region by itself ---
+
+// Touching regions grown or shrunk until p lies on their margin: what the contact shell leaves open is then
+// no nearer position.
+PointCloud as_touched(const PointCloud& cloud, const Vec3& p, const ProxyParameters& settings) {
+  PointCloud grown = cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double r = (p - cloud.point(i)).norm() - cloud.fixture_radius_m[i];
+    if (r <= settings.r2_m) grown.fixture_radius_m[i] += r - settings.r1_m;
+  }
+  return grown;
+}
+
+// No tick ends inside a region, a hand that rests finds a proxy that rests, and where it has converged no
+// allowed position around is nearer to the HIP by more than an angle of theta leaves over, 0.4 um; or, where
+// three normals nearly lie in a plane, than the regions' curvature opens behind a barrier, 2 um.
+TEST(UnionOfSpheres, RegionsByThemselvesAreNeverEnteredAndConvergeNearestToTheHip) {
+  for (ProxyParameters p : settings()) {
+    p.contact_rule = ContactRule::regions;
+    const double radius = 0.0002;
+    spheres::Draw draw(9);
+    int touching = 0, converged = 0, looked = 0, tick = 0, rests = 0, settled = 0;
+    walk_all(p, [&](const PointCloud& cloud, const Vec3& hip, const RenderOutput& out) {
+      const double truth = nearest_region(cloud, out.proxy_W);
+      ASSERT_GE(truth, p.r1_m - 1e-16);
+      ASSERT_EQ(out.slave_W, out.proxy_W);
+      touching += truth <= p.r2_m;
+      const bool held = out.state == ContactState::contact && out.proxy_W != hip;
+      const bool end_of_rest = tick++ % (kTicks + 1) % spheres::HandPath::kSegment == 399;
+      if (held && end_of_rest) ++rests, settled += out.converged;
+      if (!held || !out.converged || ++converged % 20 != 0) return;
+      const PointCloud margin = as_touched(cloud, out.proxy_W, p);
+      const auto best = spheres::nearest_to_hip_around(margin, out.proxy_W, hip, p.r1_m, radius, 200, draw);
+      ASSERT_LE((hip - out.proxy_W).norm() - best.distance, 2e-6);
+      ++looked;
+    });
+    EXPECT_GT(looked, 1000);
+    EXPECT_GT(converged, 0.9 * touching) << name(p);
+    EXPECT_GT(rests, 60);
+    EXPECT_GE(settled, 0.95 * rests) << name(p);
+  }
 }
 
 // --- stiffness (5.8) ---
