@@ -1,13 +1,18 @@
-// What every entry of the catalog owes its seam. A new scenario, trajectory or renderer is tested here from
-// its birth.
+// What every entry of the catalog owes its seam. A new scenario, fixture rule, trajectory or renderer is
+// tested here from its birth.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "core/camera.h"
 #include "runners/catalog.h"
+#include "runners/experiment.h"
 #include "runners/figures/figures.h"
+#include "runners/json_parameters.h"
 #include "tests/allocation_counter.h"
 #include "tests/scenes.h"
 #include "tests/test_files.h"
@@ -204,6 +209,125 @@ TEST_F(ScenarioContract, OtherSeedsGiveOtherNoise) {
   }
 }
 
+// --- fixture rules ---
+
+class FixtureContract : public testing::Test {
+ protected:
+  // A wall 0.6 m away in 8 x 6 pixels, of all colours, the upper left of which saw nothing.
+  static PointCloud coloured_image() {
+    PointCloud cloud;
+    cloud.image = ImageLayout{{8, 6, 10, 10, 3.5, 2.5}, RigidTransform::Identity(), 0};
+    for (int i = 0; i < 48; ++i) {
+      const bool seen = i % 8 > 1 || i / 8 > 1;
+      const double z = seen ? 0.6 : std::numeric_limits<double>::quiet_NaN();
+      const Vec3 p = unproject(cloud.image->camera, i % 8, i / 8, z);
+      cloud.append(seen ? p : Vec3::Constant(z));
+      cloud.colour.push_back(static_cast<std::uint32_t>(i * 349525));
+    }
+    return cloud;
+  }
+
+  FixtureContract() {
+    std::vector<std::uint8_t> grey(48);
+    for (std::size_t i = 0; i < 48; ++i) grey[i] = static_cast<std::uint8_t>(i % 2 * 255);
+    mask_ = folder_.write_png("mask.png", 8, 6, PNG_FORMAT_GRAY, grey.data()).string();
+  }
+
+  // With the defaults of the catalog; a mask is one that is made here.
+  auto blueprint(const FixtureEntry& entry) const {
+    auto made = entry.make();
+    for (const Parameter& p : made->settings())
+      if (p.name == "path") *std::get<std::string*>(p.value) = mask_;
+    return made;
+  }
+
+  TestFolder folder_{"fixture_contract"};
+  std::string mask_;
+};
+
+TEST_F(FixtureContract, SharesAreOneAPointAndFromNothingToOne) {
+  for (const FixtureEntry& entry : fixtures()) {
+    const PointCloud cloud = coloured_image();
+    const std::vector<double> shares = blueprint(entry)->build()->shares(cloud);
+    ASSERT_EQ(shares.size(), cloud.size()) << entry.name;
+    double sum = 0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      EXPECT_TRUE(shares[i] >= 0 && shares[i] <= 1) << entry.name << " " << i;
+      if (!cloud.point(i).allFinite()) EXPECT_EQ(shares[i], 0) << entry.name << " " << i;
+      sum += shares[i];
+    }
+    // The wall is too far away from the point that near-point has by default.
+    EXPECT_EQ(sum > 0, entry.name != std::string("near-point")) << entry.name;
+  }
+}
+
+TEST_F(FixtureContract, NothingIsPickedOfAFrameThatSawNothing) {
+  for (const FixtureEntry& entry : fixtures()) {
+    PointCloud cloud = coloured_image();
+    cloud.x.assign(cloud.size(), std::numeric_limits<double>::quiet_NaN()), cloud.y = cloud.z = cloud.x;
+    EXPECT_EQ(blueprint(entry)->build()->shares(cloud), std::vector<double>(cloud.size())) << entry.name;
+  }
+}
+
+TEST_F(FixtureContract, SharesArePure) {
+  for (const FixtureEntry& entry : fixtures()) {
+    const PointCloud cloud = coloured_image();
+    PointCloud other = cloud;
+    other.x[20] += 1, other.colour[30] = 0;
+    const auto one = blueprint(entry)->build(), fresh = blueprint(entry)->build();
+    const std::vector<double> first = one->shares(cloud);
+    one->shares(other);  // what it was asked before changes nothing
+    EXPECT_TRUE(same_bits(one->shares(cloud), first)) << entry.name;
+    EXPECT_TRUE(same_bits(fresh->shares(cloud), first)) << entry.name;
+  }
+}
+
+TEST_F(FixtureContract, GivesTheValuesOfItsSettings) {
+  for (const FixtureEntry& entry : fixtures()) {
+    const auto made = blueprint(entry);
+    const Json set = {{"radius_m", 0.25}, {"stiffness_N_per_m", 77}, {"schedule", {{1, 0.5}, {2, 0}}}};
+    read_parameters(set, made->settings(), entry.name, false);
+    EXPECT_EQ(made->contradiction(), "") << entry.name;
+    const auto rule = made->build();
+    EXPECT_EQ(rule->values().radius_m, 0.25) << entry.name;
+    EXPECT_EQ(rule->values().stiffness_N_per_m, 77) << entry.name;
+    EXPECT_EQ(rule->strength(0), 0.5) << entry.name;
+    EXPECT_TRUE(rule->changes_with_time()) << entry.name;
+    read_parameters({{"schedule", {{1, 0.5}, {0, 0}}}}, made->settings(), entry.name, false);
+    EXPECT_HAS(made->contradiction(), "schedule: time") << entry.name;
+  }
+}
+
+TEST_F(FixtureContract, FilesThatSettingsNameAreTold) {
+  for (const FixtureEntry& entry : fixtures()) {
+    const auto made = blueprint(entry);
+    const auto settings = made->settings();
+    const bool has_path =
+        std::any_of(settings.begin(), settings.end(), [](const Parameter& p) { return p.name == "path"; });
+    ASSERT_EQ(made->inputs().size(), has_path ? 1u : 0u) << entry.name;
+    if (has_path) EXPECT_EQ(made->inputs()[0].path, mask_) << entry.name;
+  }
+}
+
+TEST_F(FixtureContract, SettingsSurviveARoundTripThroughAnExperiment) {
+  Json rules = Json::array();
+  for (const FixtureEntry& entry : fixtures()) {
+    const auto made = blueprint(entry);
+    read_parameters({{"radius_m", 0.1 + 0.2}, {"schedule", {{0, 0.1}, {1e-3, 1}}}}, made->settings(),
+                    entry.name, false);
+    rules.push_back({{"name", entry.name}});
+    write_parameters(made->settings(), rules.back());
+  }
+  rules.push_back(rules.front());  // a rule may come twice
+  Json json = Json::parse(Experiment::load("fig4.11").to_json());
+  json["fixtures"] = rules;
+  const Experiment experiment = Experiment::from_json(json);
+  const std::string text = experiment.to_json();
+  EXPECT_EQ(Json::parse(text)["fixtures"], rules);
+  EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
+  EXPECT_FALSE(experiment.build_fixtures().empty());
+}
+
 // --- trajectories ---
 
 TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
@@ -243,7 +367,7 @@ TEST(Catalog, NamesAreUniqueAndDescribed) {
       for (std::size_t j = 0; j < i; ++j) EXPECT_STRNE(entries[i].name, entries[j].name);
     }
   };
-  check(scenarios()), check(renderers()), check(trajectories()), check(figures());
+  check(scenarios()), check(fixtures()), check(renderers()), check(trajectories()), check(figures());
 }
 
 }  // namespace

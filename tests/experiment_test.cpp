@@ -30,6 +30,10 @@ TEST(Experiments, AllFilesAreStored) {
   EXPECT_EQ(stored_experiments().size(), files);
 }
 
+void expect_has_all(const Json& resolved, const Json& part) {
+  for (const auto& [name, value] : part.items()) EXPECT_EQ(resolved[name], value) << part << ": " << name;
+}
+
 TEST(Experiments, SurviveARoundTrip) {
   for (const StoredText& stored : stored_experiments()) {
     SCOPED_TRACE(stored.name);
@@ -42,28 +46,33 @@ TEST(Experiments, SurviveARoundTrip) {
     // What the file says is in the resolved configuration.
     const Json file = Json::parse(stored.json), resolved = Json::parse(text);
     for (const auto& [key, value] : file.items()) {
-      if (!value.is_object()) {
+      if (key == "fixtures") {
+        ASSERT_EQ(resolved[key].size(), value.size());
+        for (std::size_t i = 0; i < value.size(); ++i) expect_has_all(resolved[key][i], value[i]);
+      } else if (value.is_object()) {
+        expect_has_all(resolved[key], value);
+      } else {
         EXPECT_EQ(resolved[key], value) << key;
-        continue;
       }
-      for (const auto& [name, number] : value.items())
-        EXPECT_EQ(resolved[key][name], number) << key << "." << name;
     }
   }
 }
 
 // The resolved configuration has every parameter of the run and of its parts.
 TEST(Experiments, AreResolvedCompletely) {
-  const Json json = Json::parse(Experiment::load("fig4.11").to_json());
+  const Json json = Json::parse(
+      Experiment::load("fig4.11", {R"(fixtures=[{"name": "half-space"}, {"name": "hue-range"}])"}).to_json());
   RunSettings run;
-  EXPECT_EQ(json.size(), parameters(run).size() + 3);
-  const auto expect_all = [&](const char* part, auto entries) {
-    const auto blueprint = find_entry(entries, json[part]["name"].template get<std::string>(), part).make();
-    EXPECT_EQ(json[part].size(), blueprint->settings().size() + 1) << part;
-    for (const Parameter& p : blueprint->settings()) EXPECT_TRUE(json[part].contains(p.name)) << p.name;
+  EXPECT_EQ(json.size(), parameters(run).size() + 4);
+  const auto expect_all = [](const Json& part, auto entries) {
+    const auto blueprint = find_entry(entries, part["name"].template get<std::string>(), "part").make();
+    EXPECT_EQ(part.size(), blueprint->settings().size() + 1) << part;
+    for (const Parameter& p : blueprint->settings()) EXPECT_TRUE(part.contains(p.name)) << p.name;
   };
-  expect_all("scenario", scenarios()), expect_all("renderer", renderers()),
-      expect_all("trajectory", trajectories());
+  expect_all(json["scenario"], scenarios()), expect_all(json["renderer"], renderers()),
+      expect_all(json["trajectory"], trajectories());
+  ASSERT_EQ(json["fixtures"].size(), 2u);
+  for (const Json& rule : json["fixtures"]) expect_all(rule, fixtures());
 }
 
 constexpr const char* kSmall = R"({"seed": 5, "scenario": {"name": "flat-grid", "columns": 7},
@@ -126,13 +135,51 @@ TEST(Experiments, RefuseSettingsThatContradictEachOther) {
   EXPECT_HAS(why(R"(scenario={"name":"recording"})"), "scenario.path");
 }
 
+// --- fixture rules ---
+
+TEST(Experiments, FixturesAreAListInOrder) {
+  EXPECT_EQ(resolved({})["fixtures"], Json::array());
+  const std::string two = R"(fixtures=[{"name": "half-space", "radius_m": 0.03}, {"name": "everywhere"}])";
+  const Json changed = resolved({two, "fixtures.1.radius_m=0.5", "fixtures.0.normal=[0,1,0]"})["fixtures"];
+  ASSERT_EQ(changed.size(), 2u);
+  EXPECT_EQ(changed[0]["name"], "half-space");
+  EXPECT_EQ(changed[0]["radius_m"], 0.03);
+  EXPECT_EQ(changed[0]["normal"], Json::parse("[0.0, 1.0, 0.0]"));
+  EXPECT_EQ(changed[1]["name"], "everywhere");
+  EXPECT_EQ(changed[1]["radius_m"], 0.5);
+}
+
+TEST(Experiments, RefuseFixturesThatAreNone) {
+  const auto why = [](const std::string& list, const std::string& change = "seed=1") {
+    return refusal([&] { resolved({"fixtures=" + list, change}); });
+  };
+  for (const char* list : {"3", "{}", "{\"name\": \"everywhere\"}", "everywhere"})
+    EXPECT_HAS(why(list), "fixtures: allowed a list of {") << list;
+  for (const char* list : {"[3]", "[{}]", "[[]]", "[{\"radius_m\": 1}]"})
+    EXPECT_HAS(why(list), "fixtures.0: missing; allowed {\"name\"") << list;
+  const std::string one = R"([{"name": "everywhere"}])";
+  EXPECT_HAS(why(one, "fixtures.0.name=moon"),
+             "fixtures.0.name = \"moon\": allowed everywhere, half-space, near-point, hue-range, image-mask");
+  EXPECT_HAS(why(one, "fixtures.0.name=3"), "fixtures.0.name = 3");
+  EXPECT_HAS(why(one, "fixtures.0.radius=1"),
+             "fixtures.0.radius: unknown; the nearest allowed is fixtures.0.radius_m");
+  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: allowed 0 to 1");
+  EXPECT_HAS(why(one, "fixtures.0.schedule=[[0,1.5]]"), "fixtures.0.schedule: strength 1.5");
+  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "allowed 0 to 0 for its place in a list");
+  EXPECT_HAS(why("[]", "fixtures.0.radius_m=1"), "fixtures");
+  EXPECT_HAS(why(R"([{"name": "everywhere"}, {"name": "half-space", "normal": [0, 0, 0]}])"),
+             "fixtures.1.normal: allowed longer than 0");
+}
+
 TEST(Experiments, DefaultsFitTogether) {
   const auto expect_no_contradiction = [](const auto& entries) {
-    for (const auto& entry : entries)  // a recording has no default path
-      EXPECT_EQ(entry.make()->contradiction().empty(), entry.name != std::string("recording")) << entry.name;
+    for (const auto& entry : entries) {
+      const std::string name = entry.name;  // a recording and a mask have no default path
+      EXPECT_EQ(entry.make()->contradiction().empty(), name != "recording" && name != "image-mask") << name;
+    }
   };
-  expect_no_contradiction(scenarios()), expect_no_contradiction(renderers()),
-      expect_no_contradiction(trajectories());
+  expect_no_contradiction(scenarios()), expect_no_contradiction(fixtures()),
+      expect_no_contradiction(renderers()), expect_no_contradiction(trajectories());
 }
 
 TEST(Experiments, TheMessageIsThatOfTheManual) {
