@@ -194,6 +194,46 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
     }
 }
 
+// --- uniforms ---
+
+TEST(Uniforms, AreTheWordsOfPhilox) {
+  const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
+  for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
+    for (const std::uint32_t point : {0u, 1u, 77u, ~0u}) {
+      const auto got = uniforms(noise_stream(key, NoiseUse::delivery, frame), point);
+      const Words want = philox({point, frame | 2u << 28, 4000000001, 17}, {0x9abcdef0, 0x12345678});
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(got[k], static_cast<double>((Real{want[k]} + 0.5L) * 0x1p-32L)) << frame << " " << point;
+    }
+}
+
+TEST(Uniforms, LieBetweenNothingAndOneAtTheEndsToo) {
+  const Key key{7, 8};
+  for (const std::uint32_t word : {0u, ~0u}) {
+    const Words counter = philox_inverse({word, word, word, word}, key);
+    for (const double u : uniforms({{7, 8}, {counter[1], counter[2], counter[3]}}, counter[0])) {
+      EXPECT_EQ(u, word == 0 ? 0x1p-33 : 1 - 0x1p-33);
+      EXPECT_TRUE(u > 0 && u < 1);
+    }
+  }
+}
+
+TEST(Uniforms, AreEvenlySpread) {
+  constexpr std::uint32_t kCount = 50000;
+  double mean[4] = {}, square[4] = {}, product = 0;
+  for (std::uint32_t frame = 0; frame < kCount; ++frame) {
+    const auto u = uniforms(noise_stream({11}, NoiseUse::delivery, frame), 0);
+    for (std::size_t k = 0; k < 4; ++k)
+      mean[k] += (u[k] - 0.5) / kCount, square[k] += (u[k] - 0.5) * (u[k] - 0.5) / kCount;
+    product += (u[0] - 0.5) * (u[1] - 0.5) / kCount;
+  }
+  for (std::size_t k = 0; k < 4; ++k) {  // 5 standard deviations of each estimate
+    EXPECT_NEAR(mean[k], 0, 5 / std::sqrt(12.0 * kCount));
+    EXPECT_NEAR(square[k], 1 / 12.0, 5 / std::sqrt(180.0 * kCount));
+  }
+  EXPECT_NEAR(product, 0, 5 / (12 * std::sqrt(1.0 * kCount))) << "loss and lateness of a frame";
+}
+
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(a.size());
 }
@@ -205,6 +245,7 @@ TEST(Noise, EveryPartOfTheKeyGivesItsOwnNoise) {
   const std::vector<NoiseStream> streams{noise_stream(base, use, 8),
                                          noise_stream(base, use, 9),
                                          noise_stream(base, NoiseUse::depth, 8),
+                                         noise_stream(base, NoiseUse::delivery, 8),
                                          noise_stream({6, 6, 7}, use, 8),
                                          noise_stream({5 + (std::uint64_t{1} << 32), 6, 7}, use, 8),
                                          noise_stream({5, 7, 7}, use, 8),
