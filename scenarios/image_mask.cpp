@@ -28,7 +28,7 @@ ImageMask::ImageMask(const Settings& settings)
       mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
 
 std::vector<double> ImageMask::shares(const PointCloud& cloud) const {
-  if (!cloud.image) throw InputError("fixtures: image-mask", "the frame is no image; allowed with a camera");
+  if (!cloud.image) throw InputError("image-mask", "the frame is no image; allowed with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   if (camera.width != width_ || camera.height != height_)
     throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +

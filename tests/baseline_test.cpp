@@ -102,7 +102,7 @@ class CheckBaseline : public testing::Test {
 TEST_F(CheckBaseline, TheSameWhoeverMadeIt) {
   const BaselineCheck result = check(stored_run());
   EXPECT_EQ(result.state, State::same);
-  EXPECT_EQ(result.text, "16 columns, every number is the same");
+  EXPECT_EQ(result.text, "18 columns, every number is the same");
   ASSERT_TRUE(result.comparison);
   EXPECT_EQ(result.comparison->baseline, "short (stored)");
   EXPECT_EQ(result.comparison->candidate, "this program");
@@ -125,7 +125,7 @@ TEST_F(CheckBaseline, ChangedNumbers) {
   Baseline baseline = stored_run([](Trace& trace) { trace.force_N[3 * 120 + 1] += 0x1p-20; });
   const BaselineCheck changed = check(baseline);
   EXPECT_EQ(changed.state, State::changed);
-  EXPECT_EQ(changed.text, "force of 16 columns, from tick 120 on (drift)");
+  EXPECT_EQ(changed.text, "force of 18 columns, from tick 120 on (drift)");
   ASSERT_TRUE(changed.comparison && changed.comparison->columns && changed.comparison->columns->divergence);
   EXPECT_EQ(changed.comparison->columns->divergence->tick, 120u);
 
@@ -136,7 +136,7 @@ TEST_F(CheckBaseline, ChangedNumbers) {
   baseline.tolerances = {{"force", {0x1p-19}}};
   const BaselineCheck within = check(baseline);
   EXPECT_EQ(within.state, State::same);
-  EXPECT_EQ(within.text, "16 columns, every number is within its tolerance");
+  EXPECT_EQ(within.text, "18 columns, every number is within its tolerance");
 }
 
 TEST_F(CheckBaseline, WhatHasNoTolerance) {

@@ -253,7 +253,9 @@ TEST_F(FixtureContract, SharesAreOneAPointAndFromNothingToOne) {
     double sum = 0;
     for (std::size_t i = 0; i < shares.size(); ++i) {
       EXPECT_TRUE(shares[i] >= 0 && shares[i] <= 1) << entry.name << " " << i;
-      if (!cloud.point(i).allFinite()) EXPECT_EQ(shares[i], 0) << entry.name << " " << i;
+      if (!cloud.point(i).allFinite()) {
+        EXPECT_EQ(shares[i], 0) << entry.name << " " << i;
+      }
       sum += shares[i];
     }
     // The wall is too far away from the point that near-point has by default.
@@ -305,7 +307,9 @@ TEST_F(FixtureContract, FilesThatSettingsNameAreTold) {
     const bool has_path =
         std::any_of(settings.begin(), settings.end(), [](const Parameter& p) { return p.name == "path"; });
     ASSERT_EQ(made->inputs().size(), has_path ? 1u : 0u) << entry.name;
-    if (has_path) EXPECT_EQ(made->inputs()[0].path, mask_) << entry.name;
+    if (has_path) {
+      EXPECT_EQ(made->inputs()[0].path, mask_) << entry.name;
+    }
   }
 }
 

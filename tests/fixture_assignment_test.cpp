@@ -26,6 +26,7 @@ class Told final : public FixtureRule {
 };
 
 struct Rule {
+  Rule(FixtureValues v, Column s) : values(std::move(v)), shares(std::move(s)) {}
   FixtureValues values;
   Column shares;
 };

@@ -164,8 +164,8 @@ TEST(NearPoint, APixelOutsideTheImageIsRefused) {
   const auto why = [](const PointCloud& cloud, int row, int column) {
     return refusal([&] { picked(cloud, row, column); });
   };
-  EXPECT_EQ(why(wall(), 4, 0), "fixtures: near-point: row, column: allowed below 4 and 6");
-  EXPECT_EQ(why(wall(), 0, 6), "fixtures: near-point: row, column: allowed below 4 and 6");
+  EXPECT_EQ(why(wall(), 4, 0), "near-point: row, column: allowed below 4 and 6");
+  EXPECT_EQ(why(wall(), 0, 6), "near-point: row, column: allowed below 4 and 6");
   EXPECT_EQ(why(wall(), 3, 5), "no InputError");
   EXPECT_HAS(why(cloud_of({{0, 0, 0}}), 0, 0), "the frame is no image");
 }

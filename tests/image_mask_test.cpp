@@ -22,10 +22,16 @@ PointCloud image(int width, int height) {
   return cloud;
 }
 
+ImageMask::Settings settings(const fs::path& file) {
+  ImageMask::Settings settings;
+  settings.path = file.string();
+  return settings;
+}
+
 class ImageMasks : public testing::Test {
  protected:
   Shares shares(const fs::path& file, const PointCloud& cloud) const {
-    return ImageMask({{}, file.string()}).shares(cloud);
+    return ImageMask(settings(file)).shares(cloud);
   }
   fs::path grey(const std::vector<std::uint8_t>& samples, int width) const {
     const int height = static_cast<int>(samples.size()) / width;
@@ -74,14 +80,14 @@ TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   }
   PointCloud no_image = image(3, 2);
   no_image.image.reset();
-  EXPECT_HAS(refusal([&] { shares(file, no_image); }), "fixtures: image-mask: the frame is no image");
+  EXPECT_HAS(refusal([&] { shares(file, no_image); }), "image-mask: the frame is no image");
 }
 
 TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
-  const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask({{}, file.string()}); }); };
+  const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
   const fs::path missing = folder_ / "missing.png";
   EXPECT_HAS(why(missing), missing.string() + ": no such recording or image");
-  EXPECT_THROW(ImageMask({{}, missing.string()}), MissingRecording);
+  EXPECT_THROW(ImageMask mask(settings(missing)), MissingRecording);
   const fs::path text = folder_.write("text.png", "no image at all");
   EXPECT_HAS(why(text), text.string() + ": ");
   const std::string whole = bytes_of(grey({0, 1, 2, 3}, 2));

@@ -146,14 +146,17 @@ using Names = std::vector<std::string>;
 
 TEST(MissingBaselines, EveryPartOfTheListNeedsOne) {
   EXPECT_EQ(missing(".", with_runs_of(all_experiments())), Names{});
-  const std::size_t all =
-      stored_experiments().size() + scenarios().size() + renderers().size() + trajectories().size();
+  const std::size_t masks = 1;  // the rule that reads a file
+  const std::size_t all = stored_experiments().size() + scenarios().size() + fixtures().size() - masks +
+                          renderers().size() + trajectories().size();
   EXPECT_EQ(missing(".", with_runs_of({})).size(), all);
 
   Names some = all_experiments();
-  std::erase(some, "fig4.12");
+  std::erase(some, "fig4.12"), std::erase(some, "late-surface"), std::erase(some, "fixture-tasks");
   EXPECT_EQ(missing(".", with_runs_of(some)),
-            (Names{"experiment fig4.12", "scenario moving-lift", "trajectory press"}));
+            (Names{"experiment fig4.12", "experiment fixture-tasks", "experiment late-surface",
+                   "scenario moving-lift", "fixture rule near-point", "fixture rule hue-range",
+                   "trajectory press"}));
 }
 
 TEST(MissingBaselines, NoneWhereTheListNeedNotBeComplete) {
@@ -167,18 +170,20 @@ TEST(MissingBaselines, WhatCountsAsOne) {
   const TestFolder folder("baseline_test");
   folder.write("lift.json", stored_or_file(stored_experiments(), "fig4.12", ""));
   Names some = all_experiments();
-  std::erase(some, "fig4.12"), some.emplace_back("lift.json");
-  EXPECT_EQ(missing(folder.path(), with_runs_of(some)), Names{"experiment fig4.12"});
+  std::erase(some, "fig4.12"), std::erase(some, "late-surface"), some.emplace_back("lift.json");
+  const Names both = {"experiment fig4.12", "experiment late-surface"};
+  EXPECT_EQ(missing(folder.path(), with_runs_of(some)), both);
 
   some.pop_back();
   Manifest manifest = with_runs_of(some);
   manifest.baselines.push_back({"map", "sweep", "fig4.13"});
-  EXPECT_EQ(missing(folder.path(), manifest).size(), 3u);
+  EXPECT_EQ(missing(folder.path(), manifest).size(), 4u);
 
   // What cannot be read has no parts; its own check says why.
   manifest.baselines.push_back({"gone", "run", "moon.json"});
   manifest.baselines.push_back({"refused", "run", "fig4.12", {"scenario.moon=1"}});
-  EXPECT_EQ(missing(folder.path(), manifest), (Names{"scenario moving-lift", "trajectory press"}));
+  EXPECT_EQ(missing(folder.path(), manifest),
+            (Names{"experiment late-surface", "scenario moving-lift", "trajectory press"}));
 }
 
 }  // namespace

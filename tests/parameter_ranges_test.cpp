@@ -86,14 +86,26 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
 
 // Pure numbers, counts and places in an image; everything else says its unit.
 bool carries_unit(const std::string& name) {
-  static const std::set<std::string> kPure = {
-      "gamma",       "xi",     "phase_x",     "phase_z",     "steps_per_tick",
-      "columns",     "rows",   "rise_frames", "first_frame", "acceleration_frames",
-      "last_frame",  "width",  "height",      "row",         "first_column",
-      "last_column", "column", "seed",        "cell",
-<<<<<<< HEAD
-      "replicate"};
-=======
+  static const std::set<std::string> kPure = {"gamma",
+                                              "closing_steps",
+                                              "xi",
+                                              "phase_x",
+                                              "phase_z",
+                                              "steps_per_tick",
+                                              "columns",
+                                              "rows",
+                                              "rise_frames",
+                                              "first_frame",
+                                              "acceleration_frames",
+                                              "last_frame",
+                                              "width",
+                                              "height",
+                                              "row",
+                                              "first_column",
+                                              "last_column",
+                                              "column",
+                                              "seed",
+                                              "cell",
                                               "replicate",
                                               "normal",
                                               "strength",
@@ -101,7 +113,6 @@ bool carries_unit(const std::string& name) {
                                               "least_lightness",
                                               "most_lightness",
                                               "frame_drop_probability"};
->>>>>>> 5f653cf (Fixture rules are held to a contract, and their parameters to the ranges)
   static const char* const kUnits[] = {"_m",       "_s",       "_hz",       "_deg",     "_px",      "_per_m",
                                        "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s", "_m_per_s2"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),

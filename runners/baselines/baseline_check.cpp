@@ -90,6 +90,8 @@ void note_parts(const std::filesystem::path& folder, const Baseline& baseline, s
         Experiment::load(subject_of(folder, baseline), baseline.overrides).to_json(), baseline.name);
     for (const char* part : {"scenario", "renderer", "trajectory"})
       parts.insert(std::string(part) + " " + config[part]["name"].get<std::string>());
+    for (const Json& rule : config["fixtures"])
+      parts.insert("fixture rule " + rule["name"].get<std::string>());
   } catch (const InputError&) {  // its own check tells that
   }
 }
@@ -124,6 +126,8 @@ std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder
   for (const StoredText& experiment : stored_experiments())
     require(std::string("experiment ") + experiment.name);
   for (const auto& entry : scenarios()) require(std::string("scenario ") + entry.name);
+  for (const auto& entry : fixtures())
+    if (entry.make()->inputs().empty()) require(std::string("fixture rule ") + entry.name);
   for (const auto& entry : renderers()) require(std::string("renderer ") + entry.name);
   for (const auto& entry : trajectories()) require(std::string("trajectory ") + entry.name);
   return missing;

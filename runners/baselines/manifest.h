@@ -23,7 +23,7 @@ struct Baseline {
 };
 
 struct Manifest {
-  // Every experiment, scenario, trajectory and renderer of the list has to have a baseline.
+  // Every experiment, scenario, fixture rule, trajectory and renderer of the list has to have a baseline.
   bool complete = false;
   std::vector<Baseline> baselines = {};
 

@@ -22,8 +22,8 @@ constexpr FigureEntry kFigures[] = {
     {"4.16-recorded", "the same experiment on recorded depth images and clouds", figure_4_16_recorded},
     {"5.5", "the region around a single point, entered and left", figure_5_5},
     {"5.6", "the step between two fixture radii, and a stiffness that varies across a plane", figure_5_6},
-    {"fixture-latency", "how far a fixture is violated when frames come late, irregularly or not at all",
-     figure_fixture_latency},
+    {"latency", "how far a fixture is violated when frames come late, irregularly or not at all",
+     figure_latency},
 };
 
 }  // namespace

@@ -84,7 +84,7 @@ Figure figure_4_16(const Laboratory& laboratory);
 Figure figure_4_16_recorded(const Laboratory& laboratory);
 Figure figure_5_5(const Laboratory& laboratory);
 Figure figure_5_6(const Laboratory& laboratory);
-Figure figure_fixture_latency(const Laboratory& laboratory);
+Figure figure_latency(const Laboratory& laboratory);
 Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
 

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// Of the experiments fixture-latency and heart-latency.
+// Of the experiments late-surface and late-heart.
 constexpr double kFixtureRadius_m = 0.02, kContactRadius_m = 0.005, kFrameRate_hz = 30;
 constexpr double kSpeed_m_per_s = 0.1, kLatency_s = 0.05;
 // By then an estimate of the velocity has settled.
@@ -207,7 +207,7 @@ double largest_outside(const Table& jitter) {
 
 }  // namespace
 
-Figure figure_fixture_latency(const Laboratory& laboratory) {
+Figure figure_latency(const Laboratory& laboratory) {
   const auto plain = [&](const char* sweep) { return measure(laboratory, sweep, false); };
   const auto ahead = [&](const char* sweep) { return measure(laboratory, sweep, true); };
   const Table map = map_table(plain("fixture-latency"), ahead("fixture-latency"));
@@ -221,7 +221,7 @@ Figure figure_fixture_latency(const Laboratory& laboratory) {
              &settled = numbers(map, "with_prediction");
 
   Figure figure{
-      "fixture-latency",
+      "latency",
       "Fixtures from late frames",
       "A surface with r_f = 0.02 m rises evenly against a pressing HIP, and frames arrive late; "
       "simulated. Depth: how far the slave's contact point, sent to the proxy, is inside the region "
@@ -233,17 +233,16 @@ Figure figure_fixture_latency(const Laboratory& laboratory) {
       panels()};
   figure.claims = {
       claim_at_most(
-          "fixture-latency", "violation against speed x (latency + frame interval), where that is below r_f",
-          "-", largest_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
-          0.2, "mm"),
-      claim_at_least("fixture-latency",
-                     "cells in which the same rule tells whether the slave reaches the surface", "-",
-                     share_told(map), 0.99, "share"),
-      claim_at_most("fixture-latency", "violation with the slave sent ahead, settled, where it was below r_f",
-                    "-", largest_error(map, 20, [&](std::size_t i) { return settled[i]; }), 0.5, "mm"),
-      claim_at_most("fixture-latency", "jittered runs: how far outside the bounds for all early and all late",
-                    "-", largest_outside(jitter), 0.2, "mm"),
-      claim_at_least("fixture-latency", "lost frames: mean violation at a loss of 0.3 over that at 0", "-",
+          "latency", "violation against speed x (latency + frame interval), where that is below r_f", "-",
+          largest_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }), 0.2,
+          "mm"),
+      claim_at_least("latency", "cells in which the same rule tells whether the slave reaches the surface",
+                     "-", share_told(map), 0.99, "share"),
+      claim_at_most("latency", "violation with the slave sent ahead, settled, where it was below r_f", "-",
+                    largest_error(map, 20, [&](std::size_t i) { return settled[i]; }), 0.5, "mm"),
+      claim_at_most("latency", "jittered runs: how far outside the bounds for all early and all late", "-",
+                    largest_outside(jitter), 0.2, "mm"),
+      claim_at_least("latency", "lost frames: mean violation at a loss of 0.3 over that at 0", "-",
                      numbers(drops, "mean")[6] / numbers(drops, "mean")[0], 1.5, "1"),
   };
   return figure;
