@@ -20,6 +20,7 @@ enum class Fault {
   looks_far,               // points 1 km away matter
   regions_of_nothing,      // a column of radii matters, whatever it holds
   mistrusts_stiff_points,  // a column of stiffness matters beyond its values
+  adds_its_own,            // stiffness to that of the points
   leans_x,                 // to one side of the world
   leans_y,
   leans_z,
@@ -97,6 +98,9 @@ class WrongRenderer final : public Renderer {
         break;
       case Fault::mistrusts_stiff_points:
         if (points_ && points_->has_stiffness()) out.force_N *= 1 + 1e-5;
+        break;
+      case Fault::adds_its_own:
+        if (points_ && points_->has_stiffness()) out.force_N *= 1 + 1e-6 * parameters_.stiffness_N_per_m;
         break;
       case Fault::leans_x:
       case Fault::leans_y:

@@ -35,25 +35,35 @@ class Subject {
     if (!contradiction.empty()) throw InputError(contradiction, "together with the other settings");
     return blueprint;
   }
-  Outputs play(const MetamorphicScene& scene) const { return play(scene, {}, kernels_); }
-  Outputs play(const MetamorphicScene& scene, const UnitChange& units, const Kernels& kernels) const {
-    const auto changed = blueprint();
-    change_units(changed->settings(), units);
-    const auto renderer = changed->build(scene.haptic_rate_hz, kernels);
+  Outputs play(const MetamorphicScene& scene) const {
+    const auto renderer = blueprint()->build(scene.haptic_rate_hz, kernels_);
     return remote_touch::play(scene, *renderer);
+  }
+  Outputs play(const Variation& run) const {
+    const auto changed = blueprint();
+    change_units(changed->settings(), run.units);
+    if (run.other_stiffness_N_per_m) *stiffness(changed->settings()) = *run.other_stiffness_N_per_m;
+    const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
+    return remote_touch::play(run.scene, *renderer);
   }
   Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
     const auto settings_of = blueprint();
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = largest_length_m(parameters);
-    for (const Parameter& p : parameters)
-      if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
-        run.stiffness_N_per_m = **value;
+    if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }
 
  private:
+  // The number of that name; null without one.
+  static double* stiffness(const Parameters& parameters) {
+    for (const Parameter& p : parameters)
+      if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+        return *value;
+    return nullptr;
+  }
+
   const RendererEntry& entry_;
   const std::vector<std::string>& assignments_;
   const Kernels& kernels_;
@@ -93,8 +103,7 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
     Variation run = unvaried;
     if (!relation.vary(run)) continue;
     CheckResult result{relation.name, relation.meaning, scene.name, relation.reason, {}, {}};
-    result.comparison = compare(run.expected, subject.play(run.scene, run.units, *run.kernels),
-                                relation.tolerance, run.until_velocity);
+    result.comparison = compare(run.expected, subject.play(run), relation.tolerance, run.until_velocity);
     if (!result.passed() && relation.tolerance.rounded)
       result.remark = remark_on(result, subject, scene, outputs, relation.tolerance);
     results.push_back(std::move(result));

@@ -78,6 +78,15 @@ bool add_radius_column(Variation& run) {
   return true;
 }
 
+// A point whose stiffness is NaN has the renderer's.
+bool add_empty_stiffness_column(Variation& run) {
+  for (CloudView& view : run.scene.views) {
+    if (!view.cloud.stiffness_N_per_m.empty()) return false;
+    view.cloud.stiffness_N_per_m.assign(view.cloud.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return true;
+}
+
 bool add_stiffness_column(Variation& run) {
   if (!run.stiffness_N_per_m) return false;
   for (CloudView& view : run.scene.views) {
@@ -135,6 +144,12 @@ bool soften(Variation& run) {
 
 bool points_are_stiff(const Variation& run) {
   return !run.scene.views.front().cloud.stiffness_N_per_m.empty();
+}
+
+bool change_renderer_only(Variation& run) {
+  if (!points_are_stiff(run) || !run.stiffness_N_per_m) return false;
+  run.other_stiffness_N_per_m = 0.5 * *run.stiffness_N_per_m;
+  return true;
 }
 
 bool soften_renderer(Variation& run) {
@@ -248,6 +263,10 @@ const MetamorphicRelation kRelations[] = {
     {"zero-regions", "forbidden regions of radius 0 are none", kExact, kSameSum, add_radius_column},
     {"own-stiffness", "points as stiff as the renderer are points without a stiffness", kRoundedForce,
      "a mean of stiffnesses rounds to a fixed grid", add_stiffness_column},
+    {"no-own-stiffness", "points with a column of stiffness and nothing in it are as stiff as the renderer",
+     kRoundedForce, "a mean of stiffnesses rounds to a fixed grid", add_empty_stiffness_column},
+    {"renderer-stiffness", "where all points have a stiffness the renderer's does not matter", kExact,
+     kSameSum, change_renderer_only},
     {"mirror-x", "a world with left and right exchanged is felt so: x to -x", kExact,
      "signs do not round: equal bits", mirror_axis<0>},
     {"mirror-y", "y to -y", kExact, "signs do not round: equal bits", mirror_axis<1>},

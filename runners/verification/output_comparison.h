@@ -18,8 +18,8 @@ struct OutputTolerance {
 
 // The largest difference of one kind.
 struct Deviation {
-  const char* quantity;  // "position" (of the proxy and slave, and carried), "nearest", "force", "velocity", "normal",
-                         // or "other": 1 where state, steps, counts, frame or status differ
+  const char* quantity;  // "position" (of the proxy and slave, and carried), "nearest", "force", "velocity",
+                         // "normal", or "other": 1 where state, steps, counts, frame or status differ
   const char* unit;
   double tolerance = 0;
   double largest = 0;  // infinite where a number was expected and there is none, or the other way round

@@ -20,6 +20,7 @@ struct Variation {
   bool until_velocity = false;                   // compared until either run has estimated a surface velocity
   double reach_m = 0;                            // the renderer's largest length
   std::optional<double> stiffness_N_per_m = {};  // of the renderer, where it has a parameter of that name
+  std::optional<double> other_stiffness_N_per_m = {};  // to be given to it instead
 };
 
 // Lengths, times and forces become so many times as large, parameters included. k_s of points follows.

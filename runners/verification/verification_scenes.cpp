@@ -190,6 +190,25 @@ MetamorphicScene rise(const Kernels& kernels) {
   return scene;
 }
 
+// Chapter 5 in motion: regions that overlap and differ rise against the HIP.
+MetamorphicScene rising_regions(const Kernels& kernels) {
+  const auto height = [](double time_s) { return 0.04 * time_s + 0.08 * time_s * time_s; };
+  MetamorphicScene scene =
+      scene_of("rising-regions", "forbidden regions around a noisy plane that rises, pressed",
+               {{0, {-0.01, 0.02, 0.005}}, {30, {-0.01, 0.001, 0.005}}, {320, {0.008, -0.001, -0.004}}},
+               [&](int view, double time_s) {
+                 PointCloud cloud = sheet([&](double u, double v) { return Vec3(u, height(time_s), v); },
+                                          0.0003, 9, view, kernels);
+                 for (std::size_t i = 0; i < cloud.size(); ++i)
+                   cloud.fixture_radius_m.push_back(0.008 + 0.001 * wave(cloud.x[i] / 0.05));
+                 return cloud;
+               });
+  for (std::size_t tick = 0; tick < scene.hip_W.size(); ++tick)
+    scene.hip_W[tick].y() += height(scene.time_s(tick));
+  place(scene, kSteepTilt, {-0.01, 0.02, 0.03});
+  return scene;
+}
+
 // Along the optical axis: a table that falls away to the left.
 double table_depth_m(double u, double v) {
   return 0.45 - 0.0004 * u + 0.0007 * v;
@@ -239,8 +258,8 @@ MetamorphicScene camera(const Kernels& kernels) {
 }  // namespace
 
 std::vector<MetamorphicScene> verification_scenes(const Kernels& kernels) {
-  return {bumpy_slide(kernels), rise(kernels),    touch_and_go(kernels), ridge(kernels),
-          corner(kernels),      regions(kernels), camera(kernels),       held(kernels)};
+  return {bumpy_slide(kernels), rise(kernels),   touch_and_go(kernels),   ridge(kernels), corner(kernels),
+          regions(kernels),     camera(kernels), rising_regions(kernels), held(kernels)};
 }
 
 }  // namespace remote_touch
