@@ -56,6 +56,17 @@ double least_slave_distance_m(const Trace& trace) {
   return std::isinf(least) ? std::numeric_limits<double>::quiet_NaN() : least;
 }
 
+double wrong_side_share(const Trace& trace) {
+  std::size_t known = 0, wrong = 0;
+  for (const double distance : trace.signed_distance_m) {
+    if (std::isnan(distance)) continue;
+    ++known;
+    wrong += distance < 0 ? 1 : 0;
+  }
+  if (known == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(wrong) / static_cast<double>(known);
+}
+
 double rms_surface_error_m(const Trace& trace) {
   double squares = 0;
   std::size_t count = 0;

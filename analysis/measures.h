@@ -16,6 +16,8 @@ double largest_penetration_m(const Trace& trace);
 // The smallest distance of the slave's command to the true surface, m, over the ticks with a known truth; NaN
 // without any. With a uniform radius a fixture is violated by r_f + r_c less this.
 double least_slave_distance_m(const Trace& trace);
+// Share of the ticks with a known truth whose proxy centre lies behind the surface; NaN without any.
+double wrong_side_share(const Trace& trace);
 // How far the rendered surface is from the true one: rms difference of the centre's distance to the true
 // surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without
 // any.

@@ -39,6 +39,12 @@ TEST(Measures, PopThroughIsJudgedAtTheEnd) {
   EXPECT_EQ(largest_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
 }
 
+TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(wrong_side_share(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
+  EXPECT_TRUE(std::isnan(wrong_side_share(trace_of({{unknown}}))));
+}
+
 TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   Tick good{0.0053}, bad{0.0046}, free{0.02}, dark{unknown};

@@ -46,17 +46,6 @@ Table slice_table(const std::string& name, const PointCloud& cloud, int along, i
   return table;
 }
 
-// Share of the ticks with a known truth whose proxy centre lies behind the surface.
-double wrong_side_share(const Trace& trace) {
-  std::size_t known = 0, wrong = 0;
-  for (const double distance : trace.signed_distance_m) {
-    if (std::isnan(distance)) continue;
-    ++known;
-    wrong += distance < 0 ? 1 : 0;
-  }
-  return known == 0 ? std::nan("") : static_cast<double>(wrong) / static_cast<double>(known);
-}
-
 // Share of the ticks in which the HIP is held back whose truth is known: of the others nothing is claimed.
 double known_share(const Trace& trace) {
   std::size_t pressed = 0, known = 0;

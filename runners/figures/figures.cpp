@@ -22,6 +22,9 @@ constexpr FigureEntry kFigures[] = {
     {"4.16-recorded", "the same experiment on recorded depth images and clouds", figure_4_16_recorded},
     {"5.5", "the region around a single point, entered and left", figure_5_5},
     {"5.6", "the step between two fixture radii, and a stiffness that varies across a plane", figure_5_6},
+    {"5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8},
+    {"5.8-recorded", "the same fixture on recorded depth images, camera at rest and moving",
+     figure_5_8_recorded},
     {"latency", "how far a fixture is violated when frames come late, irregularly or not at all",
      figure_latency},
 };
@@ -36,6 +39,14 @@ Trace Laboratory::run(const Experiment& experiment) const {
   note(experiment.to_json());
   inputs_.add(experiment.inputs());
   return simulated(experiment, progress_);
+}
+
+std::vector<Trace> Laboratory::run(const std::vector<Experiment>& experiments) const {
+  for (const Experiment& experiment : experiments) {
+    note(experiment.to_json());
+    inputs_.add(experiment.inputs());
+  }
+  return collect(experiments.size(), [&](std::size_t i) { return simulated(experiments[i]); });
 }
 
 std::string Laboratory::configurations() const {

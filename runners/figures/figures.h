@@ -23,6 +23,7 @@ class Laboratory {
       : kernels_(kernels), stop_(stop), progress_(std::move(progress)) {}
 
   Trace run(const Experiment& experiment) const;
+  std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // side by side
   // What of(trace) gives for each run, side by side. The first failure is thrown after all have ended.
   template <class Of>
   auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
@@ -85,6 +86,8 @@ Figure figure_4_16_recorded(const Laboratory& laboratory);
 Figure figure_5_5(const Laboratory& laboratory);
 Figure figure_5_6(const Laboratory& laboratory);
 Figure figure_latency(const Laboratory& laboratory);
+Figure figure_5_8(const Laboratory& laboratory);
+Figure figure_5_8_recorded(const Laboratory& laboratory);
 Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
 

@@ -1,0 +1,76 @@
+#include "runners/figures/fixture_run.h"
+
+#include <utility>
+
+#include "analysis/measures.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The radius at each frame's time of capture, from the rules themselves.
+std::vector<double> radii(const Experiment& experiment, const Trace& trace, const Scenario& scenario) {
+  const FixtureAssignment fixtures = experiment.build_fixtures();
+  std::vector<double> radius_m;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (i > 0 && !trace.frame_update(i)) {
+      radius_m.push_back(radius_m.back());
+      continue;
+    }
+    PointCloud point;
+    point.append(Vec3::Zero());
+    fixtures.assign(point, scenario.captured_s(trace.frame_index[i]));
+    radius_m.push_back(point.fixture_radius_m.front());
+  }
+  return radius_m;
+}
+
+}  // namespace
+
+std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
+                                     const std::vector<Experiment>& experiments) {
+  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<FixtureRun> runs;
+  for (std::size_t r = 0; r < experiments.size(); ++r) {
+    auto scenario = experiments[r].build_scenario(kernels_for(Isa::x86_64));
+    std::vector<double> radius_m = radii(experiments[r], traces[r], *scenario);
+    runs.push_back({std::move(traces[r]), std::move(scenario), std::move(radius_m)});
+  }
+  return runs;
+}
+
+namespace {
+
+void claim_none(Figure& figure, const std::string& what, double share) {
+  figure.claims.push_back(claim_at_most(figure.name, what, "none", share, 0, "share"));
+}
+
+}  // namespace
+
+void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& run) {
+  claim_none(figure, where + ": ticks with the proxy on the wrong side of the surface",
+             wrong_side_share(run.trace));
+}
+
+void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run) {
+  claim_none(figure, where + ": ticks with a number that is not finite", non_finite_share(run.trace));
+  claim_none(figure, where + ": ticks in which the HIP was held back without force",
+             share_without_force(run.trace, kProxyContactRadius_m));
+}
+
+void QuantityTable::add(const std::string& quantity, const std::string& unit,
+                        const std::vector<double>& of_runs) {
+  quantities_.push_back(quantity), units_.push_back(unit);
+  for (std::size_t r = 0; r < runs_.size(); ++r) values_[r].push_back(of_runs.at(r));
+}
+
+Table QuantityTable::table(const std::string& name, const std::string& title) const {
+  Table table{name, title};
+  table.columns.push_back({"quantity", "1", "what was measured", quantities_, 1, {}});
+  table.columns.push_back({"unit", "1", "unit of the values in this row", units_, 1, {}});
+  // The unit changes from row to row.
+  for (std::size_t r = 0; r < runs_.size(); ++r) table.add(runs_[r], "1", "value of this run", values_[r]);
+  return table;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,47 @@
+// A run of chapter 5's protocol: its trace, the fixture radius in force, and the claims that hold for any.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runners/figures/figures.h"
+
+namespace remote_touch {
+
+inline constexpr double kProxyContactRadius_m = 0.005;
+
+struct FixtureRun {
+  Trace trace;
+  std::unique_ptr<Scenario> scenario;  // what the trace was made with, to ask for its truth
+  std::vector<double> radius_m;        // of each tick: r_f as the frame in use brought it
+
+  // When the frame that the renderer has in tick i was captured.
+  double seen_s(std::size_t i) const { return scenario->captured_s(trace.frame_index[i]); }
+  // Where the proxy's centre belongs: r_f + r_c from the surface.
+  double boundary_m(std::size_t i) const { return radius_m[i] + kProxyContactRadius_m; }
+};
+
+// Side by side. pre: every point has the same r_f.
+std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
+                                     const std::vector<Experiment>& experiments);
+
+// Nowhere behind the surface.
+void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& run);
+// Nothing that is not finite, no force dropout.
+void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run);
+
+// Named numbers of several runs, a column for each run.
+class QuantityTable {
+ public:
+  explicit QuantityTable(std::vector<std::string> runs) : runs_(std::move(runs)), values_(runs_.size()) {}
+  // One value for each run.
+  void add(const std::string& quantity, const std::string& unit, const std::vector<double>& of_runs);
+  Table table(const std::string& name, const std::string& title) const;
+
+ private:
+  std::vector<std::string> runs_, quantities_, units_;
+  std::vector<std::vector<double>> values_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,31 @@
+// What a recording itself tells about a run over it, frame by frame: where the proxy is relative to the
+// measured points, and how the surface moved. By looking at every point, not with the renderer's kernels.
+#pragma once
+
+#include <vector>
+
+#include "runners/figures/fixture_run.h"
+
+namespace remote_touch {
+
+// The last tick before the next frame came in, and that frame.
+struct FrameOutcome {
+  std::size_t tick = 0;
+  double nearest_m = 0;         // from the proxy to the nearest measured point
+  double hidden_m = 0;          // how far the proxy lies behind what its own pixel measured; NaN at a hole
+  double camera_motion_m = 0;   // median over the image: how far a pixel's point moved since the last frame
+  double surface_motion_m = 0;  // around the pixel that the HIP presses: towards the camera since then
+};
+
+// pre: the experiment plays a part of a recording to and fro, and every frame arrives.
+std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
+
+// A tick in which the proxy changed to the wrong side of the true surface.
+struct PopThrough {
+  std::size_t tick = 0;
+  double surface_motion_m =
+      0;  // past the proxy, from the frame before to this one, by the planes through both
+};
+std::vector<PopThrough> pop_throughs(const FixtureRun& run);
+
+}  // namespace remote_touch
