@@ -11,9 +11,6 @@
 
 namespace remote_touch::naive {
 
-namespace {
-
-// (4.2)
 double psi(double r, const ProxyParameters& p) {
   if (r <= p.r1_m) return 1;
   if (r >= p.r3_m) return 0;
@@ -22,7 +19,6 @@ double psi(double r, const ProxyParameters& p) {
   return q * q * q * q * (4 * t + 1);
 }
 
-// Both roots of (4.9), (4.10) for one point, from its foot on the ray; false without a real root.
 bool roots(const Vec3& point, const Vec3& from, const Vec3& direction, double radius, double& near,
            double& far) {
   const Vec3 e = point - from;
@@ -32,6 +28,17 @@ bool roots(const Vec3& point, const Vec3& from, const Vec3& direction, double ra
   near = along - std::sqrt(rest), far = along + std::sqrt(rest);
   return true;
 }
+
+Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
+  const double height = u.dot(normal);
+  const Vec3 goal = height < 0 ? Vec3(u - height * normal) : u;
+  const double distance = goal.norm();
+  if (distance == 0) return Vec3::Zero();
+  const double length = distance < p.r1_m ? p.gamma * distance : p.xi * p.r1_m;
+  return length * goal / distance;
+}
+
+namespace {
 
 // (4.4), (4.9)
 Vec3 free_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& u,
@@ -57,16 +64,6 @@ Vec3 entrenched_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const
     if (roots(x, proxy_W, normal, p.contact_radius_m(), near, far)) step = std::max(step, far);
   }
   return step * normal;
-}
-
-// (4.6), (4.7), (4.11), (4.12)
-Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
-  const double height = u.dot(normal);
-  const Vec3 goal = height < 0 ? Vec3(u - height * normal) : u;
-  const double distance = goal.norm();
-  if (distance == 0) return Vec3::Zero();
-  const double length = distance < p.r1_m ? p.gamma * distance : p.xi * p.r1_m;
-  return length * goal / distance;
 }
 
 }  // namespace

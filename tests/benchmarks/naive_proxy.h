@@ -20,6 +20,16 @@ struct Step {
   Vec3 step = Vec3::Zero();
 };
 
+// (4.2)
+double psi(double r, const ProxyParameters& p);
+
+// Both roots of (4.9), (4.10) for one point, from its foot on the ray; false without a real root.
+bool roots(const Vec3& point, const Vec3& from, const Vec3& direction, double radius, double& near,
+           double& far);
+
+// (4.6), (4.7), (4.11), (4.12); u = HIP - P.
+Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p);
+
 // One proxy step, 4.2.3 and 4.2.4, looking at every point. pre: step_rule = variable, free_root = ahead.
 Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& hip_W,
                 const Vec3& previous_normal, const ProxyParameters& p);

@@ -1,6 +1,6 @@
 // Times of the proxy and of its parts, in nanoseconds. Every benchmark compares its answers with the plain
-// ones of naive_proxy.h before it is timed, and is skipped with an error when they differ. Times mean
-// something as ratios within one run; scripts/benchmark prints those.
+// ones of naive_proxy.h and naive_regions.h before it is timed, and is skipped with an error when they
+// differ. Times mean something as ratios within one run; scripts/benchmark prints those.
 #include "tests/benchmarks/proxy_benchmark.h"
 
 #include <benchmark/benchmark.h>
@@ -26,6 +26,10 @@ int main(int argc, char** argv) {
   const std::vector<naive::Queries> queries = query_sets();
   for (const naive::Queries& each : queries) add_queries(each);
   add_normals();
+
+  const std::vector<FixtureScene> fixtures = fixture_scenes();
+  for (const FixtureScene& each : fixtures) add_fixtures(each);
+  add_assignments();
 
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "tests/benchmarks/fixture_scene.h"
 #include "tests/benchmarks/naive_proxy.h"
 #include "tests/benchmarks/slide.h"
 
@@ -17,6 +18,11 @@ void add_ticks(const Slide& slide);
 // Radius queries around centres that slide and centres that jump, on every cloud there is.
 std::vector<naive::Queries> query_sets();
 void add_queries(const naive::Queries& queries);
+
+// Steps, lists and ticks among forbidden regions.
+void add_fixtures(const FixtureScene& scene);
+// What the fixture rules and the search cost a frame.
+void add_assignments();
 
 // The normals of the noise.
 void add_normals();

@@ -1,0 +1,45 @@
+// A surface with forbidden regions, a HIP that slides below it, and proxy positions in each of the three
+// states.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/neighbour_search.h"
+#include "tests/benchmarks/naive_regions.h"
+#include "tests/benchmarks/slide.h"
+
+namespace remote_touch::benchmarks {
+
+// One kind of step: it begins at a proxy position with a HIP.
+struct FixtureSteps {
+  std::string name;
+  ContactState state;
+  std::vector<Vec3> proxies = {}, hips = {};
+  std::vector<naive::RegionStep> expected = {};  // of every kFixtureCheckEvery-th
+};
+
+constexpr std::size_t kFixtureCheckEvery = 64;
+// Where regions of different sizes meet the proxy goes to and fro, and a difference of rounding grows tenfold
+// a tick.
+constexpr std::size_t kFixtureCheckedTicks = 10;
+
+struct FixtureScene {
+  std::string name;
+  PointCloud cloud;
+  std::shared_ptr<const NeighbourSearch> search = nullptr;
+  std::vector<FixtureSteps> steps = {};
+  std::vector<Vec3> jumps = {};           // touching the region of a random point each: no branch is foreseen
+  std::vector<Vec3> expected_ticks = {};  // proxies after whole ticks; the first begins and ends above
+};
+
+// An image of 640x480 points at about 0.5 m, 1 mm apart: without radii; all radii 0; all 0.02 m; half of the
+// points, those on one side, 0.02 m; all 0.02 m and a stiffness each, but for every third point.
+std::vector<FixtureScene> fixture_scenes();
+
+// Where the HIP goes below the surface, and where it waits above all regions before.
+Vec3 fixture_hip_at(double time_s);
+Vec3 fixture_hip_above();
+
+}  // namespace remote_touch::benchmarks

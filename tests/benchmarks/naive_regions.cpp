@@ -1,0 +1,105 @@
+#include "tests/benchmarks/naive_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch::naive {
+namespace {
+
+// (5.9)
+Vec3 free_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& u,
+               const ProxyParameters& p) {
+  const double distance = u.norm();
+  if (distance == 0) return Vec3::Zero();
+  const Vec3 direction = u / distance;
+  double step = distance, near = 0, far = 0;
+  for (const RegionPoint& point : points) {
+    if ((point.x - proxy_W).dot(direction) <= 0) continue;
+    const double radius = p.contact_radius_m() + point.radius;
+    if (roots(point.x, proxy_W, direction, radius, near, far) && near > 0) step = std::min(step, near);
+  }
+  return step < distance ? Vec3(step * direction) : u;
+}
+
+// (5.11)
+Vec3 entrenched_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& normal,
+                     const ProxyParameters& p) {
+  double step = 0, near = 0, far = 0;
+  for (const RegionPoint& point : points) {
+    if ((point.x - proxy_W).norm() >= p.r1_m + point.radius) continue;
+    if (roots(point.x, proxy_W, normal, p.contact_radius_m() + point.radius, near, far))
+      step = std::max(step, far);
+  }
+  return step * normal;
+}
+
+bool is_entrenched(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const ProxyParameters& p) {
+  return std::any_of(points.begin(), points.end(), [&](const RegionPoint& point) {
+    return (point.x - proxy_W).norm() - point.radius < p.r1_m;
+  });
+}
+
+}  // namespace
+
+std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyParameters& p) {
+  std::vector<RegionPoint> points;
+  points.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double radius = cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
+    const double k = cloud.stiffness_N_per_m.empty() ? p.stiffness_N_per_m : cloud.stiffness_N_per_m[i];
+    points.push_back({cloud.point(i), radius, std::isnan(k) ? p.stiffness_N_per_m : k});
+  }
+  return points;
+}
+
+RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& hip_W,
+                       const Vec3& previous_normal, const ProxyParameters& p) {
+  Step out;
+  out.nearest_m = std::numeric_limits<double>::infinity();
+  Vec3 sum = Vec3::Zero();
+  double weights = 0, weighted = 0;
+  for (const RegionPoint& point : points) {
+    const Vec3 e = proxy_W - point.x;
+    const double distance = e.norm(), r = distance - point.radius;  // (5.5)
+    out.nearest_m = std::min(out.nearest_m, r);
+    if (r >= p.r3_m) continue;
+    const double weight = psi(r, p);
+    if (distance > 0) sum += e / distance * weight;
+    weights += weight, weighted += weight * point.stiffness;
+  }
+  const double length = sum.norm();
+  out.normal = length > 1e-10 ? Vec3(sum / length) : previous_normal;
+  const Vec3 u = hip_W - proxy_W;
+  if (out.nearest_m < p.r1_m) {
+    out.state = ContactState::entrenched;
+    out.step = entrenched_step(points, proxy_W, out.normal, p);
+  } else if (out.nearest_m <= p.r2_m) {
+    out.state = ContactState::contact;
+    out.step = contact_step(out.normal, u, p);
+  } else {
+    out.step = free_step(points, proxy_W, u, p);
+  }
+  return {out, weights > 0 ? weighted / weights : p.stiffness_N_per_m};
+}
+
+void region_tick(const std::vector<RegionPoint>& points, const Vec3& hip_W, const ProxyParameters& p,
+                 RegionProxy& proxy) {
+  const auto step_on = [&] {
+    const Step step = region_step(points, proxy.proxy_W, hip_W, proxy.normal_W, p).step;
+    if (step.state != ContactState::entrenched) proxy.clear_W = proxy.proxy_W;
+    proxy.normal_W = step.normal;
+    const Vec3 from_W = proxy.proxy_W;
+    proxy.proxy_W += step.step;
+    return proxy.proxy_W != from_W;
+  };
+  for (int k = 0; k < p.steps_per_tick; ++k)
+    if (!step_on()) break;
+  const bool has_regions =
+      std::any_of(points.begin(), points.end(), [](const auto& x) { return x.radius > 0; });
+  if (!has_regions) return;
+  for (int k = 0; k < p.closing_steps && is_entrenched(points, proxy.proxy_W, p); ++k) step_on();
+  if (is_entrenched(points, proxy.proxy_W, p)) proxy.proxy_W = proxy.clear_W;
+}
+
+}  // namespace remote_touch::naive

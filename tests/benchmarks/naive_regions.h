@@ -1,0 +1,38 @@
+// The proxy of chapter 5 written plainly, over all points: what the benchmarks of forbidden regions are
+// compared with.
+#pragma once
+
+#include <vector>
+
+#include "tests/benchmarks/naive_proxy.h"
+
+namespace remote_touch::naive {
+
+struct RegionPoint {
+  Vec3 x;
+  double radius;     // r_f of (5.2)
+  double stiffness;  // k_s of (5.3)
+};
+
+// Columns that the cloud does not have are 0 and the renderer's own stiffness.
+std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyParameters& p);
+
+struct RegionStep {
+  Step step;             // nearest_m is the least r_n, (5.5)
+  double stiffness = 0;  // (5.8) as a weighted mean; the renderer's own where no point has a weight
+};
+
+// One proxy step. pre: as proxy_step().
+RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& hip_W,
+                       const Vec3& previous_normal, const ProxyParameters& p);
+
+// What the renderer remembers from tick to tick. pre: the first tick begins outside all regions.
+struct RegionProxy {
+  Vec3 proxy_W = Vec3::Zero(), normal_W = Vec3::Zero(), clear_W = Vec3::Zero();
+};
+
+// A whole tick, closing steps included; ends early like the renderer's.
+void region_tick(const std::vector<RegionPoint>& points, const Vec3& hip_W, const ProxyParameters& p,
+                 RegionProxy& proxy);
+
+}  // namespace remote_touch::naive
