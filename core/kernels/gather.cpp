@@ -1,7 +1,8 @@
 // Copies the points of a ball out of the runs that a neighbour search looks at. The comparison is the same on
 // every level, so the set is too. Copies of the arguments are kept, for the compiler would have to reread
 // them after each store. In the rows of an image window most points qualify: skipping the others costs more
-// in mispredicted branches than it saves.
+// in mispredicted branches than it saves. With radii the window is that of the largest region, and most do
+// not.
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
@@ -16,7 +17,7 @@ template <bool kIndexed, bool kExtra>
 std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
-  const bool skip = run.rows == 1;
+  const bool skip = run.rows == 1 || run.radius != nullptr;
   const __m512d cx = _mm512_set1_pd(centre[0]), cy = _mm512_set1_pd(centre[1]),
                 cz = _mm512_set1_pd(centre[2]), ball = _mm512_set1_pd(reach),
                 all = _mm512_set1_pd(reach * reach);
@@ -79,7 +80,7 @@ template <bool kIndexed, bool kExtra>
 std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
-  const bool skip = run.rows == 1;
+  const bool skip = run.rows == 1 || run.radius != nullptr;
   const __m256d cx = _mm256_set1_pd(centre[0]), cy = _mm256_set1_pd(centre[1]),
                 cz = _mm256_set1_pd(centre[2]), ball = _mm256_set1_pd(reach),
                 all = _mm256_set1_pd(reach * reach);
