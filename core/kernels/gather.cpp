@@ -17,7 +17,7 @@ template <bool kIndexed, bool kExtra>
 std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
-  const bool skip = run.rows == 1 || run.radius != nullptr;
+  const bool skip = run.rows == 1 || (kExtra && run.radius);
   const __m512d cx = _mm512_set1_pd(centre[0]), cy = _mm512_set1_pd(centre[1]),
                 cz = _mm512_set1_pd(centre[2]), ball = _mm512_set1_pd(reach),
                 all = _mm512_set1_pd(reach * reach);
@@ -80,7 +80,7 @@ template <bool kIndexed, bool kExtra>
 std::size_t append_columns(PointRun run, const double centre[3], double reach, const PointSink& to,
                            std::size_t n) {
   const PointSink sink = to;
-  const bool skip = run.rows == 1 || run.radius != nullptr;
+  const bool skip = run.rows == 1 || (kExtra && run.radius);
   const __m256d cx = _mm256_set1_pd(centre[0]), cy = _mm256_set1_pd(centre[1]),
                 cz = _mm256_set1_pd(centre[2]), ball = _mm256_set1_pd(reach),
                 all = _mm256_set1_pd(reach * reach);
