@@ -203,7 +203,8 @@ TEST(Uniforms, AreTheWordsOfPhilox) {
       const auto got = uniforms(noise_stream(key, NoiseUse::delivery, frame), point);
       const Words want = philox({point, frame | 2u << 28, 4000000001, 17}, {0x9abcdef0, 0x12345678});
       for (std::size_t k = 0; k < 4; ++k)
-        EXPECT_EQ(got[k], static_cast<double>((Real{want[k]} + 0.5L) * 0x1p-32L)) << frame << " " << point;
+        EXPECT_EQ(got[k], static_cast<double>((static_cast<Real>(want[k]) + 0.5L) * 0x1p-32L))
+            << frame << " " << point;
     }
 }
 
