@@ -10,6 +10,9 @@ namespace {
 // A weighted sum of unit vectors shorter than this has no direction: what remains is rounding.
 constexpr double kNoDirection = 1e-10;
 
+// A shorter way to the next region is rounding: those so near touch already.
+constexpr double kNoWay_m = 1e-12;
+
 // sin(theta)^2 by series, for std::sin may differ in the last bit between machines; exact to 1e-16 below 1
 // rad and monotonic up to 90 degrees.
 double sine_squared(double degrees) {
@@ -101,7 +104,11 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
   if (!(length > 0)) return Vec3::Zero();
   // Between r1 and r_c, so that what touches already, at r1 or more, is not met again.
   const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
-  return step * (near.first_hit(p_W, step / length, reach, length) / length);
+  double way = near.first_hit(p_W, step / length, reach, length);
+  // A region that ended an earlier step lies just there, and the rounding of a motion along it can meet it
+  // again at once: the proxy would stay for ever. The goal enters no region that touches, so none is there.
+  if (way < kNoWay_m) way = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
+  return step * (way / length);
 }
 
 bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p) {

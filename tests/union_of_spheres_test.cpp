@@ -235,7 +235,7 @@ TEST(UnionOfSpheres, RegionsByThemselvesAreNeverEnteredAndConvergeNearestToTheHi
     EXPECT_GT(looked, 1000);
     EXPECT_GT(converged, 0.9 * touching) << name(p);
     EXPECT_GT(rests, 60);
-    EXPECT_GE(settled, 0.95 * rests) << name(p);
+    EXPECT_EQ(settled, rests) << name(p);
   }
 }
 
