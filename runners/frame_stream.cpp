@@ -17,7 +17,7 @@ FrameStream::FrameStream(const Scenario& scenario, FixtureAssignment fixtures, c
       hash_frames_(hash_frames) {}
 
 bool FrameStream::exists(int frame) const {
-  return frame < scenario_.frame_count() || fixtures_.changes_with_time();
+  return frame < scenario_.frame_count() || fixtures_.changes_with_time() || delivery_.drop_probability > 0;
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.

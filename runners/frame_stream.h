@@ -20,8 +20,9 @@ struct Delivery {
 
 class FrameStream {
  public:
-  // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time it
-  // is sent on at its frame rate. With hash_frames every point of every frame is made for newest_hash().
+  // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
+  // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
+  // frame is made for newest_hash().
   FrameStream(const Scenario& scenario, FixtureAssignment fixtures, const Delivery& delivery,
               const NoiseKey& key, bool hash_frames);
 

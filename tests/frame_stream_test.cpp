@@ -148,7 +148,7 @@ TEST(FrameStream, OneLateRequestHandsOverTheSameFrames) {
 TEST(FrameStream, DropsItsShareOfTheFrames) {
   EXPECT_EQ(received(Walk(2000), 21, {0, 0, 0}).size(), 2000u);
   EXPECT_TRUE(received(Walk(2000), 21, {0, 0, 1}).empty());
-  const auto frames = received(Walk(2000), 21, {0, 0, 0.3});
+  const auto frames = received(Walk(2000), 19.995, {0, 0, 0.3});
   EXPECT_NEAR(static_cast<double>(frames.size()) / 2000, 0.7, 4 * std::sqrt(0.3 * 0.7 / 2000));
   // Each for itself: the frames after a lost one are lost as often as any.
   std::vector<bool> came(2000);
@@ -161,7 +161,8 @@ TEST(FrameStream, DropsItsShareOfTheFrames) {
 
 // A lost frame changes nothing for the others.
 TEST(FrameStream, LossAndJitterAreDrawnApart) {
-  const auto all = received(Walk(300), 4, {0, 0.05, 0}, 3), some = received(Walk(300), 4, {0, 0.05, 0.5}, 3);
+  const Walk walk(300);
+  const auto all = received(walk, 4, {0, 0.05, 0}, 3), some = received(walk, 2.995, {0, 0.05, 0.5}, 3);
   double slow = 0;
   for (const Frame& frame : some) {
     const auto same =
@@ -194,6 +195,19 @@ TEST(FrameStream, ASceneAtRestIsSentOnWhenItsFixturesChange) {
     EXPECT_EQ(cloud_of(frame).x, std::vector<double>{0});
     // By the time of capture, not of arrival.
     EXPECT_NEAR(cloud_of(frame).fixture_radius_m.at(0), 0.02 * std::clamp((j - 10) / 10.0, 0.0, 1.0), 1e-12);
+  }
+}
+
+// The camera sees it all the time: a lost frame is not the last one.
+TEST(FrameStream, ASceneAtRestIsSentOnWhenFramesGetLost) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    const auto frames = received(Walk(1), 1, {0, 0, 0.5}, seed);
+    ASSERT_GT(frames.size(), 25u) << seed;
+    ASSERT_LT(frames.size(), 75u) << seed;
+    for (const Frame& frame : frames) {
+      EXPECT_EQ(frame.captured_s, frame.index / 100.0);
+      EXPECT_EQ(cloud_of(frame).x, std::vector<double>{0});
+    }
   }
 }
 
