@@ -29,8 +29,8 @@ struct ImageLayout {
 // coordinates, so that it fails every distance test. Optional columns are empty or as long as the positions.
 struct PointCloud {
   std::vector<double> x, y, z;
-  std::vector<double> fixture_radius_m;   // r_f of (5.2); empty: 0, which is chapter 4
-  std::vector<double> stiffness_N_per_m;  // k_s of (5.3); empty: the renderer's own stiffness
+  std::vector<double> fixture_radius_m;   // r_f of (5.2), 0 or more; empty: 0, which is chapter 4
+  std::vector<double> stiffness_N_per_m;  // k_s of (5.3), 0 to 2^20; empty or NaN: the renderer's own
   std::vector<std::uint32_t> colour;      // 0xRRGGBB; empty: no colour
   std::optional<ImageLayout> image;       // set when the points are the pixels of one image
 

@@ -163,7 +163,7 @@ TEST(Experiments, RefuseFixturesThatAreNone) {
   EXPECT_HAS(why(one, "fixtures.0.name=3"), "fixtures.0.name = 3");
   EXPECT_HAS(why(one, "fixtures.0.radius=1"),
              "fixtures.0.radius: unknown; the nearest allowed is fixtures.0.radius_m");
-  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: allowed 0 to 1");
+  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: allowed -1 to 1");
   EXPECT_HAS(why(one, "fixtures.0.schedule=[[0,1.5]]"), "fixtures.0.schedule: strength 1.5");
   EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "allowed 0 to 0 for its place in a list");
   EXPECT_HAS(why("[]", "fixtures.0.radius_m=1"), "fixtures");

@@ -120,6 +120,12 @@ TEST(FixtureAssignment, ALaterRuleCanTakeARegionAway) {
   EXPECT_EQ(assigned({{{0.02}, {1, 1}}, {{0}, {1, 0}}}, points(2)).fixture_radius_m, (Column{0, 0.02}));
 }
 
+TEST(FixtureAssignment, ARuleCanLeaveTheRadiusAsItWas) {
+  const PointCloud result = assigned({{{0.02}, {1, 0}}, {{-1, 300}, {1, 1}}}, points(2));
+  EXPECT_EQ(result.fixture_radius_m, (Column{0.02, 0}));
+  EXPECT_EQ(result.stiffness_N_per_m, (Column{300, 300}));
+}
+
 TEST(FixtureAssignment, AShareDrawsTheValueSoFar) {
   expect_near(assigned({{{0.04}, {0.25, 0.5, 1}}, {{0.1}, {0.5, 0, 0.1}}}, points(3)).fixture_radius_m,
               {0.055, 0.02, 0.046});

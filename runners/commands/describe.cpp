@@ -71,6 +71,12 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);
   found |= describe_sweep(name);
+  if (name == "run") {
+    std::puts("run: what an experiment says beside its parts");
+    RunSettings settings;
+    print(parameters(settings));
+    found = true;
+  }
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())

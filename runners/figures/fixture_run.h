@@ -22,7 +22,7 @@ struct FixtureRun {
   double boundary_m(std::size_t i) const { return radius_m[i] + kProxyContactRadius_m; }
 };
 
-// Side by side. pre: every point has the same r_f.
+// Side by side. pre: every point has the same r_f, and no scene ends before its run.
 std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
                                      const std::vector<Experiment>& experiments);
 
