@@ -26,8 +26,8 @@ struct BaselineCheck {
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
                              const Kernels& kernels, const std::atomic<bool>* stop);
 
-// One changed entry for each experiment, scenario, fixture rule, trajectory and renderer that no baseline runs,
-// but for rules that read a file of the user's; none where the manifest need not be complete.
+// One changed entry for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
+// runs, but for rules that read a file of the user's; none where the manifest need not be complete.
 std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder, const Manifest& manifest);
 
 }  // namespace remote_touch
