@@ -21,10 +21,12 @@ bool FrameStream::exists(int frame) const {
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.
+int FrameStream::seen(int frame) const {
+  return std::min(frame, scenario_.frame_count() - 1);
+}
+
 double FrameStream::captured_s(int frame) const {
-  const int last = scenario_.frame_count() - 1;
-  if (frame <= last) return scenario_.captured_s(frame);
-  return scenario_.captured_s(last) + (frame - last) / scenario_.frame_rate_hz();
+  return scenario_.captured_s(seen(frame)) + (frame - seen(frame)) / scenario_.frame_rate_hz();
 }
 
 void FrameStream::send(int frame) {
@@ -48,18 +50,15 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
 }
 
 std::shared_ptr<const NeighbourSearch> FrameStream::points(int frame) const {
-  const int seen = std::min(frame, scenario_.frame_count() - 1);
-  auto made = scenario_.points(seen);
-  if (fixtures_.empty()) return made;
-  const auto* stored = dynamic_cast<const CloudSearch*>(made.get());  // else points are made when asked for
-  PointCloud cloud = stored ? stored->cloud() : scenario_.cloud(seen);
+  if (fixtures_.empty()) return scenario_.points(seen(frame));
+  PointCloud cloud = scenario_.cloud(seen(frame));
   fixtures_.assign(cloud, captured_s(frame));
   return make_search(std::move(cloud));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
-  const auto* stored = dynamic_cast<const CloudSearch*>(&points);
-  const std::uint64_t hash = fingerprint(stored ? stored->cloud() : scenario_.cloud(frame));
+  const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are made when asked for
+  const std::uint64_t hash = fingerprint(stored ? stored->cloud() : scenario_.cloud(seen(frame)));
   // Points that come with another time stamp are another frame.
   return mixed(hash, std::bit_cast<std::uint64_t>(captured_s(frame)));
 }

@@ -38,6 +38,7 @@ class FrameStream {
     int frame;
   };
   bool exists(int frame) const;
+  int seen(int frame) const;  // the scenario's frame that this one shows
   double captured_s(int frame) const;
   void send(int frame);
   std::shared_ptr<const NeighbourSearch> points(int frame) const;

@@ -89,11 +89,14 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
   return measured(frame);
 }
 
-// A search by a grid has the points in another order than the file.
+// A search by a grid has the points in another order than the file, which is then read for itself.
 PointCloud RecordedScene::cloud(int frame) const {
-  const auto points = measured(frame);
-  const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
-  return image ? image->cloud() : read_frame(recording_, source_frame(frame), settings_.farthest_m);
+  if (recording_.camera.width > 0) {
+    const auto points = measured(frame);
+    const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
+    if (image) return image->cloud();
+  }
+  return read_frame(recording_, source_frame(frame), settings_.farthest_m);
 }
 
 namespace {

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
+#include "analysis/fingerprint.h"
 #include "core/fixtures/everywhere.h"
+#include "scenarios/moving_lift.h"
 #include "scenarios/recorded_scene.h"
 #include "tests/scenes.h"
 #include "tests/test_files.h"
@@ -234,6 +237,19 @@ TEST(FrameStream, TheNewestHashIsThatOfTheNewestFrame) {
   EXPECT_EQ(plain[20], plain[39]);
   EXPECT_EQ(late[4], 0u) << "before the first frame";
   for (std::size_t tick = 5; tick < late.size(); ++tick) EXPECT_EQ(late[tick], plain[tick - 5]) << tick;
+}
+
+// Its points are made when asked for, by the frame's number: a scene that is sent on shows its last frame.
+TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
+  MovingLift::Settings settings;
+  settings.grid = {4, 4, 0.0015, 0, 0}, settings.rise_frames = 2, settings.acceleration_frames = 0;
+  const MovingLift lift(settings, {1}, scenes::kernels());
+  FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, true);
+  Recorder recorder;
+  for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
+  ASSERT_GT(recorder.frames.back().index, lift.frame_count());
+  EXPECT_EQ(stream.newest_hash(), mixed(fingerprint(lift.cloud(lift.frame_count() - 1)),
+                                        std::bit_cast<std::uint64_t>(recorder.frames.back().captured_s)));
 }
 
 TEST(FrameStream, TheHashChangesWithTheFixtures) {

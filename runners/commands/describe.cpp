@@ -31,6 +31,11 @@ bool describe_entry(std::span<const Entry> entries, const char* kind, const std:
   return false;
 }
 
+void print_run_settings() {
+  RunSettings settings;
+  print(parameters(settings));
+}
+
 bool describe_experiment(const std::string& name) {
   for (const StoredText& stored : stored_experiments()) {
     if (name != stored.name) continue;
@@ -38,8 +43,7 @@ bool describe_experiment(const std::string& name) {
     std::printf("%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
                 parse_json(experiment.to_json(), name).dump(2).c_str());
     std::puts("Parameters of the run itself; those of its parts: remote-touch describe PART");
-    RunSettings settings;
-    print(parameters(settings));
+    print_run_settings();
     return true;
   }
   return false;
@@ -73,8 +77,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_sweep(name);
   if (name == "run") {
     std::puts("run: what an experiment says beside its parts");
-    RunSettings settings;
-    print(parameters(settings));
+    print_run_settings();
     found = true;
   }
   for (const FigureEntry& entry : figures())

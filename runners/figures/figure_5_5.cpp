@@ -1,16 +1,14 @@
 // Fig 5.5: the region around a single point.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "analysis/contact_point.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr double kContactRadius_m = 0.005, kFixtureRadius_m = 0.1, kBoundary_m = 0.105;
+constexpr double kFixtureRadius_m = 0.1, kBoundary_m = 0.105;
 constexpr double kStiffness_N_per_m = 600;
 
 // The point is the origin, so distances to it are lengths.

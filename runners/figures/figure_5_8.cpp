@@ -115,21 +115,13 @@ Summary summary(const FixtureRun& run) {
 
 Table path_table(const std::string& name, const std::string& title, const FixtureRun& run) {
   const Trace& trace = run.trace;
-  std::vector<std::vector<double>> columns(10);
+  std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < trace.length(); i += kEvery) {
-    const double row[] = {trace.time_s[i],
-                          trace.hip(i).y(),
-                          trace.proxy(i).y(),
-                          surface_height_m(run, i, trace.time_s[i]),
-                          trace.signed_distance_m[i],
-                          run.radius_m[i],
-                          run.boundary_m(i),
-                          from_moving_m(run, i),
-                          from_seen_m(run, i),
-                          trace.force(i).norm()};
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(row[c]);
+    rows.push_back({trace.time_s[i], trace.hip(i).y(), trace.proxy(i).y(),
+                    surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
+                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force(i).norm()});
   }
-  const char* names[][3] = {
+  const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
       {"hip_y", "m", "height of the HIP"},
       {"proxy_y", "m", "height of the proxy's centre"},
@@ -140,10 +132,7 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
       {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c"},
       {"deviation_seen", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
       {"force", "N", "magnitude of the force"}};
-  Table table{name, title};
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    table.add(names[c][0], names[c][1], names[c][2], std::move(columns[c]));
-  return table;
+  return table_of(name, title, columns, rows);
 }
 
 Table deviation_table(const Summary& a, const Summary& b) {

@@ -25,25 +25,16 @@ struct RecordedRun {
 };
 
 Table frame_table(const RecordedRun& r) {
-  std::vector<std::vector<double>> columns(12);
+  std::vector<std::vector<double>> rows;
   for (const FrameOutcome& frame : r.frames) {
     const std::size_t i = frame.tick;
     const Trace& trace = r.run.trace;
-    const double row[] = {trace.time_s[i],
-                          static_cast<double>(trace.frame_index[i]),
-                          trace.hip(i).z(),
-                          trace.proxy(i).z(),
-                          frame.nearest_m,
-                          r.run.boundary_m(i),
-                          frame.nearest_m - r.run.boundary_m(i),
-                          trace.signed_distance_m[i],
-                          frame.hidden_m,
-                          frame.camera_motion_m,
-                          frame.surface_motion_m,
-                          trace.force(i).norm()};
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].push_back(row[c]);
+    rows.push_back({trace.time_s[i], static_cast<double>(trace.frame_index[i]), trace.hip(i).z(),
+                    trace.proxy(i).z(), frame.nearest_m, r.run.boundary_m(i),
+                    frame.nearest_m - r.run.boundary_m(i), trace.signed_distance_m[i], frame.hidden_m,
+                    frame.camera_motion_m, frame.surface_motion_m, trace.force(i).norm()});
   }
-  const char* names[][3] = {
+  const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
       {"frame", "1", "frame in use"},
       {"hip_z", "m", "depth of the HIP"},
@@ -56,10 +47,7 @@ Table frame_table(const RecordedRun& r) {
       {"camera_motion", "m", "median over the image of how far a pixel's point moved since the last frame"},
       {"surface_motion", "m", "towards the camera since then, around the pixel that the HIP presses"},
       {"force", "N", "magnitude of the force"}};
-  Table table{r.table, r.title + ": the last tick of each frame"};
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    table.add(names[c][0], names[c][1], names[c][2], std::move(columns[c]));
-  return table;
+  return table_of(r.table, r.title + ": the last tick of each frame", columns, rows);
 }
 
 double known_share(const RecordedRun& r) {

@@ -38,21 +38,29 @@ double predicted_m(double speed_m_per_s, double latency_s) {
   return speed_m_per_s * (latency_s + 1 / kFrameRate_hz);
 }
 
-std::vector<Violation> measure(const Laboratory& laboratory, const std::string& sweep, bool prediction) {
-  // Frames get older here than the default lets a prediction be trusted.
-  std::vector<std::string> set = {"renderer.longest_prediction_s=0.4"};
-  if (prediction) set.push_back("renderer.slave_prediction=true");
-  return laboratory.measure(Sweep::load(sweep, set), violation);
-}
+// The runs of a stored sweep with the slave sent to the proxy, and again with it sent ahead.
+struct Measured {
+  SweepResult plan;
+  std::vector<Violation> plain, ahead;
 
-// Values of an axis of a stored sweep, one for each run.
-std::vector<double> axis_of_runs(const std::string& sweep, std::size_t axis) {
-  const SweepResult plan = Sweep::load(sweep).plan();
-  const auto& values = std::get<std::vector<double>>(plan.axes.at(axis).values);
-  std::vector<double> list;
-  for (std::size_t run = 0; run < plan.run_count(); ++run)
-    list.push_back(values[plan.place(plan.cell_of(run))[axis]]);
-  return list;
+  const std::vector<double>& axis(std::size_t a) const {
+    return std::get<std::vector<double>>(plan.axes.at(a).values);
+  }
+  // The axis' value of each run.
+  std::vector<double> axis_of_runs(std::size_t a) const {
+    std::vector<double> list;
+    for (std::size_t run = 0; run < plan.run_count(); ++run)
+      list.push_back(axis(a)[plan.place(plan.cell_of(run))[a]]);
+    return list;
+  }
+};
+
+Measured measured(const Laboratory& laboratory, const std::string& name) {
+  // Frames get older here than the default lets a prediction be trusted.
+  const std::string horizon = "renderer.longest_prediction_s=0.4";
+  const Sweep plain = Sweep::load(name, {horizon});
+  const Sweep ahead = Sweep::load(name, {horizon, "renderer.slave_prediction=true"});
+  return {plain.plan(), laboratory.measure(plain, violation), laboratory.measure(ahead, violation)};
 }
 
 std::vector<double> times(const std::vector<double>& values, double factor) {
@@ -61,17 +69,17 @@ std::vector<double> times(const std::vector<double>& values, double factor) {
   return list;
 }
 
-Table map_table(const std::vector<Violation>& plain, const std::vector<Violation>& ahead) {
-  const auto latency = axis_of_runs("fixture-latency", 0), speed = axis_of_runs("fixture-latency", 1);
-  std::vector<double> measured, predicted, settled;
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    measured.push_back(1e3 * plain[i].largest_m), settled.push_back(1e3 * ahead[i].settled_m);
+Table map_table(const Measured& m) {
+  const auto latency = m.axis_of_runs(0), speed = m.axis_of_runs(1);
+  std::vector<double> largest, predicted, settled;
+  for (std::size_t i = 0; i < m.plain.size(); ++i) {
+    largest.push_back(1e3 * m.plain[i].largest_m), settled.push_back(1e3 * m.ahead[i].settled_m);
     predicted.push_back(1e3 * predicted_m(speed[i], latency[i]));
   }
   Table table{"delay_and_speed", "violation of a fixture on a surface that rises evenly"};
   table.add("latency", "ms", "from capture to arrival", times(latency, 1e3));
   table.add("speed", "m/s", "of the surface", speed);
-  table.add("violation", "mm", "largest depth of the slave in the region", measured);
+  table.add("violation", "mm", "largest depth of the slave in the region", largest);
   table.add("predicted", "mm", "speed times (latency + one frame interval)", predicted);
   table.add("with_prediction", "mm", "depth with the slave sent ahead, from 1.5 s on", settled);
   return table;
@@ -91,23 +99,21 @@ Table tissue_table() {
 }
 
 // Replicates as mean and largest; one row for each value of the only axis.
-Table spread_table(const std::string& sweep, const std::string& axis, const std::string& unit, double scale,
-                   const std::vector<Violation>& plain, const std::vector<Violation>& ahead) {
-  const SweepResult plan = Sweep::load(sweep).plan();
-  const auto replicates = static_cast<std::size_t>(plan.replicates);
+Table spread_table(const std::string& axis, const std::string& unit, double scale, const Measured& m) {
+  const auto replicates = static_cast<std::size_t>(m.plan.replicates);
   std::vector<double> place, mean, largest, mean_ahead;
-  for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
+  for (std::size_t cell = 0; cell < m.plan.cell_count(); ++cell) {
     double sum = 0, sum_ahead = 0, most = 0;
     for (std::size_t run = cell * replicates; run < (cell + 1) * replicates; ++run) {
-      sum += plain[run].largest_m, sum_ahead += ahead[run].settled_m;
-      most = std::max(most, plain[run].largest_m);
+      sum += m.plain[run].largest_m, sum_ahead += m.ahead[run].settled_m;
+      most = std::max(most, m.plain[run].largest_m);
     }
-    place.push_back(scale * std::get<std::vector<double>>(plan.axes[0].values)[cell]);
-    mean.push_back(1e3 * sum / plan.replicates), largest.push_back(1e3 * most);
-    mean_ahead.push_back(1e3 * sum_ahead / plan.replicates);
+    place.push_back(scale * m.axis(0)[cell]);
+    mean.push_back(1e3 * sum / m.plan.replicates), largest.push_back(1e3 * most);
+    mean_ahead.push_back(1e3 * sum_ahead / m.plan.replicates);
   }
   Table table{axis, "violation over 20 runs"};
-  table.add(axis, unit, plan.axes[0].long_name, place);
+  table.add(axis, unit, m.plan.axes[0].long_name, place);
   table.add("mean", "mm", "mean of the runs' largest depths", mean);
   table.add("largest", "mm", "largest of them", largest);
   table.add("with_prediction", "mm", "mean with the slave sent ahead, from 1.5 s on", mean_ahead);
@@ -125,19 +131,17 @@ void add_jitter_bounds(Table& table) {
 }
 
 // One row for each delay, one column for each heart rate.
-Table heart_table(const std::vector<Violation>& plain, const std::vector<Violation>& ahead) {
-  const SweepResult plan = Sweep::load("heart-latency").plan();
-  const auto& rates = std::get<std::vector<double>>(plan.axes[1].values);
+Table heart_table(const Measured& m) {
+  const auto& rates = m.axis(1);
   Table table{"heart", "violation of a fixture on a beating heart"};
-  table.add("latency", "ms", "from capture to arrival",
-            times(std::get<std::vector<double>>(plan.axes[0].values), 1e3));
+  table.add("latency", "ms", "from capture to arrival", times(m.axis(0), 1e3));
   for (std::size_t k = 0; k < rates.size(); ++k) {
-    std::vector<double> measured, predicted;
-    for (std::size_t cell = k; cell < plan.cell_count(); cell += rates.size())
-      measured.push_back(1e3 * plain[cell].largest_m), predicted.push_back(1e3 * ahead[cell].settled_m);
+    std::vector<double> plain, ahead;
+    for (std::size_t cell = k; cell < m.plan.cell_count(); cell += rates.size())
+      plain.push_back(1e3 * m.plain[cell].settled_m), ahead.push_back(1e3 * m.ahead[cell].settled_m);
     const std::string name = "rate_" + std::to_string(static_cast<int>(rates[k]));
-    table.add(name, "mm", "largest depth of the slave in the region", measured);
-    table.add(name + "_ahead", "mm", "with the slave sent ahead, from 1.5 s on", predicted);
+    table.add(name, "mm", "largest depth of the slave in the region, from 1.5 s on", plain);
+    table.add(name + "_ahead", "mm", "the same with the slave sent ahead", ahead);
   }
   return table;
 }
@@ -208,15 +212,11 @@ double largest_outside(const Table& jitter) {
 }  // namespace
 
 Figure figure_latency(const Laboratory& laboratory) {
-  const auto plain = [&](const char* sweep) { return measure(laboratory, sweep, false); };
-  const auto ahead = [&](const char* sweep) { return measure(laboratory, sweep, true); };
-  const Table map = map_table(plain("fixture-latency"), ahead("fixture-latency"));
-  Table jitter =
-      spread_table("fixture-jitter", "jitter", "ms", 1e3, plain("fixture-jitter"), ahead("fixture-jitter"));
+  const Table map = map_table(measured(laboratory, "fixture-latency"));
+  Table jitter = spread_table("jitter", "ms", 1e3, measured(laboratory, "fixture-jitter"));
   add_jitter_bounds(jitter);
-  const Table drops =
-      spread_table("fixture-drops", "drops", "1", 1, plain("fixture-drops"), ahead("fixture-drops"));
-  const Table heart = heart_table(plain("heart-latency"), ahead("heart-latency"));
+  const Table drops = spread_table("drops", "1", 1, measured(laboratory, "fixture-drops"));
+  const Table heart = heart_table(measured(laboratory, "heart-latency"));
   const auto &violation = numbers(map, "violation"), &predicted = numbers(map, "predicted"),
              &settled = numbers(map, "with_prediction");
 

@@ -58,6 +58,17 @@ void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun
              share_without_force(run.trace, kProxyContactRadius_m));
 }
 
+Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,
+               const std::vector<std::vector<double>>& rows) {
+  Table table{name, title};
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.push_back(row.at(c));
+    table.add(columns[c].name, columns[c].units, columns[c].long_name, std::move(values));
+  }
+  return table;
+}
+
 void QuantityTable::add(const std::string& quantity, const std::string& unit,
                         const std::vector<double>& of_runs) {
   quantities_.push_back(quantity), units_.push_back(unit);

@@ -31,6 +31,13 @@ void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& 
 // Nothing that is not finite, no force dropout.
 void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run);
 
+// A table from its rows, which are as long as there are columns.
+struct ColumnName {
+  const char *name, *units, *long_name;
+};
+Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,
+               const std::vector<std::vector<double>>& rows);
+
 // Named numbers of several runs, a column for each run.
 class QuantityTable {
  public:
