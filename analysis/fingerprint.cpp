@@ -33,6 +33,8 @@ std::uint64_t fingerprint(const PointCloud& cloud) {
     std::uint64_t point = mixed(mixed(mixed(1, word(cloud.x[i])), word(cloud.y[i])), word(cloud.z[i]));
     if (!cloud.fixture_radius_m.empty()) point = mixed(point, word(cloud.fixture_radius_m[i]));
     if (!cloud.stiffness_N_per_m.empty()) point = mixed(point, word(cloud.stiffness_N_per_m[i]));
+    if (cloud.has_normals())
+      point = mixed(mixed(mixed(point, word(cloud.nx[i])), word(cloud.ny[i])), word(cloud.nz[i]));
     sum += mixed(point, point >> 29);  // terms of a sum have to look random in every bit
   }
   return sum;

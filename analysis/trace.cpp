@@ -1,5 +1,7 @@
 #include "analysis/trace.h"
 
+#include <utility>
+
 #include "analysis/fingerprint.h"
 
 namespace remote_touch {
@@ -7,6 +9,9 @@ namespace remote_touch {
 namespace {
 void push(std::vector<double>& column, const Vec3& v) {
   column.insert(column.end(), {v.x(), v.y(), v.z()});
+}
+void push(std::vector<double>& column, const Eigen::Quaterniond& q) {
+  column.insert(column.end(), {q.w(), q.x(), q.y(), q.z()});
 }
 }  // namespace
 
@@ -34,6 +39,18 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   signed_distance_m.push_back(truth.proxy_distance_m);
   slave_distance_m.push_back(truth.slave_distance_m);
   frame_hash.push_back(truth.frame_hash);
+  if (out.tool) append_tool(device, *out.tool);
+}
+
+void Trace::append_tool(const DeviceState& device, const ToolOutput& tool) {
+  push(hip_orientation, device.orientation_W), push(tool_orientation, tool.orientation_W);
+  push(torque_Nm, tool.torque_Nm);
+  penetration_m.push_back(tool.penetration_m);
+  active_constraints.push_back(tool.active_constraints);
+  contact_clusters.push_back(tool.contact_clusters);
+  detections.push_back(tool.detections);
+  budget_exhausted.push_back(tool.budget_exhausted ? 1 : 0);
+  disabled_points.push_back(tool.disabled_points);
 }
 
 std::vector<Column> Trace::columns() const {
@@ -82,9 +99,30 @@ std::vector<Column> Trace::columns() const {
        1,
        {}},
   };
+  if (has_tool())
+    for (Column& column : tool_columns()) list.push_back(std::move(column));
   list.push_back(
       {kRunningHash, "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});
   return list;
+}
+
+std::vector<Column> Trace::tool_columns() const {
+  return {
+      {"hip_orientation", "1", "orientation of the device, quaternion w x y z", hip_orientation, 4, {}},
+      {"tool_orientation", "1", "orientation of the tool, quaternion w x y z", tool_orientation, 4, {}},
+      {"torque", "N m", "torque on the hand about the HIP, world frame", torque_Nm, 3, {}},
+      {"active_constraints", "1", "rows of (6.5) that hold the tool", active_constraints, 1, {}},
+      {"contact_clusters", "1", "groups of touching points, 10 mm cells", contact_clusters, 1, {}},
+      {"penetration", "m", "of the deepest point of the newest frame into the tool", penetration_m, 1, {}},
+      {"detections", "1", "collision detections made in the tick", detections, 1, {}},
+      {"budget_exhausted",
+       "1",
+       "the tick ended before the tool came to rest",
+       budget_exhausted,
+       1,
+       {"no", "yes"}},
+      {"disabled_points", "1", "points of the newest frame without a normal", disabled_points, 1, {}},
+  };
 }
 
 }  // namespace remote_touch

@@ -15,6 +15,10 @@ struct Trace {
   std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
   std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m, slave_distance_m;
   std::vector<std::uint64_t> frame_hash;
+  // Of a 6-DOF tool; empty for a 3-DOF renderer. Orientations are w, x, y, z.
+  std::vector<double> hip_orientation, tool_orientation, torque_Nm, penetration_m;
+  std::vector<std::int32_t> active_constraints, contact_clusters, detections, budget_exhausted,
+      disabled_points;
 
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
@@ -32,6 +36,10 @@ struct Trace {
   Vec3 normal_at(std::size_t i) const { return row(normal, i); }
   Vec3 carried(std::size_t i) const { return row(carried_m, i); }
   Vec3 slave(std::size_t i) const { return row(slave_m, i); }
+  bool has_tool() const { return !tool_orientation.empty(); }
+  Eigen::Quaterniond hip_orientation_at(std::size_t i) const { return quaternion(hip_orientation, i); }
+  Eigen::Quaterniond tool_orientation_at(std::size_t i) const { return quaternion(tool_orientation, i); }
+  Vec3 torque(std::size_t i) const { return row(torque_Nm, i); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
@@ -42,6 +50,11 @@ struct Trace {
   static Vec3 row(const std::vector<double>& v, std::size_t i) {
     return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
   }
+  static Eigen::Quaterniond quaternion(const std::vector<double>& v, std::size_t i) {
+    return {v[4 * i], v[4 * i + 1], v[4 * i + 2], v[4 * i + 3]};
+  }
+  void append_tool(const DeviceState& device, const ToolOutput& tool);
+  std::vector<Column> tool_columns() const;
 };
 
 }  // namespace remote_touch

@@ -8,6 +8,21 @@
 
 namespace remote_touch {
 
+const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointCloud& room) const {
+  constexpr double kEverywhere_m = 1e6;
+  GatheredPoints all;
+  all.reserve(size(), has_fixture_radius(), has_stiffness());
+  gather({Vec3::Zero(), kEverywhere_m}, kernels, all);
+  const PointsView view = all.view();
+  const auto column = [&](const double* from) {
+    return from ? std::vector<double>(from, from + all.size()) : std::vector<double>();
+  };
+  room = {};
+  room.x = column(view.x), room.y = column(view.y), room.z = column(view.z);
+  room.fixture_radius_m = column(view.radius), room.stiffness_N_per_m = column(view.stiffness);
+  return room;
+}
+
 CloudSearch::CloudSearch(PointCloud cloud) : cloud_(std::move(cloud)) {
   for (const double r : cloud_.fixture_radius_m)
     largest_fixture_radius_ = std::max(largest_fixture_radius_, r);
@@ -144,6 +159,7 @@ void UniformGridSearch::sort_points_by_cell() {
   };
   reorder(cloud_.x), reorder(cloud_.y), reorder(cloud_.z);
   reorder(cloud_.fixture_radius_m), reorder(cloud_.stiffness_N_per_m), reorder(cloud_.colour);
+  reorder(cloud_.nx), reorder(cloud_.ny), reorder(cloud_.nz);
 }
 
 void UniformGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {

@@ -19,6 +19,9 @@ class NeighbourSearch {
   // finish(). One reader at a time: an implementation may keep what it made for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
+  // Every point that was measured, for those who look at them all, with its columns; in the order of the
+  // search. room holds them where the search does not store them.
+  virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& room) const;
   virtual bool has_fixture_radius() const { return false; }
   // Some radius is above 0: there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
@@ -34,6 +37,7 @@ class CloudSearch : public NeighbourSearch {
   bool has_regions() const override { return largest_fixture_radius_ > 0; }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
   const PointCloud& cloud() const { return cloud_; }
+  const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
 
  protected:
   PointRun run(std::size_t first, std::size_t count) const;

@@ -32,11 +32,20 @@ struct PointCloud {
   std::vector<double> fixture_radius_m;   // r_f of (5.2), 0 or more; empty: 0, which is chapter 4
   std::vector<double> stiffness_N_per_m;  // k_s of (5.3), 0 to 2^20; empty or NaN: the renderer's own
   std::vector<std::uint32_t> colour;      // 0xRRGGBB; empty: no colour
-  std::optional<ImageLayout> image;       // set when the points are the pixels of one image
+  // Unit normals of the surface, towards the side that the sensor sees, 6.2.1; empty: none. NaN in all three
+  // where a point has no normal.
+  std::vector<double> nx, ny, nz;
+  std::optional<ImageLayout> image;  // set when the points are the pixels of one image
 
   std::size_t size() const { return x.size(); }
+  bool has_normals() const { return !nx.empty(); }
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   void append(const Vec3& p) { x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()); }
+  void append(const Vec3& p, const Vec3& normal) {
+    append(p);
+    nx.push_back(normal.x()), ny.push_back(normal.y()), nz.push_back(normal.z());
+  }
 };
 
 }  // namespace remote_touch

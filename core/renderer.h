@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "core/frame.h"
 #include "core/vector.h"
@@ -18,6 +19,20 @@ enum class RenderStatus {
   degenerate_normal = 2,
   no_frame = 3,
   device_not_finite = 4
+};
+
+// What a renderer of a rigid tool adds, chapter 6. The tool frame has its origin in the centre of mass of the
+// tool, which is RenderOutput::proxy_W.
+struct ToolOutput {
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();  // takes tool coordinates to the world
+  Vec3 torque_Nm = Vec3::Zero();  // on the hand, about the HIP, world frame
+  // Of the pose at the end of the tick; RenderOutput::contact_count is the number of points that touch.
+  int active_constraints = 0;     // rows of (6.5) that hold the tool, at most 6
+  int contact_clusters = 0;       // groups of touching points, 10 mm cells of the tool frame
+  double penetration_m = 0;       // of the deepest point of the newest frame; 0 or more
+  int detections = 0;             // collision detections made in this tick
+  bool budget_exhausted = false;  // the tick ended before the tool came to rest
+  int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
 };
 
 // Metres, newtons, world frame. force_N acts on the hand that holds the device.
@@ -38,6 +53,7 @@ struct RenderOutput {
   int contact_count = 0;                // points within r2
   int frame_index = -1;                 // newest frame in use, -1 before the first
   RenderStatus status = RenderStatus::ok;
+  std::optional<ToolOutput> tool;  // a 3-DOF renderer has none
 };
 
 class Renderer {
