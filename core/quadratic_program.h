@@ -1,6 +1,7 @@
 // The point nearest to a target among those that fulfil linear inequalities: (6.4) subject to (6.5) in the
 // coordinates y = M^(1/2) a_g, where the kinetic distance is the Euclidean one. Dual active set method of
-// Goldfarb and Idnani (1983). Of fixed size: nothing allocates after construction.
+// Goldfarb and Idnani (1983): it starts at the target and takes in the row violated most; rows that pull
+// instead of push then leave, and may come back. Of fixed size: nothing allocates after construction.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,20 +13,24 @@ namespace remote_touch {
 enum class ProgramStatus {
   optimal = 0,
   infeasible = 1,  // no point fulfils all rows
-  stalled = 2      // gave up after a bounded number of steps; y violates rows
+  stalled = 2      // gave up after a bounded number of steps, y violates rows; or the target is no number
 };
 
 template <int N>
 struct ProgramResult {
   ProgramStatus status = ProgramStatus::optimal;
   Eigen::Matrix<double, N, 1> y = Eigen::Matrix<double, N, 1>::Zero();
-  int active_count = 0;       // rows that hold y, at most N
-  int active[N] = {};         // their numbers, in the order of add()
+  int active_count = 0;       // rows that hold y, at most N; they are linearly independent
+  int active[N] = {};         // their numbers, counted from 0 in the order of add()
   double multiplier[N] = {};  // of each, 0 or more: y - target = sum of multiplier x row
-  int iterations = 0;
+  int iterations = 0;         // times that all rows were looked at
 };
 
 // min |y - target|^2 / 2 subject to row . y >= bound for every row.
+//
+// How long a row is does not matter. On optimal, (bound - row . y) / |row| is below 1e-13 times the largest
+// coordinate of target and y, rounding apart that no y avoids; so is y's distance from the rows that hold it.
+// Rows that differ by less than 1e-8 from a combination of others count as that combination.
 template <int N>
 class QuadraticProgram {
  public:
@@ -33,19 +38,27 @@ class QuadraticProgram {
 
   explicit QuadraticProgram(int capacity);
 
-  void clear() { count_ = 0; }
+  void clear();
   int size() const { return count_; }
   int capacity() const { return capacity_; }
-  // Returns false and leaves the row out where it or its bound is not finite, or there is no room.
+  // Returns false and leaves the row out where it or its bound is not finite, or there is no room. A row of
+  // zeros is kept: without effect where its bound is 0 or less, and fulfilled by nothing above.
   bool add(const Vector& row, double bound);
-  // A target that is not finite is answered with stalled and y = 0. On infeasible, y is where the method
-  // found the contradiction.
+  // A target that is not finite, or beyond 1e150, is answered with stalled and y = 0. On infeasible, y is
+  // where the method found the contradiction, and the rows that held it there are the active ones.
   ProgramResult<N> nearest(const Vector& target) const;
 
  private:
-  int capacity_, count_ = 0;
-  std::vector<double> rows_;  // column after column, each of padded capacity
-  std::vector<double> bounds_;
+  struct Violation {
+    double distance;  // to the row's half space
+    int row;
+  };
+  Violation largest_violation(const double* y) const;
+
+  int capacity_, stride_, count_ = 0;
+  std::vector<double> rows_;    // of unit length; column after column, each of stride_ = padded capacity
+  std::vector<double> bounds_;  // divided by the row's length; minus infinity after the last
+  std::vector<double> lengths_;
 };
 
 extern template class QuadraticProgram<6>;

@@ -1,0 +1,65 @@
+// Small vectors and square matrices in pairs of doubles, SSE2: the same bits from every compiler and on every
+// x86-64 machine, at about twice the speed of one number after the other.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace remote_touch {
+
+using Pair [[gnu::vector_size(16)]] = double;
+inline Pair pair_at(const double* p) {
+  Pair pair;
+  std::memcpy(&pair, p, sizeof pair);
+  return pair;
+}
+inline Pair both(double value) {
+  return Pair{value, value};
+}
+
+// A vector of N numbers in pairs; an odd last one has a zero beside it.
+template <int N>
+struct Packed {
+  static constexpr int kPairs = (N + 1) / 2;
+  Pair pair[kPairs] = {};
+
+  double operator[](int i) const { return pair[i / 2][i % 2]; }
+  void set(int i, double value) { pair[i / 2][i % 2] = value; }
+  void add(double factor, const Packed& other) {
+    for (int p = 0; p < kPairs; ++p) pair[p] += both(factor) * other.pair[p];
+  }
+  double dot(const Packed& other) const {
+    Pair sum = pair[0] * other.pair[0];
+    for (int p = 1; p < kPairs; ++p) sum += pair[p] * other.pair[p];
+    return sum[0] + sum[1];
+  }
+  double largest() const {
+    double result = 0;
+    for (int i = 0; i < N; ++i) result = std::max(result, std::abs((*this)[i]));
+    return result;
+  }
+};
+
+template <int N>
+struct Square {
+  Packed<N> column[N];
+
+  Packed<N> times(const Packed<N>& x) const {
+    Packed<N> sum;
+    for (int j = 0; j < N; ++j) sum.add(x[j], column[j]);
+    return sum;
+  }
+  Packed<N> transposed_times(const Packed<N>& x) const {
+    Packed<N> result;
+    for (int j = 0; j < N; ++j) result.set(j, column[j].dot(x));
+    return result;
+  }
+  // From the right: all rows in the hyperplane normal to v, of which factor is 2 / |v|^2.
+  void reflect(const Packed<N>& v, double factor) {
+    const Packed<N> along = times(v);
+    for (int j = 0; j < N; ++j) column[j].add(-factor * v[j], along);
+  }
+};
+
+}  // namespace remote_touch
