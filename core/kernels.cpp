@@ -9,14 +9,18 @@ REMOTE_TOUCH_DECLARE_KERNELS(x86_64_v4)
 namespace remote_touch {
 
 namespace {
-constexpr Kernels kX86_64{"x86-64",        x86_64::append_within, x86_64::survey,    x86_64::first_hit,
-                          x86_64::way_out, x86_64::normals,       x86_64::candidates};
-constexpr Kernels kX86_64v3{"x86-64-v3",          x86_64_v3::append_within, x86_64_v3::survey,
-                            x86_64_v3::first_hit, x86_64_v3::way_out,       x86_64_v3::normals,
-                            x86_64_v3::candidates};
-constexpr Kernels kX86_64v4{"x86-64-v4",          x86_64_v4::append_within, x86_64_v4::survey,
-                            x86_64_v4::first_hit, x86_64_v4::way_out,       x86_64_v4::normals,
-                            x86_64_v4::candidates};
+// In the order of the struct.
+#define REMOTE_TOUCH_KERNELS(isa, level)                                                           \
+  {                                                                                                \
+    isa, level::append_within, level::survey, level::first_hit, level::way_out, level::normals,    \
+        level::candidates, level::spheres_near, level::points_in_cells, level::disks_in_field,     \
+        level::depth_to_points, level::filter_depth, level::plane_normals, level::points_to_cloud, \
+        level::normals_to_cloud                                                                    \
+  }
+
+constexpr Kernels kX86_64 = REMOTE_TOUCH_KERNELS("x86-64", x86_64);
+constexpr Kernels kX86_64v3 = REMOTE_TOUCH_KERNELS("x86-64-v3", x86_64_v3);
+constexpr Kernels kX86_64v4 = REMOTE_TOUCH_KERNELS("x86-64-v4", x86_64_v4);
 }  // namespace
 
 Isa best_isa() {

@@ -10,6 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/depth/image_rows.h"
+
 namespace remote_touch {
 
 // A view of gathered points, padded with far-away points to a multiple of kLanes. radius is r_f of each point
@@ -73,6 +75,66 @@ struct NoiseStream {
   std::uint32_t counter[3];  // the generator's counter without its first word, which is the point's index
 };
 
+// Bytes for the cells of a regular grid, the first coordinate running fastest; three bytes more can be read
+// behind the last.
+struct CellTable {
+  const std::int8_t* value;
+  int cells[3];
+};
+
+// From world coordinates to those of the cells: row[0..2] . (x, y, z) + row[3] along each axis.
+struct CellTransform {
+  double row[3][4];
+};
+
+// Centres and radii.
+struct SphereColumns {
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* radius;
+};
+
+// A table of distances: no place of a cell is nearer to the tool than (zero - value) unit, in cells. What is
+// looked for lies no farther than reach, in cells; radii in metres are to be multiplied by per_m.
+struct NearnessCode {
+  double zero, unit;
+  double reach, per_m;
+};
+
+// Points with normals (NaN: none) and distances to the points around them.
+struct PointColumns {
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* nx;
+  const double* ny;
+  const double* nz;
+  const double* spacing;
+};
+
+// Where a tool is, and its distance field at the nodes of a grid, the first coordinate running fastest.
+struct PosedField {
+  double R_TW[3][3];
+  double p_W[3];
+  const float* node;
+  int cells[3];
+  double origin_T[3];
+  double size;
+};
+
+// What there is to know about surface disks in the tool frame; room for as many as were asked for, padded to
+// kLanes.
+struct DiskColumns {
+  double* p_T[3];
+  double* n_T[3];
+  double* radius;
+  double* distance;
+  double* gradient_T[3];
+  double* slope;  // of the field in the plane of the disk; NaN without a normal
+  double* lower;  // bound of the distance of any place of the disk
+};
+
 struct Kernels {
   const char* isa;
   // Appends the points of the run with |x - centre|^2 <= (reach + r_f)^2, all in double; NaN never qualifies.
@@ -94,6 +156,36 @@ struct Kernels {
   // is. Returns how many; index has room for count + kLanes.
   std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
                             const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
+  // Of the spheres of each group, kLanes group .. kLanes group + kLanes - 1: numbers of those that hold
+  // places within reach of the tool, in order, and of some others that are near. Returns how many; found has
+  // room for all.
+  std::size_t (*spheres_near)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
+                              const CellTransform&, const CellTable&, const NearnessCode&,
+                              std::uint32_t* found);
+  // Of the points of each group, kLanes group .. kLanes group + kLanes - 1: numbers of those that lie in a
+  // cell whose value is least or more, in order; NaN lies in none. A point less than a cell outside the grid
+  // counts as inside it. Returns how many; found has room for all.
+  std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
+                                 const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
+                                 const CellTable&, int least, std::uint32_t* found);
+  // The disks around the points index[0..count), of radius share x spacing: bit for bit what sample_field()
+  // and lower_bound_m() tell, but for places outside the grid, whose lower is NaN.
+  void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double share,
+                         const PosedField&, const DiskColumns&);
+  // The points of one row in the camera frame, their z times scale.
+  void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
+  // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of
+  // sigma_f / sqrt(kFilterExponent / 2).
+  void (*filter_depth)(const RowBand&, const PointPlanes& points, float* change);
+  // Unit normals towards the sensor, NaN where there is no plane. Lengths are in units of the radius; step is
+  // (1 / fx, 1 / fy).
+  void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
+                        const PointPlanes& normals);
+  // One row into the cloud; X_WC row by row, three rows of four. z are those of the points the normals are
+  // of.
+  void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);
+  void (*normals_to_cloud)(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
+                           const CloudRow&);
 };
 
 // x86-64 levels in rising order.

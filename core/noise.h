@@ -19,7 +19,7 @@ struct NoiseKey {
 };
 
 // Independent uses of one key.
-enum class NoiseUse : std::uint32_t { point_position = 0, depth = 1, delivery = 2 };
+enum class NoiseUse : std::uint32_t { point_position = 0, depth = 1, delivery = 2, motion = 3 };
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
 inline constexpr double kLargestNormal = 6.661;

@@ -5,18 +5,34 @@
 
 #include "core/kernels.h"
 
-#define REMOTE_TOUCH_DECLARE_KERNELS(level)                                                               \
-  namespace remote_touch::level {                                                                         \
-  std::size_t append_within(const PointRun& run, const double centre[3], double reach,                    \
-                            const PointSink& sink, std::size_t count);                                    \
-  Survey survey(const PointsView& points, const double p[3], const ProxyRegions& regions);                \
-  double first_hit(const PointsView& points, const double p[3], const double direction[3], double reach); \
-  double way_out(const PointsView& points, const double p[3], const double direction[3], double reach,    \
-                 double inner);                                                                           \
-  void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x,       \
-               double* y, double* z);                                                                     \
-  std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,               \
-                         const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);                  \
+#define REMOTE_TOUCH_DECLARE_KERNELS(level)                                                                  \
+  namespace remote_touch::level {                                                                            \
+  std::size_t append_within(const PointRun& run, const double centre[3], double reach,                       \
+                            const PointSink& sink, std::size_t count);                                       \
+  Survey survey(const PointsView& points, const double p[3], const ProxyRegions& regions);                   \
+  double first_hit(const PointsView& points, const double p[3], const double direction[3], double reach);    \
+  double way_out(const PointsView& points, const double p[3], const double direction[3], double reach,       \
+                 double inner);                                                                              \
+  void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x,          \
+               double* y, double* z);                                                                        \
+  std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,                  \
+                         const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);                     \
+  std::size_t spheres_near(const SphereColumns& spheres, const std::uint32_t* groups,                        \
+                           std::size_t group_count, const CellTransform& to_cells,                           \
+                           const CellTable& table, const NearnessCode& code, std::uint32_t* found);          \
+  std::size_t points_in_cells(const double* x, const double* y, const double* z,                             \
+                              const std::uint32_t* groups, std::size_t group_count,                          \
+                              const CellTransform& to_cells, const CellTable& table, int least,              \
+                              std::uint32_t* found);                                                         \
+  void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count,             \
+                      double share, const PosedField& field, const DiskColumns& disks);                      \
+  void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out);                           \
+  void filter_depth(const RowBand& band, const PointPlanes& in, float* change);                              \
+  void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2], \
+                     const PointPlanes& out);                                                                \
+  void points_to_cloud(const PixelRow& row, const double X_WC[12], const CloudRow& out);                     \
+  void normals_to_cloud(int width, const float* z, const PointPlanes& normals, const double X_WC[12],        \
+                        const CloudRow& out);                                                                \
   }
 
 #ifdef REMOTE_TOUCH_LEVEL

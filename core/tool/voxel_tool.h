@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "core/tool/mesh_check.h"
+#include "core/tool/mesh_repair.h"
 #include "core/tool/triangle_mesh.h"
 #include "core/vector.h"
 
@@ -27,9 +30,9 @@ struct VoxelGrid {
 };
 
 struct VoxelTool {
-  TriangleMesh mesh;              // closed, in the tool frame
+  TriangleMesh mesh;              // in the tool frame; closed, except for what a repair could not close
   VoxelGrid grid;                 // encloses the mesh and kFieldMargin_m around it
-  std::vector<Voxel> voxels;      // of every cell: shell where the surface passes through the cell
+  std::vector<Voxel> voxels;      // of every cell, see voxels_of()
   std::vector<float> distance_m;  // to the mesh at every node, positive outside
   double volume_m3 = 0;
   // About the centre of mass in tool axes, of uniform density, divided by the mass: the lower right block of
@@ -49,5 +52,31 @@ struct FieldSample {
 // The field between its nodes, trilinear. Outside the grid: the distance to the grid's box plus the field
 // where that is nearest, and the gradient towards p; never more than the true distance by more than a voxel.
 FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
+
+struct VoxelToolSettings {
+  double voxel_m = 5e-4;
+  double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
+  bool repair = false;  // take a mesh that is not closed, see repair_mesh()
+};
+
+// What was done to a mesh and how well voxels fit it.
+struct ToolReport {
+  MeshCheck check;                      // of the mesh as it came
+  Vec3 sides_m = Vec3::Zero();          // of its box, in the size that the tool has
+  bool inverted = false;                // all faces pointed inwards, and were turned
+  MeshRepair repaired;                  // all zero without repair
+  bool by_winding_number = false;       // repaired, and still open
+  std::array<std::size_t, 3> voxels{};  // free, shell, interior
+  double thin_share = 0;                // of the surface farther than two voxels from all interior
+};
+std::string text(const ToolReport& report);
+
+// The mesh scaled, moved with its centre of mass into the origin, and made into voxels and a distance field.
+// name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair), without
+// volume, with vertices that are not finite, with corners that are no vertices, too fine for kMostCells, or
+// thinner than a voxel everywhere.
+inline constexpr double kMostCells = 150e6;
+VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
+                          const std::string& name = "mesh");
 
 }  // namespace remote_touch

@@ -1,0 +1,292 @@
+#include "core/depth/depth_pipeline.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kLargestHalf = 7;            // of a window
+constexpr int kBorder = 3 * kLargestHalf;  // what the kernels touch around the pixels asked for
+constexpr int kRightBorder = kBorder + 2 * kWidestLanes;
+// Rows that one thread takes at a time. Weights of the window above are computed anew for each band; so few
+// as 60 cost 3 %.
+constexpr int kBandRows = 60;
+
+int half(int window) {
+  return window / 2;
+}
+
+std::string wrong_window(const char* name, int window) {
+  return window % 2 == 1
+             ? ""
+             : std::string(name) + " = " + std::to_string(window) + ": allowed odd numbers, 3 to 15";
+}
+
+// A band's room for weights: as few as there are threads are in use, and these stay in the cache.
+class Rooms {
+ public:
+  Rooms(float* first, std::size_t size, int count) : first_(first), size_(size), free_(all(count)) {}
+  float* take() {
+    std::uint64_t free = free_.load();
+    while (!free_.compare_exchange_weak(free, free & (free - 1))) {
+    }
+    return first_ + size_ * static_cast<std::size_t>(__builtin_ctzll(free));
+  }
+  void give_back(const float* room) {
+    free_.fetch_or(std::uint64_t{1} << static_cast<std::size_t>(room - first_) / size_);
+  }
+
+ private:
+  static std::uint64_t all(int count) { return ~std::uint64_t{0} >> (64 - count); }
+  float* first_;
+  std::size_t size_;
+  std::atomic<std::uint64_t> free_;
+};
+
+int band_count(int rows) {
+  return std::clamp(rows / kBandRows, 1, 64);
+}
+
+}  // namespace
+
+Parameters parameters(DepthPipelineSettings& s) {
+  return {
+      {"filter", &s.filter, 0, 1, "filter the depth image spatially (7.1)"},
+      {"filter_window", &s.filter_window, 3, 15,
+       "pixels in width and height that (7.1) takes the mean of; odd"},
+      {"sigma_f_m", &s.sigma_f_m, 1e-4, 1,
+       "width of the filter's weights (7.2); a step that is not several times as high is smeared"},
+      {"normal_window", &s.normal_window, 3, 15,
+       "pixels in width and height that a normal is from, 6.2.1; odd"},
+      {"normal_radius_m", &s.normal_radius_m, 1e-3, 1,
+       "distance at which the weight (4.2) of a neighbour in the plane of a normal is 0, r_w of 6.2.1"},
+  };
+}
+
+std::string conflict(const DepthPipelineSettings& s) {
+  const std::string filter = wrong_window("filter_window", s.filter_window);
+  return filter.empty() ? wrong_window("normal_window", s.normal_window) : filter;
+}
+
+// What is to be done: the rectangle of an image, seen by a camera.
+struct DepthPipeline::Frame {
+  const double* depth_m;
+  CameraIntrinsics camera;
+  PixelRectangle at;
+  double X_WC[12];
+  bool keep_points;
+  int normal_half = 0, filter_half = 0;       // 0: no filter
+  double filter_scale = 1, normal_scale = 1;  // units of a plane in a metre
+
+  int reach() const { return normal_half + filter_half; }
+  // Rows and columns of the rectangle widened by some, within the image, counted from the rectangle.
+  int first_row(int wider) const { return std::max(-wider, -at.top); }
+  int last_row(int wider) const { return std::min(at.height + wider, camera.height - at.top); }
+  int first_column(int wider) const { return std::max(-wider, -at.left); }
+  int last_column(int wider) const { return std::min(at.width + wider, camera.width - at.left); }
+  const double* depth(int row, int column) const {
+    return depth_m + static_cast<std::ptrdiff_t>(at.top + row) * camera.width + at.left + column;
+  }
+};
+
+DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
+    : settings_(settings), kernels_(kernels) {
+  const std::string wrong = conflict(settings);
+  if (!wrong.empty()) throw std::invalid_argument("DepthPipeline: " + wrong);
+}
+
+PointCloud DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
+                                  const RigidTransform& X_WC) {
+  PointCloud cloud;
+  process(depth, camera, X_WC, cloud);
+  return cloud;
+}
+
+void DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
+                            const RigidTransform& X_WC, PointCloud& cloud) {
+  process(depth, camera, X_WC, {0, 0, depth.width, depth.height}, cloud);
+}
+
+namespace {
+
+bool fits(int first, int count, int all) {
+  return first >= 0 && count >= 0 && first <= all - count;
+}
+
+}  // namespace
+
+DepthPipeline::Frame DepthPipeline::frame_of(const double* depth_m, const CameraIntrinsics& camera,
+                                             const PixelRectangle& at, const RigidTransform& X_WC) const {
+  Frame frame{depth_m, camera, at, {}, false};
+  for (int i = 0; i < 12; ++i) frame.X_WC[i] = X_WC.matrix()(i / 4, i % 4);
+  frame.normal_half = half(settings_.normal_window);
+  frame.filter_half = settings_.filter ? half(settings_.filter_window) : 0;
+  frame.filter_scale = std::sqrt(kFilterExponent / 2) / settings_.sigma_f_m;
+  frame.normal_scale = 1 / settings_.normal_radius_m;
+  return frame;
+}
+
+void DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
+                            const RigidTransform& X_WC, const PixelRectangle& at, PointCloud& cloud) {
+  const std::size_t pixels = static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
+  if (depth.width != camera.width || depth.height != camera.height || depth.z_m.size() != pixels)
+    throw std::invalid_argument("DepthPipeline: the depth image is not of the camera's size");
+  if (!fits(at.left, at.width, depth.width) || !fits(at.top, at.height, depth.height))
+    throw std::invalid_argument("DepthPipeline: the rectangle is not in the image");
+  Frame frame = frame_of(depth.z_m.data(), camera, at, X_WC);
+  const std::size_t count = static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height);
+  for (std::vector<double>* column : {&cloud.x, &cloud.y, &cloud.z}) column->resize(count);
+  cloud.fixture_radius_m.clear(), cloud.stiffness_N_per_m.clear(), cloud.colour.clear();
+  CameraIntrinsics own = camera;
+  own.width = at.width, own.height = at.height, own.cx -= at.left, own.cy -= at.top;
+  cloud.image = ImageLayout{own, X_WC, 1e-6};  // as in cloud_from_depth
+  run(frame, cloud);
+}
+
+void DepthPipeline::process(PointCloud& cloud) {
+  if (!cloud.image) throw std::invalid_argument("DepthPipeline: the cloud has no image layout");
+  const ImageLayout& image = *cloud.image;
+  const int width = image.camera.width, height = image.camera.height;
+  if (cloud.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
+    throw std::invalid_argument("DepthPipeline: the cloud is not of the camera's size");
+  const RigidTransform X_CW = image.X_WC.inverse();
+  depth_m_.resize(cloud.size());
+  const auto count = static_cast<std::ptrdiff_t>(cloud.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i)
+    depth_m_[i] = X_CW.linear().row(2).dot(cloud.point(i)) + X_CW.translation().z();
+  Frame frame = frame_of(depth_m_.data(), image.camera, {0, 0, width, height}, image.X_WC);
+  frame.keep_points = !settings_.filter;
+  run(frame, cloud);
+}
+
+// Column 0 of row 0 in three planes, one after another; or another column of it.
+PointPlanes DepthPipeline::planes(std::vector<float>& values, int column) const {
+  float* const first = values.data() + kBorder * stride_ + kBorder + column;
+  return {first, first + plane_size_, first + 2 * plane_size_, stride_};
+}
+
+void DepthPipeline::prepare(const Frame& frame) {
+  const PixelRectangle& at = frame.at;
+  stride_ = (at.width + kBorder + kRightBorder + kWidestLanes - 1) / kWidestLanes * kWidestLanes;
+  plane_size_ = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(at.height + 2 * kBorder);
+  const auto grow = [](auto& values, std::size_t size) {
+    if (values.size() < size) values.resize(size);
+  };
+  for (std::vector<float>* each : {&raw_, &smooth_, &normals_}) grow(*each, 3 * plane_size_);
+  grow(change_, plane_size_);
+  const int rooms = band_count(at.height + 2 * frame.normal_half);
+  grow(rooms_, static_cast<std::size_t>(rooms) * weight_room(at.width + 2 * frame.normal_half,
+                                                             std::max(frame.normal_half, frame.filter_half)));
+  valid_.resize(static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height));
+  const auto rays = [&](std::vector<double>& wide, std::vector<float>& narrow, std::size_t count, int first,
+                        double centre, double focal) {
+    grow(wide, count), grow(narrow, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      wide[i] = (first + static_cast<int>(i) - kBorder - centre) / focal;
+      narrow[i] = static_cast<float>(wide[i]);
+    }
+  };
+  rays(wide_rays_x_, rays_x_, static_cast<std::size_t>(stride_), at.left, frame.camera.cx, frame.camera.fx);
+  rays(wide_rays_y_, rays_y_, static_cast<std::size_t>(at.height + 2 * kBorder), at.top, frame.camera.cy,
+       frame.camera.fy);
+}
+
+// Leaves no points in a row but those of columns first .. last - 1, which are for the caller to write.
+void DepthPipeline::clear_beside(const PointPlanes& to, const Frame& frame, int row, int reach, int first,
+                                 int last) const {
+  for (float* plane : {to.x, to.y, to.z}) {
+    float* const start = plane + row * stride_;
+    std::fill(start - reach, start + first, kNowhere);
+    std::fill(start + last, start + frame.at.width + reach, kNowhere);
+  }
+}
+
+// One row of points, with the filter's changes or as measured, and none outside of the image.
+void DepthPipeline::write_points(const Frame& frame, int row, int reach, double scale, bool changed,
+                                 const PointPlanes& to) {
+  const bool inside = row >= frame.first_row(reach) && row < frame.last_row(reach);
+  const int end = frame.at.width + reach;
+  const int first = inside ? frame.first_column(reach) : end, last = inside ? frame.last_column(reach) : end;
+  clear_beside(to, frame, row, reach, first, last);
+  if (!inside) return;
+  const std::ptrdiff_t at = row * stride_ + first;
+  kernels_.depth_to_points(pixels(frame, row, first, last, changed), scale,
+                           {to.x + at, to.y + at, to.z + at, stride_});
+}
+
+PixelRow DepthPipeline::pixels(const Frame& frame, int row, int first, int last, bool changed) const {
+  const float* const change = change_.data() + (kBorder + row) * stride_ + kBorder + first;
+  return {last - first,
+          wide_rays_x_.data() + kBorder + first,
+          wide_rays_y_[static_cast<std::size_t>(kBorder + row)],
+          frame.depth(row, first),
+          changed ? change : nullptr,
+          1 / frame.filter_scale};
+}
+
+void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* room) {
+  const int wider = frame.normal_half, width = frame.at.width + 2 * wider;
+  float* const change = change_.data() + kBorder * stride_ + kBorder - wider;
+  kernels_.filter_depth({first, last, width, frame.filter_half, room}, planes(raw_, -wider), change);
+  const PointPlanes smooth = planes(smooth_, 0);
+  for (int row = first; row < last; ++row) write_points(frame, row, wider, frame.normal_scale, true, smooth);
+}
+
+void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* room, PointCloud& cloud) {
+  const int width = frame.at.width;
+  const PixelRays rays{rays_x_.data() + kBorder, rays_y_.data() + kBorder};
+  const float step[2] = {static_cast<float>(1 / frame.camera.fx), static_cast<float>(1 / frame.camera.fy)};
+  const PointPlanes points = planes(smooth_, 0), normals = planes(normals_, 0);
+  kernels_.plane_normals({first, last, width, frame.normal_half, room}, points, rays, step, normals);
+  for (int row = first; row < last; ++row) {
+    const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+    const std::ptrdiff_t at = row * stride_;
+    const CloudRow out{cloud.x.data() + to,  cloud.y.data() + to,  cloud.z.data() + to, cloud.nx.data() + to,
+                       cloud.ny.data() + to, cloud.nz.data() + to, valid_.data() + to};
+    if (!frame.keep_points)
+      kernels_.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
+    kernels_.normals_to_cloud(width, points.z + at, {normals.x + at, normals.y + at, normals.z + at, stride_},
+                              frame.X_WC, out);
+  }
+}
+
+void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
+  prepare(frame);
+  for (std::vector<double>* column : {&cloud.nx, &cloud.ny, &cloud.nz}) column->resize(cloud.size());
+  const int reach = frame.reach(), wider = frame.normal_half, height = frame.at.height;
+  const PointPlanes first_planes = planes(settings_.filter ? raw_ : smooth_, 0);
+  const double scale = settings_.filter ? frame.filter_scale : frame.normal_scale;
+#pragma omp parallel for schedule(static)
+  for (int row = -reach; row < height + reach; ++row)
+    write_points(frame, row, reach, scale, false, first_planes);
+
+  // Rows first .. last - 1 in bands. Each writes rows of its own only.
+  const auto in_bands = [&](int first, int last, int half_window, const auto& work) {
+    const int bands = band_count(last - first);
+    const std::size_t size = weight_room(frame.at.width + 2 * wider, half_window);
+    Rooms rooms(rooms_.data(), size, bands);
+#pragma omp parallel for schedule(static)
+    for (int band = 0; band < bands; ++band) {
+      float* const room = rooms.take();
+      work(first + (last - first) * band / bands, first + (last - first) * (band + 1) / bands, room);
+      rooms.give_back(room);
+    }
+  };
+  if (settings_.filter) {
+    const PointPlanes smooth = planes(smooth_, 0);
+    for (int row = -wider; row < height + wider; ++row)
+      if (row < frame.first_row(wider) || row >= frame.last_row(wider))
+        write_points(frame, row, wider, 0, false, smooth);
+    in_bands(frame.first_row(wider), frame.last_row(wider), frame.filter_half,
+             [&](int first, int last, float* room) { filter_band(frame, first, last, room); });
+  }
+  in_bands(0, height, frame.normal_half,
+           [&](int first, int last, float* room) { normals_band(frame, first, last, room, cloud); });
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,117 @@
+// Vectors of single precision for the depth kernels: a lane is a pixel of a row, so that their number does
+// not change any result.
+#pragma once
+
+#include <immintrin.h>
+
+#include <cstddef>
+
+// A copy for every file: code that is compiled for a newer machine must not be linked in for an older one.
+namespace remote_touch {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int kFloats = 16;
+#elif defined(__AVX2__)
+constexpr int kFloats = 8;
+#else
+constexpr int kFloats = 4;
+#endif
+using Floats __attribute__((vector_size(4 * kFloats))) = float;
+
+#if defined(__AVX512F__)
+inline Floats load(const float* p) {
+  return _mm512_loadu_ps(p);
+}
+inline void store(float* p, Floats a) {
+  _mm512_storeu_ps(p, a);
+}
+inline Floats root(Floats a) {
+  return _mm512_sqrt_ps(a);
+}
+inline Floats larger(Floats a, Floats b) {
+  return _mm512_max_ps(a, b);
+}
+inline Floats smaller(Floats a, Floats b) {
+  return _mm512_min_ps(a, b);
+}
+#elif defined(__AVX2__)
+inline Floats load(const float* p) {
+  return _mm256_loadu_ps(p);
+}
+inline void store(float* p, Floats a) {
+  _mm256_storeu_ps(p, a);
+}
+inline Floats root(Floats a) {
+  return _mm256_sqrt_ps(a);
+}
+inline Floats larger(Floats a, Floats b) {
+  return _mm256_max_ps(a, b);
+}
+inline Floats smaller(Floats a, Floats b) {
+  return _mm256_min_ps(a, b);
+}
+#else
+inline Floats load(const float* p) {
+  return _mm_loadu_ps(p);
+}
+inline void store(float* p, Floats a) {
+  _mm_storeu_ps(p, a);
+}
+inline Floats root(Floats a) {
+  return _mm_sqrt_ps(a);
+}
+inline Floats larger(Floats a, Floats b) {
+  return _mm_max_ps(a, b);
+}
+inline Floats smaller(Floats a, Floats b) {
+  return _mm_min_ps(a, b);
+}
+#endif
+
+// work(first), ..., work(last), unrolled: compilers keep such short loops, and their numbers in registers.
+template <int kFirst, int kLast, class Work>
+__attribute__((always_inline)) inline void unrolled(const Work& work) {
+  if constexpr (kFirst <= kLast) {
+    work(kFirst);
+    unrolled<kFirst + 1, kLast>(work);
+  }
+}
+
+// work(i) for i = 1 .. half, where kHalf is half, or 0 if that is not known.
+template <int kHalf, class Work>
+__attribute__((always_inline)) inline void for_each_step(int half, const Work& work) {
+  if constexpr (kHalf > 0)
+    unrolled<1, kHalf>(work);
+  else
+    for (int i = 1; i <= half; ++i) work(i);
+}
+
+// Weights of the pairs of one row, as image_rows.h tells. A row of them holds those of pairs whose lower
+// point is `below` rows under the upper one and `across` columns to its right, at the column of the upper
+// one.
+class PairWeights {
+ public:
+  PairWeights(float* room, int width, int half, int row) : across_((width + 4 * half + 2 * 16) / 16 * 16) {
+    for (int below = 1, before = 0; below <= half; before += ++below) {
+      const auto at = [&](int upper_row) {
+        const int slot = before + (upper_row + 64 * (below + 1)) % (below + 1);
+        return room + (slot * (2 * half + 1) + half) * across_ + 2 * half;
+      };
+      fresh_[below] = at(row), kept_[below] = at(row - below);
+    }
+  }
+  // Of points in this row with others below.
+  float* fresh(int below, int across) const { return fresh_[below] + across * across_; }
+  // Of points above, whose pairs have a point in this row.
+  const float* kept(int above, int across) const { return kept_[above] + across * across_; }
+
+ private:
+  static constexpr int kWidest = 16;
+  std::ptrdiff_t across_;  // weight_stride, whose one copy could be another level's
+  float* fresh_[8];
+  const float* kept_[8];
+};
+
+}  // namespace
+}  // namespace remote_touch

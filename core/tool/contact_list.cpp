@@ -1,0 +1,111 @@
+#include "core/tool/contact_list.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// The collision list reaches a little less far than the field.
+constexpr double kLongestReach_m = kFieldMargin_m - 2e-4;
+constexpr double kTouch_m = 1e-4;    // a disk closer to the tool than this is touched
+constexpr double kSearch_m = 3e-4;   // a disk closer than this has its nearest place searched
+constexpr double kCluster_m = 0.01;  // touching points closer than this are counted as one cluster
+
+}  // namespace
+
+ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
+                         const Kernels& kernels)
+    : p_(parameters), kernels_(kernels), finder_(std::move(tool), kernels), disks_(parameters.disk_share) {}
+
+void ContactList::on_frame(const PointCloud& cloud) {
+  finder_.on_frame(cloud);
+  const TiledCloud& points = finder_.cloud();
+  widest_disk_m_ = 0;
+  for (std::uint32_t i = 0; i < points.room(); ++i)
+    widest_disk_m_ = std::max(widest_disk_m_, p_.disk_share * points.spacing_m(i));
+  contacts_.reserve(points.room()), collisions_.reserve(points.room());
+  clusters_.reserve(points.room());
+  disks_.on_frame(points);
+}
+
+// A step turns the tool by so little that two points of 4 mm ask for the same motion within a tenth of a
+// millimetre; what is left over the next detection finds. Larger cells where these are still too many:
+// contacts have to stay spread over the tool.
+std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
+  constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
+  for (double cell_m = 4e-3; contacts.size() > kMost; cell_m *= 1.5) thinning_.thin(contacts, cell_m);
+  return contacts;
+}
+
+// disk_contact() with what is known already.
+ToolContact ContactList::contact(std::size_t i, double side) const {
+  const SurfaceDisk disk = disks_.disk(i);
+  const DiskPlace middle{disk.p_T, disk.at};
+  const VoxelTool& tool = finder_.tool();
+  if (!(disks_.lower_m(i) <= kSearch_m))
+    return disk_contact(tool, disk, middle, disks_.lower_m(i), false, side);
+  const DiskPlace place = disks_.is_flat(i) ? middle : nearest_place(tool, disk);
+  return disk_contact(tool, disk, place, place.at.distance_m, true, side);
+}
+
+NearContacts ContactList::near(const ToolPose& pose, double side) {
+  const double reach_m = std::min(p_.look_ahead_m + widest_disk_m_, kLongestReach_m);
+  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
+  contacts_.clear();
+  disks_.look(finder_, kernels_, pose, reach_m);
+  for (std::size_t i = 0; i < disks_.size(); ++i) {
+    if (!(disks_.lower_m(i) <= p_.look_ahead_m)) continue;
+    contacts_.push_back(contact(i, side));
+    found.deepest_m = std::max(found.deepest_m, contacts_.back().depth_m);
+  }
+  found.contacts = thinned(contacts_);
+  return found;
+}
+
+VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  const TiledCloud& cloud = finder_.cloud();
+  VoxelContacts found;
+  contacts_.clear(), collisions_.clear();
+  for (const std::uint32_t point : finder_.in_tool(pose)) {
+    const Vec3 n_W = cloud.normal(point);
+    if (!n_W.allFinite()) continue;
+    const Vec3 p_T = R_TW * (cloud.point(point) - pose.p_W);
+    const bool inside = finder_.voxel(p_T) == Voxel::interior;
+    found.touched = true, found.collided |= inside;
+    (inside ? collisions_ : contacts_).push_back({p_T, R_TW * n_W, inside ? 1.0 : 0.0, 1});
+  }
+  found.contacts = thinned(found.collided ? collisions_ : contacts_);
+  return found;
+}
+
+Touched ContactList::touched(const ToolPose& pose) {
+  const bool disks = p_.contact_rule == TouchRule::look_ahead;
+  const double shown_m = std::max(p_.look_ahead_m, 2 * finder_.tool().grid.size_m);
+  const double reach_m = std::min(shown_m + (disks ? widest_disk_m_ : 0), kLongestReach_m);
+  Touched all;
+  all.nearest_m = std::numeric_limits<double>::infinity();
+  clusters_.clear();
+  disks_.look(finder_, kernels_, pose, reach_m);
+  for (std::size_t i = 0; i < disks_.size(); ++i) {
+    all.nearest_m = std::min(all.nearest_m, disks_.distance_m(i));
+    // No voxel of the tool is farther from its surface than that.
+    const bool may_be_in = disks_.distance_m(i) <= 2 * finder_.tool().grid.size_m;
+    const Voxel voxel = may_be_in ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
+    if (voxel == Voxel::free && !(disks && disks_.lower_m(i) <= kTouch_m &&
+                                  nearest_place(finder_.tool(), disks_.disk(i)).at.distance_m <= kTouch_m))
+      continue;
+    all.state =
+        std::max(all.state, voxel == Voxel::interior ? ContactState::entrenched : ContactState::contact);
+    ++all.points;
+    clusters_.push_back(cell_number(disks_.p_T(i), kCluster_m));
+  }
+  if (all.nearest_m > shown_m) all.nearest_m = std::numeric_limits<double>::infinity();
+  std::sort(clusters_.begin(), clusters_.end());
+  all.clusters = static_cast<int>(std::unique(clusters_.begin(), clusters_.end()) - clusters_.begin());
+  return all;
+}
+
+}  // namespace remote_touch

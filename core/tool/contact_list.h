@@ -1,0 +1,69 @@
+// The contacts of a pose for the two rules, made of the points of the collision list.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/renderer.h"
+#include "core/tool/contact_thinning.h"
+#include "core/tool/disk_contact.h"
+#include "core/tool/motion_program.h"
+#include "core/tool/near_disks.h"
+#include "core/tool/tool_parameters.h"
+#include "core/tool/touch_finder.h"
+
+namespace remote_touch {
+
+// What a detection finds for the look-ahead rule.
+struct NearContacts {
+  std::span<const ToolContact> contacts;
+  double deepest_m = 0;  // largest depth, below 0 where nothing is touched; -infinity: nothing is near
+};
+
+// What a detection finds for the printed rule.
+struct VoxelContacts {
+  std::span<const ToolContact>
+      contacts;  // (6.5) with depth 0, or (6.8) with depth 1 where there are collisions
+  bool touched = false, collided = false;  // some point is in the tool; in its interior
+};
+
+// What a pose touches, every point counted.
+struct Touched {
+  ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
+  int points = 0;
+  int clusters = 0;      // 10 mm cells of the tool frame with such points
+  double nearest_m = 0;  // field value of the lowest point; infinite beyond the look-ahead
+};
+
+// Lists are valid until the next call. More contacts than the motion can take are thinned.
+class ContactList {
+ public:
+  ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
+              const Kernels& kernels);
+
+  void on_frame(const PointCloud& cloud);  // allocates
+  const TouchFinder& finder() const { return finder_; }
+
+  // Every disk that the tool could touch within look_ahead_m; side as for disk_contact().
+  NearContacts near(const ToolPose& pose, double side);
+  // The points in shell and interior voxels. Those without a normal are left out.
+  VoxelContacts in_voxels(const ToolPose& pose);
+  // Points in shell or interior voxels, and under the look-ahead rule those whose disk is touched.
+  Touched touched(const ToolPose& pose);
+
+ private:
+  ToolContact contact(std::size_t i, double side) const;
+  std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
+
+  const ToolParameters p_;
+  const Kernels& kernels_;
+  TouchFinder finder_;
+  NearDisks disks_;
+  double widest_disk_m_ = 0;
+  ContactThinning thinning_;
+  std::vector<ToolContact> contacts_, collisions_;
+  std::vector<std::uint64_t> clusters_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,37 @@
+// Fewer contacts where there are more than the motion needs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/tool/motion_program.h"
+
+namespace remote_touch {
+
+// Keeps the deepest contact of every cell of the tool frame and octant of directions. Allocates on
+// construction only.
+class ContactThinning {
+ public:
+  // Far more cells than a tool of a hand's size has within reach of a surface; what comes later is dropped.
+  static constexpr std::size_t kMostCells = 4096;  // a power of two
+
+  ContactThinning() : slots_(kMostCells) {}
+  // In place, in the order of the first contact of each cell.
+  void thin(std::vector<ToolContact>& contacts, double cell_m);
+
+ private:
+  struct Slot {
+    std::uint64_t key = 0;
+    std::size_t place = 0;    // in the thinned list
+    std::uint32_t stamp = 0;  // of the call that it belongs to
+  };
+  Slot* slot_of(std::uint64_t key);
+
+  std::vector<Slot> slots_;
+  std::uint32_t stamp_ = 0;
+};
+
+// Which cube of a grid over the tool frame a place lies in, as one number.
+std::uint64_t cell_number(const Vec3& p_T, double cell_m);
+
+}  // namespace remote_touch

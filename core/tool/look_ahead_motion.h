@@ -1,0 +1,27 @@
+// The look-ahead rule: every point near the tool is a constraint with its signed distance, so the tool slows
+// down before it touches, slides along what it touches, and is pushed out of what it is in, by one and the
+// same program. Not in the dissertation.
+#pragma once
+
+#include "core/tool/tool_motion.h"
+
+namespace remote_touch {
+
+class LookAheadMotion final : public ToolMotion {
+ public:
+  LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool)
+      : p_(parameters), reach_m_(tool.reach_m), program_(tool) {}
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
+
+ private:
+  Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near, double longest_m,
+                       ToolMotionReport& report);
+
+  const ToolParameters p_;
+  const double reach_m_;
+  MotionProgram program_;
+  double side_ = 1;        // of the surface that held the tool last: +1 is the sensor's
+  bool settling_ = false;  // a frame came, and the tool is still in its points
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,24 @@
+#include "core/tool/tool_pose.h"
+
+namespace remote_touch {
+
+ToolPose moved(const ToolPose& pose, const Vector6& a_g) {
+  return {pose.p_W + a_g.head<3>(), (rotation(a_g.tail<3>()) * pose.q_WT).normalized()};
+}
+
+Vector6 displacement(const ToolPose& from, const ToolPose& to) {
+  Vector6 a_gu;
+  a_gu << to.p_W - from.p_W, rotation_vector(to.q_WT * from.q_WT.conjugate());
+  return a_gu;
+}
+
+double way_m(const Vector6& a_g, double reach_m) {
+  return a_g.head<3>().norm() + a_g.tail<3>().norm() * reach_m;
+}
+
+Vector6 capped(const Vector6& a_g, double reach_m, double longest_m) {
+  const double way = way_m(a_g, reach_m);
+  return way > longest_m ? Vector6(a_g * (longest_m / way)) : a_g;
+}
+
+}  // namespace remote_touch
