@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/column.h"
+#include "analysis/scene.h"
 
 namespace remote_touch {
 
@@ -27,6 +28,7 @@ struct Panel {
   std::vector<Curve> curves = {};
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};
   std::optional<std::pair<double, double>> place = {};  // row and column; absent: one below the other
+  std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
 };
 
 enum class Verdict { pass, fail, not_run };

@@ -69,6 +69,42 @@ std::string style_name(CurveStyle style) {
   return "line";
 }
 
+const char* kind_name(ScenePart::Kind kind) {
+  switch (kind) {
+    case ScenePart::Kind::points:
+      break;
+    case ScenePart::Kind::segments:
+      return "segments";
+    case ScenePart::Kind::solid:
+      return "solid";
+  }
+  return "points";
+}
+
+void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) {
+  const auto vector = [](const Vec3& v) { return std::vector{v.x(), v.y(), v.z()}; };
+  hdf5.group(path);
+  hdf5.attribute(path, "eye", vector(scene.eye));
+  hdf5.attribute(path, "target", vector(scene.target));
+  hdf5.attribute(path, "up", vector(scene.up));
+  hdf5.attribute(path, "width", std::vector{scene.width_m});
+  hdf5.attribute(path, "proportion", std::vector{scene.proportion});
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    const std::string place = path + "/part" + std::to_string(i);
+    hdf5.group(place);
+    hdf5.attributes(place, {{"kind", kind_name(part.kind)},
+                            {"table", part.table},
+                            {"label", part.label},
+                            {"triangles", part.triangles},
+                            {"poses", part.poses}});
+    hdf5.attribute(place, "pose_row", part.pose_row);
+    hdf5.attribute(place, "colour", static_cast<std::int32_t>(part.colour));
+    hdf5.attribute(place, "size", std::vector{part.size_m});
+    hdf5.attribute(place, "opacity", std::vector{part.opacity});
+  }
+}
+
 void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) {
   const double automatic = std::numeric_limits<double>::quiet_NaN();
   const auto x = panel.x_range.value_or(std::pair(automatic, automatic));
@@ -91,6 +127,7 @@ void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) 
                             {"label", curve.label}});
     hdf5.attribute(place, "radius", std::vector<double>{curve.radius});
   }
+  if (panel.scene) write_scene(hdf5, path + "/scene", *panel.scene);
 }
 
 }  // namespace

@@ -57,7 +57,12 @@ std::vector<Column> Trace::columns() const {
   std::vector<Column> list = {
       {"time", "s", "simulated time", time_s, 1, {}},
       {"hip_position", "m", "haptic interface point, world frame", hip_m, 3, {}},
-      {"proxy_position", "m", "centre of the proxy, world frame", proxy_m, 3, {}},
+      {"proxy_position",
+       "m",
+       has_tool() ? "centre of mass of the tool, world frame" : "centre of the proxy, world frame",
+       proxy_m,
+       3,
+       {}},
       {"force", "N", "force on the hand, world frame", force_N, 3, {}},
       {"state", "1", "state of the proxy", state, 1, {"free", "contact", "entrenched"}},
       {"normal", "1", "estimated surface normal, unit vector", normal, 3, {}},

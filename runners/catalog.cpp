@@ -5,10 +5,13 @@
 #include "core/fixtures/hue_range.h"
 #include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
+#include "runners/tools/loaded_tool.h"
 #include "runners/trajectories/follow_surface.h"
 #include "runners/trajectories/image_press.h"
 #include "runners/trajectories/image_scan.h"
+#include "runners/trajectories/poses.h"
 #include "runners/trajectories/press.h"
+#include "runners/trajectories/random_walk.h"
 #include "runners/trajectories/waypoints.h"
 #include "scenarios/beating_heart.h"
 #include "scenarios/camera_scene.h"
@@ -16,8 +19,13 @@
 #include "scenarios/image_mask.h"
 #include "scenarios/listed_points.h"
 #include "scenarios/moving_lift.h"
+#include "scenarios/moving_plane.h"
+#include "scenarios/open_box.h"
 #include "scenarios/recorded_scene.h"
+#include "scenarios/sheet.h"
+#include "scenarios/slot.h"
 #include "scenarios/triangle_wave.h"
+#include "scenarios/wedge.h"
 
 namespace remote_touch {
 
@@ -58,6 +66,11 @@ const ScenarioEntry kScenarios[] = {
     scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
     scenario<BeatingHeart>("beating-heart",
                            "a simulated depth camera looks down on a beating organ on a table"),
+    scenario<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
+    scenario<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
+    scenario<Wedge>("wedge", "two walls that lean apart, close on a tool and open again"),
+    scenario<MovingPlane>("moving-plane", "a flat cloud with normals that rests, then lifts a tool"),
+    scenario<Sheet>("sheet", "one flat panel with normals, to be touched from the back too"),
     scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
 };
 
@@ -71,6 +84,8 @@ const FixtureEntry kFixtures[] = {
 
 const TrajectoryEntry kTrajectories[] = {
     trajectory<Waypoints>("waypoints", "listed points, each with its speed"),
+    trajectory<Poses>("poses", "listed poses of six degrees of freedom, each with the time of the way there"),
+    trajectory<RandomWalk>("random-walk", "a smooth random motion of six degrees of freedom"),
     trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
     trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),
     trajectory<ImageScan>("image-scan", "along an image row, a set depth behind the first frame's surface"),
@@ -80,6 +95,7 @@ const TrajectoryEntry kTrajectories[] = {
 
 const RendererEntry kRenderers[] = {
     renderer<ProxyRenderer, ProxyParameters>("proxy", "3-DOF point cloud proxy, chapters 4 and 5"),
+    renderer<LoadedTool, LoadedTool::Settings>("tool", "6-DOF rendering of a rigid tool, chapter 6"),
 };
 
 }  // namespace

@@ -59,6 +59,17 @@ std::vector<Part<FixtureEntry>> read_fixtures(const Json& list) {
   return parts;
 }
 
+std::optional<DepthPipelineSettings> read_depth_pipeline(const Json& json) {
+  if (json.is_null()) return {};
+  if (!json.is_object()) throw InputError("depth_pipeline", "allowed {parameters}, or to leave it out");
+  DepthPipelineSettings settings;
+  read_parameters(json, parameters(settings), "depth_pipeline", false);
+  const std::string contradiction = conflict(settings);
+  if (!contradiction.empty())
+    throw InputError("depth_pipeline." + contradiction, "together with the other settings");
+  return settings;
+}
+
 template <class Entry>
 Json part_json(const Part<Entry>& part) {
   Json json = {{"name", part.name}};
@@ -79,6 +90,7 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
 Experiment Experiment::from_json(Json configuration) {
   Experiment experiment;
   experiment.scenario_ = read_part(taken(configuration, "scenario"), scenarios(), "scenario");
+  experiment.depth_pipeline_ = read_depth_pipeline(taken(configuration, "depth_pipeline"));
   experiment.fixtures_ = read_fixtures(taken(configuration, "fixtures"));
   experiment.renderer_ = read_part(taken(configuration, "renderer"), renderers(), "renderer");
   experiment.trajectory_ = read_part(taken(configuration, "trajectory"), trajectories(), "trajectory");
@@ -96,6 +108,11 @@ std::string Experiment::to_json() const {
   RunSettings settings = settings_;
   write_parameters(parameters(settings), json);
   json["scenario"] = part_json(scenario_);
+  if (depth_pipeline_) {
+    DepthPipelineSettings pipeline = *depth_pipeline_;
+    json["depth_pipeline"] = Json::object();
+    write_parameters(parameters(pipeline), json["depth_pipeline"]);
+  }
   json["fixtures"] = Json::array();
   for (const auto& rule : fixtures_) json["fixtures"].push_back(part_json(rule));
   json["renderer"] = part_json(renderer_);
@@ -129,6 +146,12 @@ FixtureAssignment Experiment::build_fixtures() const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   for (const auto& rule : fixtures_) rules.push_back(rule.blueprint->build());
   return FixtureAssignment(std::move(rules));
+}
+
+FrameProcessing Experiment::build_processing(const Kernels& kernels) const {
+  FrameProcessing processing{nullptr, build_fixtures()};
+  if (depth_pipeline_) processing.depth = std::make_unique<DepthPipeline>(*depth_pipeline_, kernels);
+  return processing;
 }
 
 }  // namespace remote_touch

@@ -1,8 +1,9 @@
-// One resolved configuration: scenario, fixtures, renderer, trajectory, durations, seed.
+// One resolved configuration: scenario, depth pipeline, fixtures, renderer, trajectory, durations, seed.
 #pragma once
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,10 +50,12 @@ class Experiment {
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
   std::unique_ptr<Renderer> build_renderer(const Kernels& kernels) const;
   FixtureAssignment build_fixtures() const;
+  FrameProcessing build_processing(const Kernels& kernels) const;
 
  private:
   RunSettings settings_;
   Part<ScenarioEntry> scenario_;
+  std::optional<DepthPipelineSettings> depth_pipeline_;
   std::vector<Part<FixtureEntry>> fixtures_;
   Part<RendererEntry> renderer_;
   Part<TrajectoryEntry> trajectory_;

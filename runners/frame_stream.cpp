@@ -5,19 +5,21 @@
 #include <utility>
 
 #include "analysis/fingerprint.h"
+#include "core/input_error.h"
 
 namespace remote_touch {
 
-FrameStream::FrameStream(const Scenario& scenario, FixtureAssignment fixtures, const Delivery& delivery,
+FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
                          const NoiseKey& key, bool hash_frames)
     : scenario_(scenario),
-      fixtures_(std::move(fixtures)),
+      processing_(std::move(processing)),
       delivery_(delivery),
       key_(key),
       hash_frames_(hash_frames) {}
 
 bool FrameStream::exists(int frame) const {
-  return frame < scenario_.frame_count() || fixtures_.changes_with_time() || delivery_.drop_probability > 0;
+  return frame < scenario_.frame_count() || processing_.fixtures.changes_with_time() ||
+         delivery_.drop_probability > 0;
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.
@@ -50,9 +52,14 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
 }
 
 std::shared_ptr<const NeighbourSearch> FrameStream::points(int frame) const {
-  if (fixtures_.empty()) return scenario_.points(seen(frame));
+  if (!processing_.changes_points()) return scenario_.points(seen(frame));
   PointCloud cloud = scenario_.cloud(seen(frame));
-  fixtures_.assign(cloud, captured_s(frame));
+  if (processing_.depth) {
+    if (!cloud.image)
+      throw InputError("depth_pipeline", "this scenario's frames are no depth images; allowed none");
+    processing_.depth->process(cloud);
+  }
+  processing_.fixtures.assign(cloud, captured_s(frame));
   return make_search(std::move(cloud));
 }
 

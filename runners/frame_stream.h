@@ -1,9 +1,11 @@
-// The way of a frame from a scenario to a renderer: its points are assigned fixtures, and it arrives late, at
-// irregular times, or not at all.
+// The way of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
+// are assigned fixtures, and it arrives late, at irregular times, or not at all.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "core/depth/depth_pipeline.h"
 #include "core/fixtures/fixture_assignment.h"
 #include "core/noise.h"
 #include "core/renderer.h"
@@ -18,16 +20,25 @@ struct Delivery {
   double drop_probability = 0;  // of a frame that never arrives
 };
 
+// What is made of a frame's points before they are sent.
+struct FrameProcessing {
+  std::unique_ptr<DepthPipeline> depth;  // null: the points are sent as the scenario shows them
+  FixtureAssignment fixtures;
+
+  bool changes_points() const { return depth || !fixtures.empty(); }
+};
+
 class FrameStream {
  public:
   // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
   // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
   // frame is made for newest_hash().
-  FrameStream(const Scenario& scenario, FixtureAssignment fixtures, const Delivery& delivery,
+  FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
               const NoiseKey& key, bool hash_frames);
 
   // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
-  // Throws InputError when a frame cannot be read or a fixture rule cannot be applied to it.
+  // Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture rule
+  // cannot be applied to it.
   void deliver_until(double time_s, Renderer& renderer);
   // Fingerprint of the newest frame handed over, 0 before the first or where it is not made.
   std::uint64_t newest_hash() const { return hash_; }
@@ -45,7 +56,7 @@ class FrameStream {
   std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
 
   const Scenario& scenario_;
-  FixtureAssignment fixtures_;
+  FrameProcessing processing_;
   Delivery delivery_;
   NoiseKey key_;
   bool hash_frames_;

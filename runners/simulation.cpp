@@ -54,7 +54,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto scenario = experiment.build_scenario(kernels);
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto renderer = experiment.build_renderer(kernels);
-  FrameStream frames(*scenario, experiment.build_fixtures(), experiment.settings().delivery,
+  FrameStream frames(*scenario, experiment.build_processing(kernels), experiment.settings().delivery,
                      experiment.settings().key, options.hash_frames);
   const std::size_t ticks = tick_count(experiment, *trajectory);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rotation.h"
+
 namespace remote_touch {
 
 namespace {
@@ -19,6 +21,9 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
       {"farthest_m", &s.farthest_m, 0.01, 100, "depth beyond which a measurement is discarded"},
       {"truth_radius_m", &s.truth_radius_m, 1e-4, 1, "size of the patch that stands for the true surface"},
+      {"camera_m", &s.camera_m, -100, 100, "where the camera is in the base frame: its registration, 6.2.1"},
+      {"camera_turn_deg", &s.camera_turn_deg, -360, 360,
+       "rotation vector of the camera in the base frame; zero: x right, y down, z forward"},
   };
 }
 
@@ -35,7 +40,9 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
 }
 
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
-    : settings_(settings), recording_(index_recording(find_recording(settings.path))) {
+    : settings_(settings),
+      X_WC_(Eigen::Translation3d(settings.camera_m) * rotation(kRadiansPerDegree * settings.camera_turn_deg)),
+      recording_(index_recording(find_recording(settings.path))) {
   const FrameRange frames = frames_of(input_files(settings), recording_);
   first_ = frames.first, count_ = frames.last - frames.first + 1;
   rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
@@ -72,6 +79,18 @@ std::size_t RecordedScene::source_frame(int frame) const {
   return static_cast<std::size_t>(first_ + place);
 }
 
+// A frame in the base frame. Without a registration the bits stay as they were read.
+PointCloud RecordedScene::registered(std::size_t source) const {
+  PointCloud cloud = read_frame(recording_, source, settings_.farthest_m);
+  if (X_WC_.matrix().isIdentity(0)) return cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p_W = X_WC_ * cloud.point(i);
+    cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
+  }
+  if (cloud.image) cloud.image->X_WC = X_WC_ * cloud.image->X_WC;
+  return cloud;
+}
+
 std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
   const std::size_t source = source_frame(frame);
   const auto found =
@@ -80,7 +99,7 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const 
     std::rotate(kept_.begin(), found, found + 1);
   } else {
     if (kept_.size() == kMostKept) kept_.pop_back();
-    kept_.insert(kept_.begin(), {source, make_search(read_frame(recording_, source, settings_.farthest_m))});
+    kept_.insert(kept_.begin(), {source, make_search(registered(source))});
   }
   return kept_.front().points;
 }
@@ -96,7 +115,7 @@ PointCloud RecordedScene::cloud(int frame) const {
     const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
     if (image) return image->cloud();
   }
-  return read_frame(recording_, source_frame(frame), settings_.farthest_m);
+  return registered(source_frame(frame));
 }
 
 namespace {
@@ -133,15 +152,16 @@ Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int 
 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (!p_W.allFinite() || !(p_W.z() > 0)) return unknown;
+  const Vec3 p_C = X_WC_.inverse() * p_W;
+  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
   const auto points = measured(newest_frame(time_s));
   const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
   if (!cloud.image) return unknown;
   const CameraIntrinsics& camera = cloud.image->camera;
-  const double u = std::floor(camera.fx * p_W.x() / p_W.z() + camera.cx + 0.5);
-  const double v = std::floor(camera.fy * p_W.y() / p_W.z() + camera.cy + 0.5);
+  const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
+  const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
   if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
-  const int half = std::max(1, static_cast<int>(camera.fx * settings_.truth_radius_m / p_W.z()));
+  const int half = std::max(1, static_cast<int>(camera.fx * settings_.truth_radius_m / p_C.z()));
   const Patch patch = patch_around(cloud, camera, static_cast<int>(u), static_cast<int>(v), half,
                                    4 * settings_.truth_radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;

@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// The world frame is the camera's: x right, y down, z forward.
+// The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another.
 class RecordedScene final : public Scenario {
  public:
   enum class Playback { hold, loop, ping_pong };
@@ -24,6 +24,8 @@ class RecordedScene final : public Scenario {
     double frame_rate_hz = 0;
     double farthest_m = 3;
     double truth_radius_m = 0.006;
+    Vec3 camera_m = Vec3::Zero();  // place and rotation vector of the camera in the base frame
+    Vec3 camera_turn_deg = Vec3::Zero();
   };
 
   // Throws InputError when the recording cannot be read.
@@ -40,9 +42,11 @@ class RecordedScene final : public Scenario {
 
  private:
   std::size_t source_frame(int frame) const;
+  PointCloud registered(std::size_t source) const;
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
+  const RigidTransform X_WC_;
   RecordingIndex recording_;
   int first_ = 0, count_ = 0;
   double rate_hz_ = 0;

@@ -15,7 +15,7 @@ std::string find_recording(const std::string& path) {
   throw MissingRecording(
       path,
       std::string(
-          "no such recording or image; allowed a folder, PCD or PNG file here or below REMOTE_TOUCH_DATA") +
+          "no such recording, image or mesh; allowed a folder or file here or below REMOTE_TOUCH_DATA") +
           (data != nullptr ? std::string(" = ") + data : " (not set)"));
 }
 
@@ -29,9 +29,22 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
   return {part.first_frame, last};
 }
 
+namespace {
+
+// Images, and the meshes of tools: nothing that a recording is made from.
+bool is_single_file(const fs::path& file) {
+  std::string ending = file.extension().string();
+  if (ending == ".png") return true;
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending == ".obj" || ending == ".ply" || ending == ".stl";
+}
+
+}  // namespace
+
 std::vector<InputFile> files_of(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);
-  if (found.extension() == ".png") return {{found.filename().generic_string(), found}};
+  if (is_single_file(found)) return {{found.filename().generic_string(), found}};
   const RecordingIndex recording = list_recording(found);
   const FrameRange frames = frames_of(part, recording);
   // Absolute, because a list may name files by absolute paths: those come as ../../...

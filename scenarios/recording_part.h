@@ -37,10 +37,10 @@ struct FrameRange {
 };
 FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording);
 
-// The files from which the part's frames are made, each once, by name: a single PNG itself; the depth images
-// or PCD files, the colour images that are registered to them, and camera.json, depth.txt and rgb.txt as far
-// as they are used. Throws InputError when the recording is not there, its lists or camera.json cannot be
-// used, or it has fewer frames; images and PCD files are not opened.
+// The files from which the part's frames are made, each once, by name: a single PNG or mesh itself; the depth
+// images or PCD files, the colour images that are registered to them, and camera.json, depth.txt and rgb.txt
+// as far as they are used. Throws InputError when the recording is not there, its lists or camera.json cannot
+// be used, or it has fewer frames; images and PCD files are not opened.
 struct InputFile {
   std::string name;            // from the recording's folder, or from the one that holds a single PCD file
   std::filesystem::path file;  // to be opened

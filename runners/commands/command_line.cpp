@@ -156,7 +156,7 @@ void add_repro_and_verify(Subcommands& commands) {
   auto [other, verify] = commands.add(
       "verify", "metamorphic checks of renderers: what must stay true when a scene is told differently",
       command_verify);
-  other->add_option("renderers", verify->renderers, "of the list (default: all)");
+  other->add_option("renderers", verify->renderers, "of the list (default: all of three degrees of freedom)");
   add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
   other->add_option("--junit", verify->junit, "also write JUnit's XML");
 }

@@ -80,6 +80,13 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     print_run_settings();
     found = true;
   }
+  if (name == "depth-pipeline") {
+    std::puts(
+        "depth-pipeline: \"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1");
+    DepthPipelineSettings settings;
+    print(parameters(settings));
+    found = true;
+  }
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())

@@ -37,7 +37,12 @@ class Subject {
   }
   Outputs play(const MetamorphicScene& scene) const {
     const auto renderer = blueprint()->build(scene.haptic_rate_hz, kernels_);
-    return remote_touch::play(scene, *renderer);
+    Outputs outputs = remote_touch::play(scene, *renderer);
+    if (!outputs.empty() && outputs.front().tool)
+      throw InputError(
+          entry_.name,
+          "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");
+    return outputs;
   }
   Outputs play(const Variation& run) const {
     const auto changed = blueprint();
@@ -130,6 +135,11 @@ std::vector<CheckName> check_names() {
   for (const MetamorphicRelation& relation : metamorphic_relations())
     names.push_back({relation.name, relation.meaning});
   return names;
+}
+
+bool renders_a_tool(const RendererEntry& entry, const Kernels& kernels) {
+  const auto renderer = entry.make()->build(1000, kernels);
+  return renderer->step({}, 0).tool.has_value();
 }
 
 }  // namespace remote_touch

@@ -41,4 +41,7 @@ struct CheckName {
 // In the order of the results.
 std::vector<CheckName> check_names();
 
+// Whether its outputs are those of a 6-DOF tool; the scenes of these checks are for a proxy.
+bool renders_a_tool(const RendererEntry& entry, const Kernels& kernels);
+
 }  // namespace remote_touch

@@ -1,0 +1,79 @@
+#include "runners/trajectories/random_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/noise.h"
+#include "core/rotation.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Of the sines: shares of the extent, and rates whose ratios are not rational: the golden and the silver one.
+constexpr double kShare[] = {0.5, 0.3, 0.2};
+constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
+// The axes run at different rates too, powers of two to twelfths and tenths, so that no two keep step.
+constexpr double kAxisRate[] = {
+    1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
+constexpr double kTurn = 6.283185307179586;
+
+// At which the sum of the largest speeds of all sines is the speed allowed; rad/s.
+double slowest_rate(const RandomWalk::Settings& s) {
+  double of_all = 0;
+  for (int i = 0; i < 3; ++i) of_all += kShare[i] * kRate[i];
+  const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
+  return s.speed_m_per_s / of_axes.norm();
+}
+
+}  // namespace
+
+Parameters parameters(RandomWalk::Settings& s) {
+  return {
+      {"centre_m", &s.centre_m, -100, 100, "middle of the box that the device stays in"},
+      {"extent_m", &s.extent_m, 0, 100, "of the box, from its middle"},
+      {"turn_deg", &s.turn_deg, 0, 180, "the device turns by no more than this"},
+      {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "the device is never faster"},
+      {"seed", &s.seed, 0, 18446744073709551615.0, "another motion for every seed"},
+      {"duration_s", &s.duration_s, 1e-3, 1e5, "the device then rests"},
+  };
+}
+
+std::string conflict(const RandomWalk::Settings& s) {
+  if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: allowed above 0 along one axis or more";
+  return slowest_rate(s) * s.duration_s < 1e5
+             ? ""
+             : "extent_m is too small for speed_m_per_s and duration_s: allowed fewer than 15000 rounds";
+}
+
+RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
+    : settings_(settings), rate_(slowest_rate(settings)) {
+  const NoiseStream stream = noise_stream({settings.seed}, NoiseUse::motion, 0);
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const auto random = uniforms(stream, static_cast<std::uint32_t>(axis));
+    for (std::size_t i = 0; i < kSines; ++i) phase_[axis][i] = kTurn * random[i];
+  }
+}
+
+double RandomWalk::coordinate(int axis, double time_s) const {
+  double sum = 0;
+  for (int i = 0; i < kSines; ++i) {
+    const double phase = phase_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
+    sum += kShare[i] * sin_cos(kRate[i] * kAxisRate[axis] * rate_ * time_s + phase).first;
+  }
+  return sum;
+}
+
+DeviceState RandomWalk::at(double time_s) const {
+  const double t = std::clamp(time_s, 0.0, settings_.duration_s);
+  Vec3 place, turn;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = settings_.centre_m[axis] + settings_.extent_m[axis] * coordinate(axis, t);
+    turn[axis] = coordinate(axis + 3, t);
+  }
+  // The corners of the cube of turns reach further than the largest turn by the root of three.
+  constexpr double root_of_three = 1.7320508075688772;
+  return {place, rotation(settings_.turn_deg * kRadiansPerDegree / root_of_three * turn)};
+}
+
+}  // namespace remote_touch
