@@ -25,6 +25,10 @@ constexpr FigureEntry kFigures[] = {
     {"5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8},
     {"5.8-recorded", "the same fixture on recorded depth images, camera at rest and moving",
      figure_5_8_recorded},
+    {"6.2", "a recorded hand as points with normals, and what the filter does to a step", figure_6_2},
+    {"6.3", "a tool turned in a narrow box of points: displacement, rotation, counts of contacts",
+     figure_6_3},
+    {"6.4", "a bunny, a hand and a drill slide over recorded objects", figure_6_4},
     {"latency", "how far a fixture is violated when frames come late, irregularly or not at all",
      figure_latency},
 };

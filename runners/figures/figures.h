@@ -23,6 +23,12 @@ class Laboratory {
       : kernels_(kernels), stop_(stop), progress_(std::move(progress)) {}
 
   Trace run(const Experiment& experiment) const;
+  // For an experiment whose frames are used without a run.
+  void uses(const Experiment& experiment) const {
+    note(experiment.to_json());
+    inputs_.add(experiment.inputs());
+  }
+  const Kernels& kernels() const { return kernels_; }
   std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // side by side
   // What of(trace) gives for each run, side by side. The first failure is thrown after all have ended.
   template <class Of>
@@ -88,6 +94,9 @@ Figure figure_5_6(const Laboratory& laboratory);
 Figure figure_latency(const Laboratory& laboratory);
 Figure figure_5_8(const Laboratory& laboratory);
 Figure figure_5_8_recorded(const Laboratory& laboratory);
+Figure figure_6_2(const Laboratory& laboratory);
+Figure figure_6_3(const Laboratory& laboratory);
+Figure figure_6_4(const Laboratory& laboratory);
 Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
 

@@ -34,6 +34,31 @@ class Curve:
 
 
 @dataclasses.dataclass
+class ScenePart:
+    kind: str  # points, segments or solid
+    table: dict  # columns as arrays
+    triangles: np.ndarray | None  # rows of three vertices, of a solid
+    pose: np.ndarray | None  # of a solid: x, y, z, and w, x, y, z of a quaternion
+    colour: int
+    size: float
+    opacity: float
+    label: str
+
+    def columns(self, *names):
+        return np.stack([self.table[name] for name in names], axis=-1)
+
+
+@dataclasses.dataclass
+class Scene:
+    eye: np.ndarray
+    target: np.ndarray
+    up: np.ndarray
+    width: float
+    proportion: float
+    parts: list
+
+
+@dataclasses.dataclass
 class Panel:
     title: str
     x_label: str
@@ -43,6 +68,7 @@ class Panel:
     y_range: list
     place: tuple  # (row, column), or None: below the panel before
     curves: list
+    scene: Scene | None  # drawn instead of curves
 
 
 @dataclasses.dataclass
@@ -107,6 +133,35 @@ def read_curve(file, group):
     return Curve(x, y, style, text(group.attrs, "label"), number(group.attrs, "radius", 0), z)
 
 
+def read_table(file, name):
+    path = f"/tables/{name}"
+    if path not in file:
+        raise PlotError(f"{file.filename}: a picture asks for {path}, which is not there")
+    return {column: np.ravel(data[()]) for column, data in file[path].items()}
+
+
+def rows(table, *names):
+    return np.stack([table[name] for name in names], axis=-1)
+
+
+def read_part(file, group):
+    a = group.attrs
+    triangles = pose = None
+    if text(a, "kind") == "solid":
+        triangles = rows(read_table(file, text(a, "triangles")), "a", "b", "c").astype(int)
+        poses = read_table(file, text(a, "poses"))
+        pose = rows(poses, "x", "y", "z", "qw", "qx", "qy", "qz")[int(number(a, "pose_row", 0))]
+    return ScenePart(text(a, "kind"), read_table(file, text(a, "table")), triangles, pose,
+                     int(number(a, "colour", 0)), number(a, "size", 0), number(a, "opacity", 1), text(a, "label"))
+
+
+def read_scene(file, group):
+    a = group.attrs
+    eye, target, up = (np.ravel(a[name]).astype(float) for name in ("eye", "target", "up"))
+    parts = [read_part(file, part) for part in numbered(group, "part")]
+    return Scene(eye, target, up, number(a, "width", 1), number(a, "proportion", 0.75), parts)
+
+
 def read_place(attributes):
     """Row and column, or None."""
     place = pair(attributes, "place")
@@ -117,7 +172,8 @@ def read_panel(file, group):
     a = group.attrs
     curves = [read_curve(file, curve) for curve in numbered(group, "curve")]
     return Panel(text(a, "title"), text(a, "x_label"), text(a, "y_label"), number(a, "equal_aspect", 0) != 0,
-                 pair(a, "x_range"), pair(a, "y_range"), read_place(a), curves)
+                 pair(a, "x_range"), pair(a, "y_range"), read_place(a), curves,
+                 read_scene(file, group["scene"]) if "scene" in group else None)
 
 
 def open_file(path):

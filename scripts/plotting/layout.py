@@ -8,6 +8,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from plotting.drawing import curve_key, draw_panel, has_cells, legend_below
+from plotting.scene import draw_scene
 
 WIDTH_IN, HEIGHT_IN, DPI = 9.0, 6.0, 130
 COLOURS = ["#1f4e79", "#c8501e", "#2f7d4f", "#8a4f9e", "#b08900", "#555555", "#2f93b5", "#a3224a"]
@@ -41,12 +42,18 @@ def legend_height(axes):
     return legend.get_window_extent().height / axes.figure.dpi if legend else 0
 
 
+def canvas_width(columns):
+    return WIDTH_IN if columns == 1 else 1.5 * WIDTH_IN
+
+
 def row_height(row, columns, rows):
     """Inches for the panels of one row: what equal aspect asks for, else a share of the page."""
     share = max(HEIGHT_IN / rows, 2.3)
     heights = []
     for axes, panel in row:
         height = max(share, 3.8) if has_cells(panel) else share
+        if panel.scene:
+            height = 0.95 * canvas_width(columns) / columns * panel.scene.proportion + 0.6
         if panel.equal_aspect:
             (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
             across = 0.7 * WIDTH_IN / columns
@@ -89,7 +96,10 @@ def draw_figure(figure, png):
     drawn = []
     for panel, cell in zip(figure.panels, cells):
         axes = canvas.add_subplot(grid[cell])
-        draw_panel(axes, panel, of_label)
+        if panel.scene:
+            draw_scene(axes, panel, columns)
+        else:
+            draw_panel(axes, panel, of_label)
         drawn.append((cell, axes, panel))
     heights = [row_height([(a, p) for cell, a, p in drawn if cell[0] == row], columns, rows)
                for row in range(rows)]
@@ -97,7 +107,7 @@ def draw_figure(figure, png):
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
     grid.set_height_ratios(heights)
-    canvas.set_size_inches(WIDTH_IN if columns == 1 else 1.5 * WIDTH_IN, sum(heights) + 0.5)
+    canvas.set_size_inches(canvas_width(columns), sum(heights) + 0.5)
     canvas.suptitle(textwrap.fill(figure.heading, 80 if columns == 1 else 120))
     align(canvas, drawn)
     canvas.savefig(png, dpi=DPI, metadata={"Software": None})  # equal results are equal files

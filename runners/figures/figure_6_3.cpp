@@ -1,0 +1,254 @@
+// Fig 6.3: a tool is turned in a narrow box of points until its sides hold it.
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "analysis/measures.h"
+#include "core/rotation.h"
+#include "runners/figures/fixture_run.h"
+#include "runners/figures/tool_picture.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kEvery = 5;  // ticks, in tables
+constexpr double kAgree_m = 1e-6, kAgree_rad = 1e-6;
+constexpr double kBlocked_rad = kRadiansPerDegree;
+constexpr double kVoxel_m = 5e-4;
+const std::vector<std::pair<std::string, std::string>> kRules = {{"look_ahead", "look-ahead"},
+                                                                 {"voxels", "voxels"}};
+const std::vector<int> kSpacings_mm = {3, 2, 1};
+
+struct BoxRun {
+  std::string name, rule;  // in tables; of the experiment
+  int spacing_mm;
+  Trace trace;
+};
+
+double turned_deg(const Eigen::Quaterniond& q) {
+  return rotation_vector(q).y() / kRadiansPerDegree;
+}
+
+double device_deg(const Trace& trace, std::size_t i) {
+  return turned_deg(trace.hip_orientation_at(i));
+}
+
+double tool_deg(const Trace& trace, std::size_t i) {
+  return turned_deg(trace.tool_orientation_at(i));
+}
+
+// Where the device has turned farthest.
+std::size_t plateau(const Trace& trace) {
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (device_deg(trace, i) > device_deg(trace, farthest)) farthest = i;
+  return farthest;
+}
+
+std::int32_t largest(const std::vector<std::int32_t>& counts) {
+  return *std::max_element(counts.begin(), counts.end());
+}
+
+bool agrees(const Trace& t, std::size_t i) {
+  return lag_m(t, i) <= kAgree_m && lag_rad(t, i) <= kAgree_rad;
+}
+
+// On its way into the box and out of it, the device is not turned.
+bool moves_along(const Trace& t, std::size_t i) {
+  return rotation_vector(t.hip_orientation_at(i)).norm() < kAgree_rad;
+}
+
+bool any_count(const Trace& t, std::size_t i) {
+  return t.contact_count[i] != 0 || t.active_constraints[i] != 0 || t.contact_clusters[i] != 0;
+}
+
+// Ticks for which it holds.
+template <class Holds>
+double ticks_with(const Trace& trace, Holds&& holds) {
+  double count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) count += holds(i) ? 1 : 0;
+  return count;
+}
+
+Table motion_table(const BoxRun& run) {
+  const Trace& t = run.trace;
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < t.length(); i += kEvery)
+    rows.push_back({t.time_s[i], t.hip(i).y() - t.hip(0).y(), t.proxy(i).y() - t.hip(0).y(), device_deg(t, i),
+                    tool_deg(t, i), static_cast<double>(t.contact_count[i]),
+                    static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
+                    t.force(i).norm(), t.torque(i).norm()});
+  const std::vector<ColumnName> columns = {
+      {"time", "s", "simulated time"},
+      {"device_y", "m", "displacement of the device along y from its start"},
+      {"tool_y", "m", "displacement of the tool along y from the same place"},
+      {"device_turn", "deg", "rotation of the device about y"},
+      {"tool_turn", "deg", "rotation of the tool about y"},
+      {"points", "1", "points that touch the tool"},
+      {"active", "1", "constraints that hold it"},
+      {"clusters", "1", "10 mm cells of the tool with points that touch"},
+      {"force", "N", "magnitude of the force"},
+      {"torque", "N m", "magnitude of the torque"}};
+  return table_of(run.name, "contact rule " + run.rule + ", points 3 mm apart", columns, rows);
+}
+
+// Over all runs of a rule, one row for each.
+Table summary_table(const std::vector<BoxRun>& runs) {
+  std::vector<std::string> rules;
+  std::vector<std::vector<double>> rows;
+  for (const BoxRun& run : runs) {
+    const Trace& t = run.trace;
+    rules.push_back(run.rule);
+    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau(t)), double(largest(t.contact_count)),
+                    double(largest(t.active_constraints)), double(largest(t.contact_clusters)),
+                    *std::max_element(t.penetration_m.begin(), t.penetration_m.end()), largest_force_N(t),
+                    double(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1)),
+                    ticks_with(t, [&](std::size_t i) { return agrees(t, i) && any_count(t, i); })});
+  }
+  const std::vector<ColumnName> columns = {{"spacing", "m", "spacing of the points"},
+                                           {"plateau", "deg", "rotation of the tool at 30 deg commanded"},
+                                           {"points", "1", "most points that touch at once"},
+                                           {"active", "1", "most active constraints at once"},
+                                           {"clusters", "1", "most 10 mm cells that touch at once"},
+                                           {"penetration", "m", "deepest point at the end of a tick"},
+                                           {"force", "N", "largest force"},
+                                           {"exhausted", "1", "ticks that used up their detections"},
+                                           {"unheld", "1", "ticks in which points touch without holding"}};
+  Table table = table_of("runs", "both rules, points 3, 2 and 1 mm apart", columns, rows);
+  table.columns.insert(table.columns.begin(), {"rule", "1", "contact rule", rules, 1, {}});
+  return table;
+}
+
+std::vector<BoxRun> box_runs(const Laboratory& laboratory) {
+  std::vector<BoxRun> runs;
+  std::vector<Experiment> experiments;
+  for (const auto& [name, rule] : kRules)
+    for (const int mm : kSpacings_mm) {
+      runs.push_back({name, rule, mm, {}});
+      experiments.push_back(Experiment::load(
+          "fig6.3", {"renderer.contact_rule=" + rule, "scenario.spacing_m=" + std::to_string(mm) + "e-3"}));
+    }
+  std::vector<Trace> traces = laboratory.run(experiments);
+  for (std::size_t r = 0; r < runs.size(); ++r) runs[r].trace = std::move(traces[r]);
+  return runs;
+}
+
+// Along y, among the ticks without a point that touches.
+double largest_gap_untouched_m(const Trace& t) {
+  double gap = 0;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    if (t.contact_count[i] == 0) gap = std::max(gap, std::abs(t.hip(i).y() - t.proxy(i).y()));
+  return gap;
+}
+
+void add_rule_claims(Figure& figure, const BoxRun& run) {
+  const Trace& t = run.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string name = figure.name, rule = run.rule + ": ";
+  claim(claim_at_most(name, rule + "ticks with a count above 0 on the way in and out", "0",
+                      ticks_with(t, [&](std::size_t i) { return moves_along(t, i) && any_count(t, i); }), 0,
+                      "ticks"));
+  claim(claim_at_most(
+      name, rule + "ticks with a count above 0 while the nearest point is a voxel or more away", "0",
+      ticks_with(t, [&](std::size_t i) { return t.nearest_m[i] >= kVoxel_m && any_count(t, i); }), 0,
+      "ticks"));
+  claim(claim_at_most(
+      name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
+      ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),
+      0, "ticks"));
+  claim(claim_at_least(name, rule + "ticks in which it lags by over 1 deg", "-",
+                       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500,
+                       "ticks"));
+  claim(claim_between(name, rule + "rotation of the tool where the device has turned 30 deg", "-",
+                      tool_deg(t, plateau(t)), 20.5, 22.5, "deg"));
+  claim(claim_at_most(name, rule + "gap between device and tool along y while nothing touches", "0",
+                      largest_gap_untouched_m(t), 1e-9, "m"));
+  claim(claim_at_most(name, rule + "most constraints active at once", "6", largest(t.active_constraints), 6,
+                      "1"));
+  claim(claim_at_most(name, rule + "share of ticks with a number that is not finite", "-",
+                      non_finite_share(t), 0, "share"));
+}
+
+// As many points touch as lie on the faces: more where they lie closer. runs: of one rule, 3, 2, 1 mm.
+void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
+  std::string counts;
+  double least_rise = 1e9;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const double count = largest(runs[r].trace.contact_count);
+    counts += (r ? ", " : "") + std::to_string(static_cast<int>(count));
+    if (r > 0) least_rise = std::min(least_rise, count - largest(runs[r - 1].trace.contact_count));
+  }
+  figure.claims.push_back(claim_at_least(
+      figure.name,
+      runs[0].rule + ": most points at once, 3, 2 and 1 mm apart, are " + counts + ": least rise",
+      "6 at an unknown spacing", least_rise, 1, "points"));
+}
+
+Panel time_panel(const std::string& title, const char* label, int row, int column) {
+  return {title, "time (s)",          label, false,
+          {},    std::pair(0.0, 8.0), {},    std::pair(double(row), double(column))};
+}
+
+void add_panels(Figure& figure, const BoxRun& run, int column) {
+  const std::string& t = run.name;
+  Panel way = time_panel("Contact rule " + run.rule, "displacement along y (m)", 0, column);
+  Panel turn = time_panel("", "rotation about y (deg)", 1, column);
+  Panel counts = time_panel("", "count", 2, column);
+  way.curves = {{t, "time", "device_y", CurveStyle::line, "device"},
+                {t, "time", "tool_y", CurveStyle::dashed, "tool"}};
+  turn.curves = {{t, "time", "device_turn", CurveStyle::line, "device"},
+                 {t, "time", "tool_turn", CurveStyle::dashed, "tool"}};
+  counts.curves = {{t, "time", "points", CurveStyle::steps, "points that touch"},
+                   {t, "time", "clusters", CurveStyle::steps, "10 mm clusters"},
+                   {t, "time", "active", CurveStyle::steps, "active constraints"}};
+  way.y_range = std::pair(-0.065, 0.005), turn.y_range = std::pair(-3.0, 33.0);
+  counts.y_range = std::pair(0.0, 16.0);
+  for (const Panel& panel : {way, turn, counts}) figure.panels.push_back(panel);
+}
+
+void add_pictures(Figure& figure, const Laboratory& laboratory, const BoxRun& run) {
+  const Experiment experiment = Experiment::load("fig6.3");
+  const PointCloud cloud = processed_cloud(experiment, laboratory.kernels(), 0);
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < cloud.size(); ++i) all.push_back(i);
+  const std::shared_ptr<const VoxelTool> tool = tool_of(experiment);
+  figure.tables.push_back(cloud_table("box_cloud", "the box", cloud, all));
+  figure.tables.push_back(vertex_table("box_vertices", tool->mesh));
+  figure.tables.push_back(triangle_table("box_triangles", tool->mesh));
+  figure.tables.push_back(pose_table("box_poses", run.trace, {plateau(run.trace)}));
+  Scene above{{0, 0.40, 0.0}, {0, 0, 0}, {0, 0, -1}, 0.135, 0.8, tool_in_cloud("box", 0, 0.0018)};
+  Scene beside = above;
+  beside.eye = {0.16, 0.26, 0.30}, beside.up = {0, 1, 0}, beside.target = {0, -0.004, 0};
+  beside.width_m = 0.155;
+  above.parts[0].colour = beside.parts[0].colour = 0x4F6F8F;
+  figure.panels.push_back(scene_panel("At 30 deg commanded, from above", 3, 0, above));
+  figure.panels.push_back(scene_panel("The same from the side", 3, 1, beside));
+}
+
+}  // namespace
+
+Figure figure_6_3(const Laboratory& laboratory) {
+  const std::vector<BoxRun> runs = box_runs(laboratory);
+  Figure figure{
+      "6.3", "A tool in a narrow box of points",
+      "A box of four walls, 110 x 90 mm inside, its points 3 mm apart with normals into the box. The device "
+      "takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as constraints with "
+      "their distance, ahead of the tool. Right: the tool's voxels as printed. The picture is of the left "
+      "run at 30 deg: the tool filled, the device transparent. The number of points that touch depends on "
+      "how close they lie (table runs); the constraints that hold the tool are never more than 6."};
+  const std::size_t step = kSpacings_mm.size();
+  for (std::size_t r = 0; r < kRules.size(); ++r) {
+    const BoxRun& run = runs[r * step];
+    figure.tables.push_back(motion_table(run));
+    add_panels(figure, run, static_cast<int>(r));
+    add_rule_claims(figure, run);
+    add_spacing_claim(figure, std::span(runs).subspan(r * step, step));
+  }
+  figure.tables.push_back(summary_table(runs));
+  add_pictures(figure, laboratory, runs[0]);
+  return figure;
+}
+
+}  // namespace remote_touch
