@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   const std::vector<naive::Queries> queries = query_sets();
   for (const naive::Queries& each : queries) add_queries(each);
   add_normals();
+  add_programs();
 
   const std::vector<FixtureScene> fixtures = fixture_scenes();
   for (const FixtureScene& each : fixtures) add_fixtures(each);

@@ -27,4 +27,7 @@ void add_assignments();
 // The normals of the noise.
 void add_normals();
 
+// Quadratic programs.
+void add_programs();
+
 }  // namespace remote_touch::benchmarks

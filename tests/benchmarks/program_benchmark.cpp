@@ -1,0 +1,102 @@
+// Quadratic programs of six variables, next to those of NLopt and to all subsets of rows tried. Answers are
+// first compared with those of least distance programming.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/quadratic_program.h"
+#include "tests/benchmarks/checked_benchmark.h"
+#include "tests/benchmarks/proxy_benchmark.h"
+#include "tests/program_peers.h"
+#ifdef REMOTE_TOUCH_NLOPT
+#include "tests/nlopt_program.h"
+#endif
+
+namespace remote_touch::benchmarks {
+namespace {
+
+using Problem = peers::Problem<6>;
+using Vector = peers::Vector<6>;
+
+// Many, in turn: branches cannot be learnt by heart.
+constexpr int kProblems = 64;
+// Beyond, there are too many subsets to wait for.
+constexpr int kMostRowsOfSubsets = 6;
+
+// Random rows around a point near the origin that fulfils them, and a random target.
+struct Problems {
+  std::vector<Problem> all;
+  std::vector<QuadraticProgram<6>> programs;
+  std::vector<Vector> answers;
+
+  explicit Problems(int rows) {
+    std::mt19937_64 random(static_cast<unsigned>(rows));
+    std::normal_distribution<double> normal;
+    const auto vector = [&] { return Vector(Vector::NullaryExpr([&] { return normal(random); })); };
+    for (int i = 0; i < kProblems; ++i) {
+      Problem problem;
+      problem.target = vector();
+      for (int j = 0; j < rows; ++j) {
+        const Vector row = vector();
+        problem.add(row, -0.5 * std::abs(normal(random)));
+      }
+      programs.push_back(problem.program());
+      answers.push_back(peers::least_distance(problem).y);
+      all.push_back(problem);
+    }
+  }
+
+  template <class Solve>
+  bool agree(const Solve& solve, double tolerance) const {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!((solve(i) - answers[i]).norm() < tolerance)) return false;
+    return true;
+  }
+};
+
+template <class Solve>
+void add_solver(const std::string& name, const std::shared_ptr<const Problems>& problems, double tolerance,
+                const Solve& solve) {
+  add(
+      name, [=] { return problems->agree([&](std::size_t i) { return solve(*problems, i); }, tolerance); },
+      [=](benchmark::State& state) {
+        std::size_t i = 0;
+        for (auto _ : state) {
+          benchmark::DoNotOptimize(solve(*problems, i));
+          i = (i + 1) % kProblems;
+        }
+      });
+}
+
+}  // namespace
+
+void add_programs() {
+  for (const int rows : {1, 6, 25, 50, 256}) {
+    const auto problems = std::make_shared<const Problems>(rows);
+    const std::string count = std::to_string(rows);
+    add_solver("program_ours/" + count, problems, 1e-10,
+               [](const Problems& p, std::size_t i) { return p.programs[i].nearest(p.all[i].target).y; });
+    add_solver("program_with_rows/" + count, problems, 1e-10, [](const Problems& p, std::size_t i) {
+      static thread_local QuadraticProgram<6> program(256);
+      program.clear();
+      for (std::size_t j = 0; j < p.all[i].rows.size(); ++j)
+        program.add(p.all[i].rows[j], p.all[i].bounds[j]);
+      return program.nearest(p.all[i].target).y;
+    });
+    if (rows <= kMostRowsOfSubsets)
+      add_solver("program_subsets/" + count, problems, 1e-10, [](const Problems& p, std::size_t i) {
+        return peers::nearest_of_all_subsets(p.all[i]).value_or(Vector::Zero());
+      });
+#ifdef REMOTE_TOUCH_NLOPT
+    add_solver("program_nlopt/" + count, problems, 1e-6,
+               [](const Problems& p, std::size_t i) { return peers::nlopt_nearest(p.all[i]); });
+#endif
+  }
+}
+
+}  // namespace remote_touch::benchmarks

@@ -1,0 +1,248 @@
+// Six degrees of freedom: the collision list, a step (one detection, one program, one motion) and whole ticks
+// while the tool slides. Lists are compared with a plain loop over all points, steps and ticks with the same
+// on the slowest instruction set level, bit for bit, before they are timed.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/neighbour_search.h"
+#include "core/tool/contact_list.h"
+#include "core/tool/tool_renderer.h"
+#include "tests/benchmarks/checked_benchmark.h"
+#include "tests/benchmarks/tool_scene.h"
+
+namespace remote_touch::benchmarks {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+ToolParameters settings(TouchRule rule) {
+  ToolParameters p;
+  p.contact_rule = rule;
+  return p;
+}
+const char* name_of(TouchRule rule) {
+  return rule == TouchRule::voxels ? "voxels" : "look-ahead";
+}
+
+// --- collision list ---
+
+// Positions, not numbers: the finder keeps its points in an order of its own.
+using Places = std::set<std::array<double, 3>>;
+
+Places expected_places(const ToolScene& scene, const ToolPose& pose) {
+  Places found;
+  for (const std::uint32_t i : naive_list(*scene.tool, scene.cloud, pose))
+    found.insert({scene.cloud.x[i], scene.cloud.y[i], scene.cloud.z[i]});
+  return found;
+}
+
+bool lists_same(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose) {
+  Places found;
+  for (const std::uint32_t i : finder.in_tool(pose)) {
+    const Vec3 p = finder.cloud().point(i);
+    found.insert({p.x(), p.y(), p.z()});
+  }
+  return found == expected_places(scene, pose);
+}
+
+// The pose changes a little from call to call.
+ToolPose shaken(ToolPose pose, int i) {
+  pose.p_W.x() += 1e-6 * (i % 64);
+  return pose;
+}
+
+void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
+  for (const Kernels* kernels : levels()) {
+    const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
+    finder->on_frame(scene.cloud);
+    add(
+        "tool_list/" + scene.name + "_" + where + "/" + kernels->isa,
+        [=, &scene] {
+          for (int i = 0; i < 64; ++i)
+            if (!lists_same(*finder, scene, shaken(pose, i))) return false;
+          return true;
+        },
+        [=](benchmark::State& state) {
+          std::size_t found = 0;
+          int i = 0;
+          for (auto _ : state) {
+            found = finder->in_tool(shaken(pose, i++)).size();
+            benchmark::ClobberMemory();
+          }
+          state.counters["found"] = static_cast<double>(found);
+        });
+  }
+  add(
+      "tool_list_naive/" + scene.name + "_" + where, [] { return true; },
+      [=, &scene](benchmark::State& state) {
+        int i = 0;
+        for (auto _ : state) {
+          const auto found = naive_list(*scene.tool, scene.cloud, shaken(pose, i++));
+          benchmark::DoNotOptimize(found.data());
+        }
+      });
+}
+
+// --- one step ---
+
+struct Stepper {
+  ContactList contacts;
+  MotionProgram program;
+  TouchRule rule;
+  double reach_m;
+
+  Stepper(const ToolScene& scene, TouchRule rule_, const Kernels& kernels)
+      : contacts(scene.tool, settings(rule_), kernels),
+        program(*scene.tool),
+        rule(rule_),
+        reach_m(scene.tool->reach_m) {
+    contacts.on_frame(scene.cloud);
+  }
+
+  // A millimetre down and along at most, as far as the points allow.
+  ToolPose step(const ToolPose& pose, std::size_t& listed) {
+    Vector6 wish;
+    wish << 3e-4, -8e-4, 0, 0, 0, 0;
+    const auto found =
+        rule == TouchRule::voxels ? contacts.in_voxels(pose).contacts : contacts.near(pose, 0).contacts;
+    listed = found.size();
+    const Eigen::Quaterniond q_TW = pose.q_WT.conjugate();
+    Vector6 wanted_T;
+    wanted_T << q_TW * wish.head<3>(), q_TW * wish.tail<3>();
+    const ConstrainedMotion motion = program.solve(wanted_T, found);
+    Vector6 a_g;
+    a_g << pose.q_WT * motion.a_g.head<3>(), pose.q_WT * motion.a_g.tail<3>();
+    return moved(pose, capped(a_g, reach_m, 1e-3));
+  }
+};
+
+void add_step(const ToolScene& scene, TouchRule rule) {
+  const auto slowest = std::make_shared<Stepper>(scene, rule, kernels_for(Isa::x86_64));
+  for (const Kernels* kernels : levels()) {
+    const auto stepper = std::make_shared<Stepper>(scene, rule, *kernels);
+    add(
+        "tool_step/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
+        [=, &scene] {
+          for (int i = 0; i < 64; ++i) {
+            const ToolPose pose = shaken(scene.in_contact, i);
+            std::size_t listed = 0, expected = 0;
+            const bool same = stepper->step(pose, listed) == slowest->step(pose, expected);
+            if (!same || listed != expected || listed == 0) return false;
+          }
+          return true;
+        },
+        [=, &scene](benchmark::State& state) {
+          std::size_t listed = 0;
+          int i = 0;
+          for (auto _ : state) {
+            const ToolPose pose = stepper->step(shaken(scene.in_contact, i++), listed);
+            benchmark::DoNotOptimize(&pose);
+          }
+          state.counters["listed"] = static_cast<double>(listed);
+        });
+  }
+}
+
+// --- whole ticks ---
+
+class Ride {
+ public:
+  Ride(const ToolScene& scene, const ToolParameters& parameters, const Kernels& kernels)
+      : scene_(scene), renderer_(parameters, scene.tool, kernels) {
+    ToolPose above = scene.in_contact;
+    above.p_W.y() += 0.02;
+    renderer_.on_frame({0, 0, 0, make_search(scene.cloud)});
+    step(above);
+    for (int i = 0; i < 20; ++i) step(device_at(scene, 0));
+  }
+  RenderOutput step(int tick) { return step(device_at(scene_, tick)); }
+
+ private:
+  RenderOutput step(const ToolPose& device) { return renderer_.step({device.p_W, device.q_WT}, 0); }
+
+  const ToolScene& scene_;
+  ToolRenderer renderer_;
+};
+
+bool rides_same(const ToolScene& scene, const ToolParameters& parameters, const Kernels& kernels) {
+  Ride ride(scene, parameters, kernels), slowest(scene, parameters, kernels_for(Isa::x86_64));
+  int touching = 0;
+  for (int tick = 0; tick < kSlideTicks; ++tick) {
+    const RenderOutput a = ride.step(tick), b = slowest.step(tick);
+    if (a.proxy_W != b.proxy_W || a.force_N != b.force_N || a.nearest_m != b.nearest_m ||
+        a.tool->orientation_W.coeffs() != b.tool->orientation_W.coeffs() ||
+        a.contact_count != b.contact_count)
+      return false;
+    touching += a.force_N.norm() > 1 ? 1 : 0;
+  }
+  return touching == kSlideTicks;
+}
+
+// A slide is the same every time, so the least time of a tick among many slides is that of the work; what
+// remains above the mean is work too, not the machine.
+void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParameters& parameters,
+               const Kernels& kernels) {
+  Ride ride(scene, parameters, kernels);
+  for (int tick = 0; tick < kSlideTicks; ++tick) ride.step(tick);  // from here on one slide is as the other
+  std::vector<double> least_ns(kSlideTicks, std::numeric_limits<double>::infinity());
+  double detections = 0, steps = 0;
+  int tick = 0;
+  for (auto _ : state) {
+    const Clock::time_point start = Clock::now();
+    const RenderOutput out = ride.step(tick);
+    const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+    least_ns[static_cast<std::size_t>(tick)] = std::min(least_ns[static_cast<std::size_t>(tick)], ns);
+    detections += out.tool->detections, steps += out.steps;
+    tick = (tick + 1) % kSlideTicks;
+  }
+  std::erase(least_ns, std::numeric_limits<double>::infinity());
+  std::sort(least_ns.begin(), least_ns.end());
+  using Counter = benchmark::Counter;
+  state.counters["detections"] = Counter(detections, Counter::kAvgIterations);
+  state.counters["steps"] = Counter(steps, Counter::kAvgIterations);
+  state.counters["p99_9_ns"] = least_ns[static_cast<std::size_t>(0.999 * (least_ns.size() - 1) + 0.5)];
+  state.counters["largest_ns"] = least_ns.back();
+}
+
+void add_ride(const ToolScene& scene, TouchRule rule) {
+  const ToolParameters parameters = settings(rule);
+  for (const Kernels* kernels : levels())
+    add(
+        "tool_tick/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
+        [=, &scene] { return rides_same(scene, parameters, *kernels); },
+        [=, &scene](benchmark::State& state) { time_ride(state, scene, parameters, *kernels); });
+}
+
+}  // namespace
+}  // namespace remote_touch::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace remote_touch;
+  using namespace remote_touch::benchmarks;
+  const auto husky = generated_tool("husky");
+  const std::vector<ToolScene> scenes = {tool_scene("2500", husky, 50, 2e-3),
+                                         tool_scene("40000", husky, 200, 1e-3),
+                                         tool_scene("40000_dense", husky, 200, 5e-4),
+                                         tool_scene("40000_slab", generated_tool("slab-20"), 200, 5e-4)};
+  for (const ToolScene& scene : scenes) {
+    add_list(scene, "contact", scene.in_contact);
+    add_list(scene, "separated", scene.separated);
+    for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::voxels}) {
+      add_step(scene, rule);
+      add_ride(scene, rule);
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return mismatch_seen() ? 1 : 0;
+}

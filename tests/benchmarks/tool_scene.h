@@ -1,0 +1,37 @@
+// The tool "husky" lying on a gently curved surface, for the benchmarks of the 6-DOF method.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/tool/tool_parameters.h"
+#include "core/tool/tool_pose.h"
+#include "core/tool/voxel_tool.h"
+
+namespace remote_touch::benchmarks {
+
+std::shared_ptr<const VoxelTool> generated_tool(const std::string& name);
+
+struct ToolScene {
+  std::string name;
+  std::shared_ptr<const VoxelTool> tool;
+  PointCloud cloud;  // unorganised, with normals, around the origin of x and z
+  // The tool above its place of contact, its side down: pressed on, so that some points are in shell voxels;
+  // and out of reach of all points.
+  ToolPose in_contact, separated;
+};
+
+// side x side points. The device of a tick is pressed below the surface.
+ToolScene tool_scene(const std::string& name, std::shared_ptr<const VoxelTool> tool, int side,
+                     double spacing_m);
+
+// Numbers of the points in shell or interior voxels by a plain loop over all of them, as one writes it down.
+std::vector<std::uint32_t> naive_list(const VoxelTool& tool, const PointCloud& cloud, const ToolPose& pose);
+
+// Of the device in a slide along x at 0.1 m/s, to and fro, a centimetre below where the tool is in contact.
+ToolPose device_at(const ToolScene& scene, int tick);
+inline constexpr int kSlideTicks = 600;  // there and back
+
+}  // namespace remote_touch::benchmarks
