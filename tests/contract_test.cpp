@@ -209,6 +209,18 @@ TEST_F(ScenarioContract, OtherSeedsGiveOtherNoise) {
   }
 }
 
+TEST_F(ScenarioContract, NormalsAreOneAPointAndOfUnitLength) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const PointCloud cloud = build(entry)->cloud(0);
+    if (!cloud.has_normals()) continue;
+    ASSERT_TRUE(cloud.nx.size() == cloud.size() && cloud.ny.size() == cloud.size() &&
+                cloud.nz.size() == cloud.size())
+        << entry.name;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-15) << entry.name;
+  }
+}
+
 // --- fixture rules ---
 
 class FixtureContract : public testing::Test {
@@ -344,11 +356,14 @@ TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
       const double time = 0.01 * ((i * 37) % 200);
       EXPECT_TRUE(one->at(time).position_W.allFinite()) << entry.name;
       EXPECT_EQ(one->at(time).position_W, other->at(time).position_W) << entry.name;
+      EXPECT_EQ(one->at(time).orientation_W.coeffs(), other->at(time).orientation_W.coeffs()) << entry.name;
+      EXPECT_NEAR(one->at(time).orientation_W.norm(), 1, 4e-16) << entry.name;
     }
     const double end = one->duration_s();
     EXPECT_GE(end, 0) << entry.name;
     if (end == 0) continue;
     EXPECT_EQ(one->at(end).position_W, one->at(end + 5).position_W) << entry.name;
+    EXPECT_EQ(one->at(end).orientation_W.coeffs(), one->at(end + 5).orientation_W.coeffs()) << entry.name;
   }
 }
 

@@ -77,6 +77,24 @@ TEST(FigureFile, PanelsAreStored) {
   EXPECT_HAS(bytes, raw(0.005));            // radius of the ball
 }
 
+TEST(FigureFile, ScenesAreStored) {
+  const TestFolder folder("figure_file_test");
+  Figure figure = small_figure();
+  ScenePart solid{ScenePart::Kind::solid, "corners", 0xE07B39};
+  solid.triangles = "faces", solid.poses = "places", solid.pose_row = 5, solid.opacity = 0.375;
+  solid.label = "a thing";
+  const ScenePart dust{ScenePart::Kind::points, "dust", 0, 0.0625};
+  figure.panels[0].scene = Scene{{1, 2, 3}, {4, 5, 6}, {7, 8, 9},
+                                 0.25,      0.625,     {solid, dust, {ScenePart::Kind::segments, "lines"}}};
+  write_figure(folder / "fig.h5", figure, {});
+  const std::string bytes = bytes_of(folder / "fig.h5");
+  for (const char* word : {"scene", "eye", "target", "part2", "solid", "points", "segments", "corners",
+                           "faces", "places", "pose_row", "dust", "lines", "a thing", "proportion"})
+    EXPECT_HAS(bytes, word);
+  EXPECT_HAS(bytes, raw(1.0) + raw(2.0) + raw(3.0));  // where it is seen from
+  for (const double value : {0.25, 0.625, 0.375, 0.0625}) EXPECT_HAS(bytes, raw(value));
+}
+
 TEST(FigureFile, EveryStyleHasItsName) {
   const TestFolder folder("figure_file_test");
   Figure figure = small_figure();

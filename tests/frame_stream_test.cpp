@@ -60,7 +60,7 @@ FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {})
 // What a renderer gets up to a time, asked for every millisecond as in a run.
 std::vector<Frame> received(const Scenario& scenario, double until_s, const Delivery& delivery,
                             std::uint64_t seed = 1, FixtureAssignment fixtures = {}) {
-  FrameStream stream(scenario, std::move(fixtures), delivery, {seed}, false);
+  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, delivery, {seed}, false);
   Recorder recorder;
   for (int tick = 0; 0.001 * tick <= until_s; ++tick) {
     const double now_s = 0.001 * tick;
@@ -218,7 +218,7 @@ TEST(FrameStream, ASceneAtRestIsSentOnWhenFramesGetLost) {
 
 std::vector<std::uint64_t> hashes(const Scenario& scenario, FixtureAssignment fixtures,
                                   double latency_s = 0) {
-  FrameStream stream(scenario, std::move(fixtures), {latency_s}, {1}, true);
+  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, {latency_s}, {1}, true);
   Recorder recorder;
   std::vector<std::uint64_t> list;
   for (int tick = 0; tick < 40; ++tick) {
@@ -294,6 +294,27 @@ TEST(FrameStream, ARecordingThatIsHeldEndsWithItsLastFrame) {
     EXPECT_NEAR(cloud_of(frames[j]).fixture_radius_m.at(0), 0.002 * static_cast<double>(j), 1e-12);
     EXPECT_TRUE(cloud_of(frames[j]).image.has_value());
   }
+}
+
+// A registration moves the cloud, its camera and the truth as one.
+TEST(FrameStream, ARecordingIsRegisteredToTheBaseFrame) {
+  const TestFolder folder("frame_stream_test");
+  folder.write_depth("depth/0000.png", 500);
+  folder.write("camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 10, "cx": 1, "cy": 0.5,
+                                  "depth_scale_m": 0.001, "frame_rate_hz": 20})");
+  RecordedScene::Settings settings;
+  settings.path = folder.path().string();
+  const RecordedScene as_recorded(settings, {}, scenes::kernels());
+  settings.camera_m = {1, 2, 3}, settings.camera_turn_deg = {0, 0, 90};
+  const RecordedScene moved(settings, {}, scenes::kernels());
+  const PointCloud before = as_recorded.cloud(0), after = moved.cloud(0);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Vec3 p = before.point(i), expected(1 - p.y(), 2 + p.x(), 3 + p.z());
+    EXPECT_LT((after.point(i) - expected).norm(), 1e-12);
+  }
+  ASSERT_TRUE(after.image);
+  EXPECT_LT((after.image->X_WC.translation() - Vec3(1, 2, 3)).norm(), 1e-12);
+  EXPECT_LT((after.image->X_WC.linear() * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
 TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
   const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
   const fs::path missing = folder_ / "missing.png";
-  EXPECT_HAS(why(missing), missing.string() + ": no such recording or image");
+  EXPECT_HAS(why(missing), missing.string() + ": no such recording");
   EXPECT_THROW(ImageMask mask(settings(missing)), MissingRecording);
   const fs::path text = folder_.write("text.png", "no image at all");
   EXPECT_HAS(why(text), text.string() + ": ");
