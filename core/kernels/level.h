@@ -18,8 +18,8 @@
   std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,                  \
                          const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);                     \
   std::size_t spheres_near(const SphereColumns& spheres, const std::uint32_t* groups,                        \
-                           std::size_t group_count, const CellTransform& to_cells,                           \
-                           const CellTable& table, const NearnessCode& code, std::uint32_t* found);          \
+                           std::size_t group_count, const CellTransform& to_cells, const CellTable& table,   \
+                           const NearnessCode& code, std::uint32_t* found);                                  \
   std::size_t points_in_cells(const double* x, const double* y, const double* z,                             \
                               const std::uint32_t* groups, std::size_t group_count,                          \
                               const CellTransform& to_cells, const CellTable& table, int least,              \

@@ -18,7 +18,7 @@ int nearness(double distance_m) {
 
 // Smallest of the eight nodes of every cell: the trilinear field goes no lower.
 std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
-  const auto [nx, ny, nz] = tool.grid.cells;
+  const int nx = tool.grid.cells[0], ny = tool.grid.cells[1], nz = tool.grid.cells[2];
   const std::size_t row = static_cast<std::size_t>(nx) + 1, layer = row * (static_cast<std::size_t>(ny) + 1);
   std::vector<std::int8_t> table(tool.grid.cell_count() + 3, 0);
   std::vector<float> column(row);
