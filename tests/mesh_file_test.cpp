@@ -115,7 +115,8 @@ TEST_P(RealMeshTest, IsWhatItsReadmeTells) {
   EXPECT_EQ(check.parts, GetParam().parts);
 }
 
-// Coarse voxels, for time: interior and shell make about the volume of the mesh.
+// Coarse voxels, for time: interior and shell make the volume of the mesh, but for parts that overlap, which
+// count twice in the mesh.
 TEST_P(RealMeshTest, BecomesATool) {
   const fs::path file = data_root() / "meshes" / GetParam().file;
   if (!fs::exists(file)) GTEST_SKIP() << "recorded data are missing: " << file;
@@ -125,7 +126,7 @@ TEST_P(RealMeshTest, BecomesATool) {
   const double voxel = 8e-9, solid = static_cast<double>(report.voxels[2]),
                shell = static_cast<double>(report.voxels[1]);
   EXPECT_GT(tool.volume_m3, voxel * solid);
-  EXPECT_LT(tool.volume_m3, voxel * (solid + shell));
+  EXPECT_NEAR(tool.volume_m3, voxel * (solid + shell), (settings.repair ? 0.1 : 0.02) * tool.volume_m3);
   EXPECT_NEAR(report.sides_m.maxCoeff(), 0.15, 1e-9);
   EXPECT_LT(report.thin_share, 0.2);
 }

@@ -112,9 +112,12 @@ bool carries_unit(const std::string& name) {
                                               "least_saturation",
                                               "least_lightness",
                                               "most_lightness",
-                                              "frame_drop_probability"};
-  static const char* const kUnits[] = {"_m",       "_s",       "_hz",       "_deg",     "_px",      "_per_m",
-                                       "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s", "_m_per_s2"};
+                                              "frame_drop_probability",
+                                              "detections_per_tick",
+                                              "disk_share"};
+  static const char* const kUnits[] = {"_m",        "_s",       "_hz",      "_deg",      "_px",
+                                       "_per_m",    "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s",
+                                       "_m_per_s2", "_N",       "_Nm"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }

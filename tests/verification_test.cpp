@@ -33,7 +33,13 @@ Names failures(const std::vector<CheckResult>& results) {
 // --- the catalog ---
 
 TEST(Verification, EveryRendererOfTheCatalog) {
-  for (const RendererEntry& entry : renderers()) EXPECT_EQ(failures(verify(entry)), Names{}) << entry.name;
+  int verified = 0;
+  for (const RendererEntry& entry : renderers()) {
+    if (renders_a_tool(entry, scenes::kernels())) continue;  // verify refuses it
+    EXPECT_EQ(failures(verify(entry)), Names{}) << entry.name;
+    ++verified;
+  }
+  EXPECT_GT(verified, 0);
 }
 
 TEST(Verification, OtherReadingsOfTheProxy) {
