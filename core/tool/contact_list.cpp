@@ -13,6 +13,12 @@ constexpr double kTouch_m = 1e-4;    // a disk closer to the tool than this is t
 constexpr double kSearch_m = 3e-4;   // a disk closer than this has its nearest place searched
 constexpr double kCluster_m = 0.01;  // touching points closer than this are counted as one cluster
 
+// A step turns the tool by so little that two points of 4 mm ask for the same motion within a tenth of a
+// millimetre; what is left over the next detection finds. Larger cells where these are still too many:
+// contacts have to stay spread over the tool.
+constexpr double kCell_m = 4e-3, kCellGrowth = 1.5;
+constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
+
 }  // namespace
 
 ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
@@ -26,40 +32,63 @@ void ContactList::on_frame(const PointCloud& cloud) {
   for (std::uint32_t i = 0; i < points.room(); ++i)
     widest_disk_m_ = std::max(widest_disk_m_, p_.disk_share * points.spacing_m(i));
   contacts_.reserve(points.room()), collisions_.reserve(points.room());
+  near_.reserve(points.room()), behind_.reserve(points.room());
   clusters_.reserve(points.room());
   disks_.on_frame(points);
 }
 
-// A step turns the tool by so little that two points of 4 mm ask for the same motion within a tenth of a
-// millimetre; what is left over the next detection finds. Larger cells where these are still too many:
-// contacts have to stay spread over the tool.
 std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
-  constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
-  for (double cell_m = 4e-3; contacts.size() > kMost; cell_m *= 1.5) thinning_.thin(contacts, cell_m);
+  for (double cell_m = kCell_m; contacts.size() > kMost; cell_m *= kCellGrowth)
+    thinning_.thin(contacts, cell_m);
   return contacts;
 }
 
-// disk_contact() with what is known already.
+bool ContactList::is_worth_a_search(std::size_t disk) const {
+  return disks_.lower_m(disk) <= kSearch_m;
+}
+
 ToolContact ContactList::contact(std::size_t i, double side) const {
   const SurfaceDisk disk = disks_.disk(i);
-  const DiskPlace middle{disk.p_T, disk.at};
+  if (!is_worth_a_search(i)) return far_contact(disk, disks_.lower_m(i));
   const VoxelTool& tool = finder_.tool();
-  if (!(disks_.lower_m(i) <= kSearch_m))
-    return disk_contact(tool, disk, middle, disks_.lower_m(i), false, side);
-  const DiskPlace place = disks_.is_flat(i) ? middle : nearest_place(tool, disk);
-  return disk_contact(tool, disk, place, place.at.distance_m, true, side);
+  const DiskPlace nearest = disks_.is_flat(i) ? DiskPlace{disk.p_T, disk.at} : nearest_place(tool, disk);
+  return near_contact(tool, disk, nearest, side);
+}
+
+// What thinned() would leave of all contacts, in cells of kCell_m: of most of those far away it is enough to
+// know that something deeper lies beside them.
+void ContactList::gather_deepest(double side) {
+  constexpr auto kMade = ~std::uint32_t{0};
+  thinning_.begin(kCell_m);
+  behind_.clear();
+  for (const std::uint32_t i : near_) {
+    const bool far = !is_worth_a_search(i);
+    ToolContact contact;
+    if (!far) contact = this->contact(i, side);
+    const std::size_t place =
+        far ? thinning_.place(disks_.p_T(i), -disks_.gradient_T(i), -disks_.lower_m(i))
+            : thinning_.place(contact.r_T, contact.n_T, contact.depth_m);
+    if (place == ContactThinning::kNowhere) continue;
+    if (place == behind_.size()) behind_.push_back(kMade), contacts_.emplace_back();
+    behind_[place] = far ? i : kMade;
+    if (!far) contacts_[place] = contact;
+  }
+  for (std::size_t place = 0; place < behind_.size(); ++place)
+    if (behind_[place] != kMade) contacts_[place] = contact(behind_[place], side);
 }
 
 NearContacts ContactList::near(const ToolPose& pose, double side) {
   const double reach_m = std::min(p_.look_ahead_m + widest_disk_m_, kLongestReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
-  contacts_.clear();
+  contacts_.clear(), near_.clear();
   disks_.look(finder_, kernels_, pose, reach_m);
-  for (std::size_t i = 0; i < disks_.size(); ++i) {
-    if (!(disks_.lower_m(i) <= p_.look_ahead_m)) continue;
-    contacts_.push_back(contact(i, side));
-    found.deepest_m = std::max(found.deepest_m, contacts_.back().depth_m);
-  }
+  for (std::size_t i = 0; i < disks_.size(); ++i)
+    if (disks_.lower_m(i) <= p_.look_ahead_m) near_.push_back(static_cast<std::uint32_t>(i));
+  if (near_.size() > kMost)
+    gather_deepest(side);
+  else
+    for (const std::uint32_t i : near_) contacts_.push_back(contact(i, side));
+  for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
   found.contacts = thinned(contacts_);
   return found;
 }

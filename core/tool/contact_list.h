@@ -23,8 +23,8 @@ struct NearContacts {
 
 // What a detection finds for the printed rule.
 struct VoxelContacts {
-  std::span<const ToolContact>
-      contacts;  // (6.5) with depth 0, or (6.8) with depth 1 where there are collisions
+  // (6.5) with depth 0, or (6.8) with depth 1 where there are collisions.
+  std::span<const ToolContact> contacts;
   bool touched = false, collided = false;  // some point is in the tool; in its interior
 };
 
@@ -45,7 +45,8 @@ class ContactList {
   void on_frame(const PointCloud& cloud);  // allocates
   const TouchFinder& finder() const { return finder_; }
 
-  // Every disk that the tool could touch within look_ahead_m; side as for disk_contact().
+  // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
+  // near_contact().
   NearContacts near(const ToolPose& pose, double side);
   // The points in shell and interior voxels. Those without a normal are left out.
   VoxelContacts in_voxels(const ToolPose& pose);
@@ -53,7 +54,9 @@ class ContactList {
   Touched touched(const ToolPose& pose);
 
  private:
-  ToolContact contact(std::size_t i, double side) const;
+  bool is_worth_a_search(std::size_t disk) const;
+  ToolContact contact(std::size_t disk, double side) const;
+  void gather_deepest(double side);
   std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
 
   const ToolParameters p_;
@@ -63,6 +66,7 @@ class ContactList {
   double widest_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
+  std::vector<std::uint32_t> near_, behind_;  // disks within the look-ahead; of each contact kept, its disk
   std::vector<std::uint64_t> clusters_;
 };
 

@@ -6,12 +6,6 @@ namespace {
 
 constexpr int kMostTries = 64;
 
-std::uint64_t key_of(const ToolContact& contact, double cell_m) {
-  std::uint64_t key = cell_number(contact.r_T, cell_m);
-  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (contact.n_T[axis] < 0 ? 1u : 0u);
-  return key;
-}
-
 // std::floor() would be a call of the C library on the oldest machines.
 std::int64_t floor_of(double x) {
   const auto towards_zero = static_cast<std::int64_t>(x);
@@ -36,23 +30,32 @@ ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   return nullptr;
 }
 
-void ContactThinning::thin(std::vector<ToolContact>& contacts, double cell_m) {
+void ContactThinning::begin(double cell_m) {
   ++stamp_;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const ToolContact& contact = contacts[i];  // no place before it is its own
-    const std::uint64_t key = key_of(contact, cell_m);
-    Slot* slot = slot_of(key);
-    if (!slot) continue;
-    if (slot->stamp != stamp_) {
-      *slot = {key, kept, stamp_};
-      if (kept != i) contacts[kept] = contact;
-      ++kept;
-    } else if (contact.depth_m > contacts[slot->place].depth_m) {
-      contacts[slot->place] = contact;
-    }
+  cell_m_ = cell_m, kept_ = 0;
+}
+
+std::size_t ContactThinning::place(const Vec3& r_T, const Vec3& n_T, double depth_m) {
+  std::uint64_t key = cell_number(r_T, cell_m_);
+  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (n_T[axis] < 0 ? 1u : 0u);
+  Slot* slot = slot_of(key);
+  if (!slot) return kNowhere;
+  if (slot->stamp != stamp_) {
+    *slot = {key, depth_m, kept_, stamp_};
+    return kept_++;
   }
-  contacts.resize(kept);
+  if (!(depth_m > slot->depth_m)) return kNowhere;
+  slot->depth_m = depth_m;
+  return slot->place;
+}
+
+void ContactThinning::thin(std::vector<ToolContact>& contacts, double cell_m) {
+  begin(cell_m);
+  for (const ToolContact& contact : contacts) {  // no place before it is its own
+    const std::size_t place = this->place(contact.r_T, contact.n_T, contact.depth_m);
+    if (place != kNowhere) contacts[place] = contact;
+  }
+  contacts.resize(kept_);
 }
 
 }  // namespace remote_touch

@@ -69,15 +69,25 @@ double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskP
   return front == back ? 0 : front ? 1 : -1;
 }
 
-// Which side of the disk the tool is on, +1 where the sensor is; 0 where the disk meets the tool edge-on.
-double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
-  const bool inside = place.at.distance_m < 0;
-  if (inside && known_side != 0) return known_side;
-  const double facing = -place.at.gradient_T.dot(disk.n_T), steep = place.at.gradient_T.norm();
-  // Deep inside, at a ridge of the field, nothing tells; at a corner of the tool it is short too.
-  if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
+// Which side of the disk the field is on, +1 where the sensor is; 0 where the disk meets it edge-on.
+double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
+  const double facing = -at.gradient_T.dot(disk.n_T);
   if (std::abs(facing) <= kGrazing * steep) return 0;
   return facing < 0 ? -1 : 1;
+}
+
+// Which side of the disk the tool is on, likewise.
+double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
+  if (place.at.distance_m < 0 && known_side != 0) return known_side;
+  const double steep = place.at.gradient_T.norm();
+  // Deep inside, at a ridge of the field, nothing tells; at a corner of the tool it is short too.
+  if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
+  return facing_side(disk, place.at, steep);
+}
+
+// Out of the tool, and up where the field is flat.
+Vec3 way_out(const FieldSample& at, double steep) {
+  return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
 }
 
 }  // namespace
@@ -94,26 +104,23 @@ DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk) {
   return place;
 }
 
-ToolContact disk_contact(const VoxelTool& tool, const SurfaceDisk& disk, double near_m, double known_side) {
-  const double lower_m = lower_bound_m(disk);
-  const bool searched = lower_m <= near_m;
-  const DiskPlace place = searched ? nearest_place(tool, disk) : DiskPlace{disk.p_T, disk.at};
-  return disk_contact(tool, disk, place, searched ? place.at.distance_m : lower_m, searched, known_side);
-}
-
-ToolContact disk_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place,
-                         double distance_m, bool searched, double known_side) {
-  double side = disk.has_normal() ? side_of(tool, disk, place, known_side) : 0;
-  const bool known = place.at.distance_m < 0 && known_side != 0;
-  bool as_plane = side != 0 && ((searched && !place.at_rim) || known);
-  if (!as_plane && searched && disk.has_normal()) {
-    const double flush = side_of_flush(tool, disk, place);
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+                         double known_side) {
+  double side = disk.has_normal() ? side_of(tool, disk, nearest, known_side) : 0;
+  const bool known = nearest.at.distance_m < 0 && known_side != 0;
+  bool as_plane = side != 0 && (!nearest.at_rim || known);
+  if (!as_plane && disk.has_normal()) {
+    const double flush = side_of_flush(tool, disk, nearest);
     if (flush != 0) side = flush, as_plane = true;
   }
-  const double steep = place.at.gradient_T.norm();
-  Vec3 out = steep > 0 ? Vec3(-place.at.gradient_T / steep) : Vec3(Vec3::UnitY());
-  if (as_plane) out = side * disk.n_T;
-  return {place.p_T, out, -distance_m, side};
+  const Vec3 out = as_plane ? Vec3(side * disk.n_T) : way_out(nearest.at, nearest.at.gradient_T.norm());
+  return {nearest.p_T, out, -nearest.at.distance_m, side};
+}
+
+ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
+  const double steep = disk.at.gradient_T.norm();
+  const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
+  return {disk.p_T, way_out(disk.at, steep), -lower_bound_m, side};
 }
 
 }  // namespace remote_touch

@@ -31,14 +31,14 @@ struct DiskPlace {
 // The place of the disk that is nearest to the tool, or deepest in it.
 DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
 
-// The constraint of a disk: at its nearest place, with the field there as distance. A disk that is met inside
+// The constraint of a disk at its nearest place, with the field there as distance. A disk that is met inside
 // is a plane, on the side that the field tells; its rim, or a point, is met by the surface of the tool.
 // Inside the tool known_side, +1 or -1 of the normal, counts where it is given (0: none): a frame can put
-// points anywhere in the tool, and then the field does not tell where they came from. What is farther away
-// than near_m is not searched: it counts with its lower bound.
-ToolContact disk_contact(const VoxelTool& tool, const SurfaceDisk& disk, double near_m, double known_side);
-// The same for those who have searched: place is the nearest one, or, where searched is false, the middle.
-ToolContact disk_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place,
-                         double distance_m, bool searched, double known_side);
+// points anywhere in the tool, and then the field does not tell where they came from.
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+                         double known_side);
+// Of a disk too far from the tool to be worth a search: in its middle, with its lower bound as distance.
+// pre: the bound is above 0.
+ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m);
 
 }  // namespace remote_touch

@@ -24,6 +24,7 @@ class NearDisks {
   bool is_flat(std::size_t i) const { return slope_[i] < kFlatSlope; }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
+  Vec3 gradient_T(std::size_t i) const { return gradient_T_.at(i); }
   SurfaceDisk disk(std::size_t i) const {
     return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};
   }
