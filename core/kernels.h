@@ -123,6 +123,11 @@ struct PosedField {
   double size;
 };
 
+// Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
+inline constexpr double kRoundsToWhole = 0x1.8p52;
+// Taken away before, it makes that rounding down; what is less than a hair below a whole number counts as it.
+inline constexpr double kAlmostHalf = 0.5 - 0x1p-34;
+
 // What there is to know about surface disks in the tool frame; room for as many as were asked for, padded to
 // kLanes.
 struct DiskColumns {
@@ -131,8 +136,9 @@ struct DiskColumns {
   double* radius;
   double* distance;
   double* gradient_T[3];
-  double* slope;  // of the field in the plane of the disk; NaN without a normal
-  double* lower;  // bound of the distance of any place of the disk
+  double* slope;        // of the field in the plane of the disk; NaN without a normal
+  double* lower;        // bound of the distance of any place of the disk
+  std::uint64_t* cell;  // cell_and_octant() of the place, for the way against the gradient
 };
 
 struct Kernels {
@@ -171,7 +177,7 @@ struct Kernels {
   // The disks around the points index[0..count), of radius share x spacing: bit for bit what sample_field()
   // and lower_bound_m() tell, but for places outside the grid, whose lower is NaN.
   void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double share,
-                         const PosedField&, const DiskColumns&);
+                         double cells_per_m, const PosedField&, const DiskColumns&);
   // The points of one row in the camera frame, their z times scale.
   void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
   // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of

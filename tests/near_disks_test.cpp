@@ -14,7 +14,7 @@ namespace {
 
 const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
-constexpr double kReach_m = 0.005, kShare = 0.75;
+constexpr double kReach_m = 0.005, kShare = 0.75, kCell_m = 0.004;
 
 // Normals in all directions; every seventh point has none.
 PointCloud cloud_with_normals() {
@@ -29,7 +29,7 @@ PointCloud cloud_with_normals() {
 
 struct Look {
   TouchFinder finder;
-  NearDisks disks{kShare};
+  NearDisks disks{kShare, kCell_m};
 
   Look(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
     finder.on_frame(cloud);
@@ -64,6 +64,7 @@ TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
       ASSERT_EQ(disk.at.distance_m, expected.at.distance_m);
       ASSERT_EQ(disk.at.gradient_T, expected.at.gradient_T);
       ASSERT_EQ(look.disks.lower_m(k), lower_bound_m(expected));
+      ASSERT_EQ(look.disks.cell(k), cell_and_octant(p_T, -expected.at.gradient_T, 1 / kCell_m));
     }
   }
 }
@@ -76,7 +77,7 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
     cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
   TouchFinder finder(kTool, scenes::kernels());
   finder.on_frame(cloud);
-  NearDisks disks(kShare);
+  NearDisks disks(kShare, kCell_m);
   disks.on_frame(finder.cloud());
   disks.look(finder, scenes::kernels(), {}, kFieldMargin_m + grid.size_m);
   EXPECT_EQ(disks.size(), cloud.size());

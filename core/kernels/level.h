@@ -25,7 +25,7 @@
                               const CellTransform& to_cells, const CellTable& table, int least,              \
                               std::uint32_t* found);                                                         \
   void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count,             \
-                      double share, const PosedField& field, const DiskColumns& disks);                      \
+                      double share, double cells_per_m, const PosedField& field, const DiskColumns& disks);  \
   void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out);                           \
   void filter_depth(const RowBand& band, const PointPlanes& in, float* change);                              \
   void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2], \

@@ -18,10 +18,20 @@ inline double clamped(double u, double cells) {
   return above < cells ? above : cells;
 }
 
+// As cell_number() does it.
+inline std::uint64_t cell_along(double x, double per_m) {
+  return __builtin_bit_cast(std::uint64_t, x * per_m - kAlmostHalf + kRoundsToWhole) & 0xfffff;
+}
+
+// From the sign of its opposite, without a branch.
+inline std::uint64_t is_positive(double x) {
+  return __builtin_bit_cast(std::uint64_t, 0 - x) >> 63;
+}
+
 }  // namespace
 
 void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count, double share,
-                    const PosedField& f, const DiskColumns& out) {
+                    double cells_per_m, const PosedField& f, const DiskColumns& out) {
   const double cells[3] = {double(f.cells[0]), double(f.cells[1]), double(f.cells[2])};
   const int last[3] = {f.cells[0] - 1, f.cells[1] - 1, f.cells[2] - 1};
   const int row = f.cells[0] + 1, layer = row * (f.cells[1] + 1);
@@ -64,6 +74,9 @@ void disks_in_field(const PointColumns& points, const std::uint32_t* index, std:
     const bool has_normal = nx - nx == 0 && ny - ny == 0 && nz - nz == 0;
     const double lower = has_normal ? distance - radius * slope : distance;
     const bool in_grid = in_u == u && in_v == v && in_w == w;
+    const std::uint64_t cell =
+        cell_along(px, cells_per_m) << 40 | cell_along(py, cells_per_m) << 20 | cell_along(pz, cells_per_m);
+    const std::uint64_t octant = is_positive(gx) << 2 | is_positive(gy) << 1 | is_positive(gz);
 
     out.p_T[0][k] = px, out.p_T[1][k] = py, out.p_T[2][k] = pz;
     out.n_T[0][k] = nx, out.n_T[1][k] = ny, out.n_T[2][k] = nz;
@@ -72,6 +85,7 @@ void disks_in_field(const PointColumns& points, const std::uint32_t* index, std:
     out.gradient_T[0][k] = gx, out.gradient_T[1][k] = gy, out.gradient_T[2][k] = gz;
     out.slope[k] = has_normal ? slope : __builtin_nan("");
     out.lower[k] = in_grid ? lower : __builtin_nan("");
+    out.cell[k] = cell << 3 | octant;
   }
 }
 

@@ -9,9 +9,9 @@ namespace {
 
 // The collision list reaches a little less far than the field.
 constexpr double kLongestReach_m = kFieldMargin_m - 2e-4;
-constexpr double kTouch_m = 1e-4;    // a disk closer to the tool than this is touched
-constexpr double kSearch_m = 3e-4;   // a disk closer than this has its nearest place searched
-constexpr double kCluster_m = 0.01;  // touching points closer than this are counted as one cluster
+constexpr double kTouch_m = 1e-4;       // a disk closer to the tool than this is touched
+constexpr double kSearch_m = 3e-4;      // a disk closer than this has its nearest place searched
+constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
 
 // A step turns the tool by so little that two points of 4 mm ask for the same motion within a tenth of a
 // millimetre; what is left over the next detection finds. Larger cells where these are still too many:
@@ -23,7 +23,10 @@ constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
 
 ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
                          const Kernels& kernels)
-    : p_(parameters), kernels_(kernels), finder_(std::move(tool), kernels), disks_(parameters.disk_share) {}
+    : p_(parameters),
+      kernels_(kernels),
+      finder_(std::move(tool), kernels),
+      disks_(parameters.disk_share, kCell_m) {}
 
 void ContactList::on_frame(const PointCloud& cloud) {
   finder_.on_frame(cloud);
@@ -32,7 +35,7 @@ void ContactList::on_frame(const PointCloud& cloud) {
   for (std::uint32_t i = 0; i < points.room(); ++i)
     widest_disk_m_ = std::max(widest_disk_m_, p_.disk_share * points.spacing_m(i));
   contacts_.reserve(points.room()), collisions_.reserve(points.room());
-  near_.reserve(points.room()), behind_.reserve(points.room());
+  near_.reserve(points.room()), nearest_.reserve(points.room());
   clusters_.reserve(points.room());
   disks_.on_frame(points);
 }
@@ -55,39 +58,52 @@ ToolContact ContactList::contact(std::size_t i, double side) const {
   return near_contact(tool, disk, nearest, side);
 }
 
-// What thinned() would leave of all contacts, in cells of kCell_m: of most of those far away it is enough to
-// know that something deeper lies beside them.
+// No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
+double ContactList::bound_m(std::size_t disk) const {
+  const bool exact = is_worth_a_search(disk) && disks_.is_flat(disk);
+  return exact ? disks_.distance_m(disk) : disks_.lower_m(disk);
+}
+
+void ContactList::gather_near() {
+  near_.clear();
+  for (std::size_t i = 0; i < disks_.size(); ++i)
+    if (disks_.lower_m(i) <= p_.look_ahead_m) near_.push_back({bound_m(i), static_cast<std::uint32_t>(i), 0});
+}
+
+// Of every cell of the tool the deepest contact, with as few searches as their bounds allow: there can be
+// thousands of disks, and only the deepest of a cell is made into a contact.
 void ContactList::gather_deepest(double side) {
-  constexpr auto kMade = ~std::uint32_t{0};
-  thinning_.begin(kCell_m);
-  behind_.clear();
-  for (const std::uint32_t i : near_) {
-    const bool far = !is_worth_a_search(i);
-    ToolContact contact;
-    if (!far) contact = this->contact(i, side);
-    const std::size_t place =
-        far ? thinning_.place(disks_.p_T(i), -disks_.gradient_T(i), -disks_.lower_m(i))
-            : thinning_.place(contact.r_T, contact.n_T, contact.depth_m);
-    if (place == ContactThinning::kNowhere) continue;
-    if (place == behind_.size()) behind_.push_back(kMade), contacts_.emplace_back();
-    behind_[place] = far ? i : kMade;
-    if (!far) contacts_[place] = contact;
+  thinning_.begin();
+  nearest_.clear();
+  for (NearDisk& near : near_) {
+    const std::size_t cell = thinning_.cell(disks_.cell(near.disk));
+    near.cell = static_cast<std::uint32_t>(cell);
+    if (cell == ContactThinning::kNoCell) continue;
+    if (cell == nearest_.size())
+      nearest_.push_back(near);
+    else if (near.bound_m < nearest_[cell].bound_m)
+      nearest_[cell] = near;
   }
-  for (std::size_t place = 0; place < behind_.size(); ++place)
-    if (behind_[place] != kMade) contacts_[place] = contact(behind_[place], side);
+  for (const NearDisk& near : nearest_) contacts_.push_back(contact(near.disk, side));
+  for (const NearDisk& near : near_) {
+    if (near.cell >= nearest_.size() || near.disk == nearest_[near.cell].disk) continue;
+    ToolContact& deepest = contacts_[near.cell];
+    if (!(-near.bound_m > deepest.depth_m)) continue;
+    const ToolContact other = contact(near.disk, side);
+    if (other.depth_m > deepest.depth_m) deepest = other;
+  }
 }
 
 NearContacts ContactList::near(const ToolPose& pose, double side) {
   const double reach_m = std::min(p_.look_ahead_m + widest_disk_m_, kLongestReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
-  contacts_.clear(), near_.clear();
+  contacts_.clear();
   disks_.look(finder_, kernels_, pose, reach_m);
-  for (std::size_t i = 0; i < disks_.size(); ++i)
-    if (disks_.lower_m(i) <= p_.look_ahead_m) near_.push_back(static_cast<std::uint32_t>(i));
+  gather_near();
   if (near_.size() > kMost)
     gather_deepest(side);
   else
-    for (const std::uint32_t i : near_) contacts_.push_back(contact(i, side));
+    for (const NearDisk& near : near_) contacts_.push_back(contact(near.disk, side));
   for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
   found.contacts = thinned(contacts_);
   return found;
@@ -129,7 +145,7 @@ Touched ContactList::touched(const ToolPose& pose) {
     all.state =
         std::max(all.state, voxel == Voxel::interior ? ContactState::entrenched : ContactState::contact);
     ++all.points;
-    clusters_.push_back(cell_number(disks_.p_T(i), kCluster_m));
+    clusters_.push_back(cell_number(disks_.p_T(i), kClustersPer_m));
   }
   if (all.nearest_m > shown_m) all.nearest_m = std::numeric_limits<double>::infinity();
   std::sort(clusters_.begin(), clusters_.end());

@@ -55,6 +55,8 @@ class ContactList {
 
  private:
   bool is_worth_a_search(std::size_t disk) const;
+  double bound_m(std::size_t disk) const;
+  void gather_near();
   ToolContact contact(std::size_t disk, double side) const;
   void gather_deepest(double side);
   std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
@@ -66,7 +68,12 @@ class ContactList {
   double widest_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
-  std::vector<std::uint32_t> near_, behind_;  // disks within the look-ahead; of each contact kept, its disk
+  struct NearDisk {
+    double bound_m;
+    std::uint32_t disk, cell;
+  };
+  std::vector<NearDisk> near_;     // within the look-ahead
+  std::vector<NearDisk> nearest_;  // of each cell, by their bounds
   std::vector<std::uint64_t> clusters_;
 };
 

@@ -1,24 +1,29 @@
 #include "core/tool/contact_thinning.h"
 
+#include <bit>
+
+#include "core/kernels.h"
+
 namespace remote_touch {
 
 namespace {
 
 constexpr int kMostTries = 64;
 
-// std::floor() would be a call of the C library on the oldest machines.
-std::int64_t floor_of(double x) {
-  const auto towards_zero = static_cast<std::int64_t>(x);
-  return towards_zero - (x < static_cast<double>(towards_zero) ? 1 : 0);
-}
-
 }  // namespace
 
-std::uint64_t cell_number(const Vec3& p_T, double cell_m) {
+std::uint64_t cell_number(const Vec3& p_T, double cells_per_m) {
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    key = key << 20 | (static_cast<std::uint64_t>(floor_of(p_T[axis] / cell_m)) & 0xfffff);
+    const double whole = p_T[axis] * cells_per_m - kAlmostHalf + kRoundsToWhole;  // no call of the C library
+    key = key << 20 | (std::bit_cast<std::uint64_t>(whole) & 0xfffff);
   }
+  return key;
+}
+
+std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& way_T, double cells_per_m) {
+  std::uint64_t key = cell_number(p_T, cells_per_m);
+  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (way_T[axis] < 0 ? 1u : 0u);
   return key;
 }
 
@@ -30,32 +35,30 @@ ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   return nullptr;
 }
 
-void ContactThinning::begin(double cell_m) {
+void ContactThinning::begin() {
   ++stamp_;
-  cell_m_ = cell_m, kept_ = 0;
+  cells_ = 0;
 }
 
-std::size_t ContactThinning::place(const Vec3& r_T, const Vec3& n_T, double depth_m) {
-  std::uint64_t key = cell_number(r_T, cell_m_);
-  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (n_T[axis] < 0 ? 1u : 0u);
-  Slot* slot = slot_of(key);
-  if (!slot) return kNowhere;
-  if (slot->stamp != stamp_) {
-    *slot = {key, depth_m, kept_, stamp_};
-    return kept_++;
-  }
-  if (!(depth_m > slot->depth_m)) return kNowhere;
-  slot->depth_m = depth_m;
-  return slot->place;
+std::size_t ContactThinning::cell(std::uint64_t cell_and_octant) {
+  Slot* slot = slot_of(cell_and_octant);
+  if (!slot) return kNoCell;
+  if (slot->stamp != stamp_) *slot = {cell_and_octant, cells_++, stamp_};
+  return slot->cell;
 }
 
 void ContactThinning::thin(std::vector<ToolContact>& contacts, double cell_m) {
-  begin(cell_m);
+  begin();
+  std::size_t kept = 0;
   for (const ToolContact& contact : contacts) {  // no place before it is its own
-    const std::size_t place = this->place(contact.r_T, contact.n_T, contact.depth_m);
-    if (place != kNowhere) contacts[place] = contact;
+    const std::size_t place = cell(cell_and_octant(contact.r_T, contact.n_T, 1 / cell_m));
+    if (place == kNoCell) continue;
+    if (place == kept)
+      contacts[kept++] = contact;
+    else if (contact.depth_m > contacts[place].depth_m)
+      contacts[place] = contact;
   }
-  contacts.resize(kept_);
+  contacts.resize(kept);
 }
 
 }  // namespace remote_touch

@@ -8,38 +8,38 @@
 
 namespace remote_touch {
 
-// Keeps the deepest contact of every cell of the tool frame and octant of directions. Allocates on
+// Sorts contacts by the cell of the tool frame and the octant of directions that they belong to. Allocates on
 // construction only.
 class ContactThinning {
  public:
-  // Far more cells than a tool of a hand's size has within reach of a surface; what comes later is dropped.
+  // Far more cells than a tool of a hand's size has within reach of a surface; what comes later has none.
   static constexpr std::size_t kMostCells = 4096;  // a power of two
-  static constexpr std::size_t kNowhere = ~std::size_t{0};
+  static constexpr std::size_t kNoCell = ~std::size_t{0};
 
   ContactThinning() : slots_(kMostCells) {}
-  // In place, in the order of the first contact of each cell.
-  void thin(std::vector<ToolContact>& contacts, double cell_m);
 
-  // The same one by one, for contacts that need not exist yet: where in the thinned list a contact belongs,
-  // behind its end or in the place of one less deep, or kNowhere. Of n_T only the signs count.
-  void begin(double cell_m);
-  std::size_t place(const Vec3& r_T, const Vec3& n_T, double depth_m);
+  void begin();
+  // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
+  std::size_t cell(std::uint64_t cell_and_octant);
+
+  // Keeps the deepest contact of every cell, in place.
+  void thin(std::vector<ToolContact>& contacts, double cell_m);
 
  private:
   struct Slot {
     std::uint64_t key = 0;
-    double depth_m = 0;
-    std::uint32_t place = 0;  // in the thinned list
-    std::uint32_t stamp = 0;  // of the list that it belongs to
+    std::uint32_t cell = 0;
+    std::uint32_t stamp = 0;  // of the begin() that it belongs to
   };
   Slot* slot_of(std::uint64_t key);
 
   std::vector<Slot> slots_;
-  double cell_m_ = 1;
-  std::uint32_t stamp_ = 0, kept_ = 0;
+  std::uint32_t stamp_ = 0, cells_ = 0;
 };
 
 // Which cube of a grid over the tool frame a place lies in, as one number.
-std::uint64_t cell_number(const Vec3& p_T, double cell_m);
+std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
+// The same, and which coordinates of a way are negative.
+std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& way_T, double cells_per_m);
 
 }  // namespace remote_touch

@@ -2,12 +2,15 @@
 
 #include <cmath>
 
+#include "core/tool/contact_thinning.h"
+
 namespace remote_touch {
 
 void NearDisks::on_frame(const TiledCloud& cloud) {
   for (Columns* columns : {&p_T_, &n_T_, &gradient_T_})
     for (auto* column : {&columns->x, &columns->y, &columns->z}) column->resize(cloud.room());
   for (auto* column : {&radius_, &distance_, &slope_, &lower_}) column->resize(cloud.room());
+  cell_.resize(cloud.room());
   count_ = 0, is_known_ = false;
 }
 
@@ -31,9 +34,10 @@ void NearDisks::look(const TouchFinder& finder, const Kernels& kernels, const To
   DiskColumns disks;
   three(p_T_, disks.p_T), three(n_T_, disks.n_T), three(gradient_T_, disks.gradient_T);
   disks.radius = radius_.data(), disks.distance = distance_.data(), disks.slope = slope_.data(),
-  disks.lower = lower_.data();
+  disks.lower = lower_.data(), disks.cell = cell_.data();
   const std::span<const std::uint32_t> points = finder.within(pose, reach_m);
-  kernels.disks_in_field(finder.cloud().columns(), points.data(), points.size(), share_, field, disks);
+  kernels.disks_in_field(finder.cloud().columns(), points.data(), points.size(), share_, cells_per_m_, field,
+                         disks);
   count_ = points.size();
   finish_outside(tool);
   is_known_ = true, pose_ = pose, reach_m_ = reach_m;
@@ -51,6 +55,7 @@ void NearDisks::finish_outside(const VoxelTool& tool) {
     gradient_T_.z[i] = outside.at.gradient_T.z();
     slope_[i] = std::nan("");
     lower_[i] = lower_bound_m(outside);
+    cell_[i] = cell_and_octant(outside.p_T, -outside.at.gradient_T, cells_per_m_);
   }
 }
 

@@ -12,7 +12,7 @@ namespace remote_touch {
 // Asked for the same pose again it has the answer already.
 class NearDisks {
  public:
-  explicit NearDisks(double disk_share) : share_(disk_share) {}
+  NearDisks(double disk_share, double cell_m) : share_(disk_share), cells_per_m_(1 / cell_m) {}
 
   void on_frame(const TiledCloud& cloud);  // allocates
   // All disks whose middle is within reach_m, and some farther ones; in the order of the cloud's tiles.
@@ -24,7 +24,8 @@ class NearDisks {
   bool is_flat(std::size_t i) const { return slope_[i] < kFlatSlope; }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
-  Vec3 gradient_T(std::size_t i) const { return gradient_T_.at(i); }
+  // cell_and_octant() of its middle and the way out of the tool from there.
+  std::uint64_t cell(std::size_t i) const { return cell_[i]; }
   SurfaceDisk disk(std::size_t i) const {
     return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};
   }
@@ -37,9 +38,10 @@ class NearDisks {
   };
   void finish_outside(const VoxelTool& tool);
 
-  const double share_;
+  const double share_, cells_per_m_;
   Columns p_T_, n_T_, gradient_T_;
   std::vector<double> radius_, distance_, slope_, lower_;
+  std::vector<std::uint64_t> cell_;
   std::size_t count_ = 0;
   bool is_known_ = false;  // for:
   ToolPose pose_;
