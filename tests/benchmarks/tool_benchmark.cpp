@@ -4,11 +4,9 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <limits>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -34,31 +32,6 @@ const char* name_of(TouchRule rule) {
 
 // --- collision list ---
 
-// Positions, not numbers: the finder keeps its points in an order of its own.
-using Places = std::set<std::array<double, 3>>;
-
-Places expected_places(const ToolScene& scene, const ToolPose& pose) {
-  Places found;
-  for (const std::uint32_t i : naive_list(*scene.tool, scene.cloud, pose))
-    found.insert({scene.cloud.x[i], scene.cloud.y[i], scene.cloud.z[i]});
-  return found;
-}
-
-bool lists_same(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose) {
-  Places found;
-  for (const std::uint32_t i : finder.in_tool(pose)) {
-    const Vec3 p = finder.cloud().point(i);
-    found.insert({p.x(), p.y(), p.z()});
-  }
-  return found == expected_places(scene, pose);
-}
-
-// The pose changes a little from call to call.
-ToolPose shaken(ToolPose pose, int i) {
-  pose.p_W.x() += 1e-6 * (i % 64);
-  return pose;
-}
-
 void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : levels()) {
     const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
@@ -67,7 +40,7 @@ void add_list(const ToolScene& scene, const std::string& where, const ToolPose& 
         "tool_list/" + scene.name + "_" + where + "/" + kernels->isa,
         [=, &scene] {
           for (int i = 0; i < 64; ++i)
-            if (!lists_same(*finder, scene, shaken(pose, i))) return false;
+            if (!list_right(*finder, scene, shaken(pose, i))) return false;
           return true;
         },
         [=](benchmark::State& state) {

@@ -1,7 +1,9 @@
 #include "tests/benchmarks/tool_scene.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 #include "core/tool/generated_tools.h"
@@ -12,6 +14,9 @@ namespace {
 
 constexpr double kAmplitude_m = 5e-4, kWave_per_m = 50;
 constexpr std::size_t kPressed = 20;  // points in the tool in contact, at least
+
+// Positions, not numbers: the finder keeps its points in an order of its own.
+using Places = std::set<std::array<double, 3>>;
 
 Vec3 surface_point(double x, double z) {
   return {x, kAmplitude_m * std::sin(kWave_per_m * x) * std::cos(0.7 * kWave_per_m * z), z};
@@ -68,6 +73,22 @@ std::vector<std::uint32_t> naive_list(const VoxelTool& tool, const PointCloud& c
       found.push_back(static_cast<std::uint32_t>(i));
   }
   return found;
+}
+
+bool list_right(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose) {
+  Places found, expected;
+  for (const std::uint32_t i : finder.in_tool(pose)) {
+    const Vec3 p = finder.cloud().point(i);
+    found.insert({p.x(), p.y(), p.z()});
+  }
+  for (const std::uint32_t i : naive_list(*scene.tool, scene.cloud, pose))
+    expected.insert({scene.cloud.x[i], scene.cloud.y[i], scene.cloud.z[i]});
+  return found == expected;
+}
+
+ToolPose shaken(ToolPose pose, int call) {
+  pose.p_W.x() += 1e-6 * (call % 64);
+  return pose;
 }
 
 ToolPose device_at(const ToolScene& scene, int tick) {

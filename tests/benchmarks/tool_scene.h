@@ -8,6 +8,7 @@
 #include "core/frame.h"
 #include "core/tool/tool_parameters.h"
 #include "core/tool/tool_pose.h"
+#include "core/tool/touch_finder.h"
 #include "core/tool/voxel_tool.h"
 
 namespace remote_touch::benchmarks {
@@ -29,6 +30,11 @@ ToolScene tool_scene(const std::string& name, std::shared_ptr<const VoxelTool> t
 
 // Numbers of the points in shell or interior voxels by a plain loop over all of them, as one writes it down.
 std::vector<std::uint32_t> naive_list(const VoxelTool& tool, const PointCloud& cloud, const ToolPose& pose);
+// Whether the finder's list of the scene's points has the same.
+bool list_right(const TouchFinder& finder, const ToolScene& scene, const ToolPose& pose);
+
+// The pose as it changes a little from call to call.
+ToolPose shaken(ToolPose pose, int call);
 
 // Of the device in a slide along x at 0.1 m/s, to and fro, a centimetre below where the tool is in contact.
 ToolPose device_at(const ToolScene& scene, int tick);
