@@ -1,0 +1,40 @@
+// Collision detection of others between the mesh of a tool and points, behind plain numbers: their headers
+// and ours want different settings of Eigen.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace remote_touch::peers {
+
+using Place = std::array<double, 3>;  // metres
+
+struct MeshAndPoints {
+  std::vector<Place> vertices;  // in the tool frame
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<Place> points_W, normals_W;
+};
+
+struct Pose {
+  Place p_W;                   // of the tool frame
+  std::array<double, 9> R_WT;  // row by row
+};
+
+// Others have no points, only bodies, so each point gets a small one around it.
+struct ToolPeer {
+  std::string name;
+  std::vector<std::vector<Place>> bodies_W;  // corners of the convex body of every point
+  // How far from the surface a point may be whose body is found.
+  double farthest_outside_m, farthest_inside_m;
+  bool all;  // false: the search ends at the first contact
+  // The work that is timed; returns the number of contacts. A body has one with each triangle that it meets.
+  std::function<std::size_t(const Pose&)> touch;
+  std::function<std::vector<std::size_t>()> touched;  // points of the last touch(), some more than once
+};
+
+// One thread each. Trees are made here, not in touch().
+std::vector<ToolPeer> tool_peers(const MeshAndPoints& from);
+
+}  // namespace remote_touch::peers
