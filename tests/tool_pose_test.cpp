@@ -33,6 +33,21 @@ TEST(ToolPose, MovingByTheDisplacementArrives) {
   }
 }
 
+// As the tool sees it, and back: lengths stay, so a bound of the way holds in either.
+TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Quaterniond q = rotation(draw(random, 3));
+    Vector6 a_g;
+    a_g << draw(random, 0.1), draw(random, 1);
+    const Vector6 other = turned(q, a_g);
+    EXPECT_LT((other.head<3>() - q.toRotationMatrix() * a_g.head<3>()).norm(), 1e-15);
+    EXPECT_LT((other.tail<3>() - q.toRotationMatrix() * a_g.tail<3>()).norm(), 1e-14);
+    EXPECT_LT((turned(q.conjugate(), other) - a_g).norm(), 1e-14);
+    EXPECT_NEAR(way_m(other, 0.05), way_m(a_g, 0.05), 1e-15);
+  }
+}
+
 // No point of the tool goes farther than way_m says.
 TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
   std::mt19937 random(3);

@@ -1,7 +1,8 @@
 #include "core/tool/look_ahead_motion.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "core/tool/progress.h"
 
 namespace remote_touch {
 
@@ -10,8 +11,7 @@ namespace {
 // Deeper than this the tool is in a collision; less is what a linear constraint leaves on a bent surface.
 constexpr double kCollision_m = 1e-4;
 
-// Steps without coming nearer to the device, after which the tool counts as resting: on noisy surfaces it can
-// go to and fro by a hair for ever.
+// Looks without progress that end a tick: on noisy surfaces the tool can go to and fro by a hair for ever.
 constexpr int kPatience = 8;
 
 ContactState state_of(const NearContacts& near) {
@@ -26,18 +26,16 @@ Vec3 touched_direction(const NearContacts& near) {
   return sum_T;
 }
 
-Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g) {
-  Vector6 other;
-  other << q * a_g.head<3>(), q * a_g.tail<3>();
-  return other;
-}
-
 }  // namespace
 
 // The admissible step in world axes, and what held it: out of a collision, (6.7), else towards the device,
 // (6.4). In a wedge no motion leads out of all; the tool then follows the device as far as it may.
 Vector6 LookAheadMotion::step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
-                                      double longest_m, ToolMotionReport& report) {
+                                      ToolMotionReport& report) {
+  if (near.contacts.empty()) {
+    report.active_count = 0, report.push_W.setZero();
+    return capped(a_gu, reach_m_, p_.look_ahead_m);
+  }
   const Vector6 wanted_T = turned(pose.q_WT.conjugate(), a_gu);
   const bool collides = near.deepest_m > kCollision_m;
   ConstrainedMotion motion = program_.solve(collides ? Vector6(Vector6::Zero()) : wanted_T, near.contacts);
@@ -45,6 +43,11 @@ Vector6 LookAheadMotion::step_towards(const Vector6& a_gu, const ToolPose& pose,
   report.active_count = motion.active_count;
   report.push_W = pose.q_WT * motion.push_T;
   if (!settling_ && motion.side != 0) side_ = motion.side > 0 ? 1 : -1;
+  // Out of what a frame put deep into the tool steps of longest_step_m would be many. A step may be as long
+  // as the deepest place is deep: all within that distance of it is tool, so the place stays in the tool or
+  // comes to its surface, and is not jumped over. What the step runs into beyond the look-ahead the next look
+  // finds.
+  const double longest_m = std::max(p_.longest_step_m, settling_ ? near.deepest_m : 0);
   return capped(turned(pose.q_WT, motion.a_g), reach_m_, longest_m);
 }
 
@@ -55,8 +58,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, C
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  int without_progress = 0;
+  Progress progress(p_.at_rest_m, kPatience);
   while (true) {
     const NearContacts near = contacts.near(pose, settling_ ? side_ : 0);
     ++report.detections;
@@ -67,7 +69,8 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, C
 
     report.touch_W = pose.q_WT * touched_direction(near);
     const Vector6 a_gu = displacement(pose, device);
-    if (near.contacts.empty() && way_m(a_gu, reach_m_) <= p_.look_ahead_m) {
+    const double left_m = way_m(a_gu, reach_m_);
+    if (near.contacts.empty() && left_m <= p_.look_ahead_m) {
       // Nothing is as near as the device.
       report.steps += pose == device ? 0 : 1;
       pose = device;
@@ -76,20 +79,10 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, C
       report.at_rest = true;
       return report;
     }
-    Vector6 a_g;
-    if (near.contacts.empty()) {
-      a_g = capped(a_gu, reach_m_, p_.look_ahead_m);
-      report.active_count = 0, report.push_W.setZero();
-    } else {
-      // What a frame left deep in the tool may go faster: there is nothing to miss on the way out.
-      const double longest_m = std::max(p_.longest_step_m, settling_ ? near.deepest_m : 0);
-      a_g = step_towards(a_gu, pose, near, longest_m, report);
-    }
-    const double left_m = way_m(a_gu, reach_m_);
-    without_progress = left_m < nearest_m - p_.at_rest_m ? 0 : without_progress + 1;
-    nearest_m = std::min(nearest_m, left_m);
-    report.at_rest = way_m(a_g, reach_m_) <= p_.at_rest_m ||
-                     (near.deepest_m <= kCollision_m && without_progress >= kPatience);
+    const Vector6 a_g = step_towards(a_gu, pose, near, report);
+    progress.look(left_m);
+    report.at_rest =
+        way_m(a_g, reach_m_) <= p_.at_rest_m || (near.deepest_m <= kCollision_m && progress.has_ended());
     if (report.at_rest || report.detections >= p_.detections_per_tick) break;
     const bool arrives = a_g == a_gu;
     pose = arrives ? device : moved(pose, a_g);

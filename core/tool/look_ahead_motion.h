@@ -14,7 +14,7 @@ class LookAheadMotion final : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:
-  Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near, double longest_m,
+  Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
                        ToolMotionReport& report);
 
   const ToolParameters p_;

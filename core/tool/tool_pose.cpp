@@ -12,6 +12,12 @@ Vector6 displacement(const ToolPose& from, const ToolPose& to) {
   return a_gu;
 }
 
+Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g) {
+  Vector6 other;
+  other << q * a_g.head<3>(), q * a_g.tail<3>();
+  return other;
+}
+
 double way_m(const Vector6& a_g, double reach_m) {
   return a_g.head<3>().norm() + a_g.tail<3>().norm() * reach_m;
 }

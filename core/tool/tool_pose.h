@@ -24,6 +24,9 @@ ToolPose moved(const ToolPose& pose, const Vector6& a_g);
 // (6.2): the displacement that takes one pose to the other in a unit step, in world axes.
 Vector6 displacement(const ToolPose& from, const ToolPose& to);
 
+// The same displacement in other axes, which q takes its own to.
+Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g);
+
 // A bound of the way that any point of the tool makes, |a| + |alpha| reach.
 double way_m(const Vector6& a_g, double reach_m);
 // The same direction, no longer than longest_m by that measure.

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "core/tool/progress.h"
 
 namespace remote_touch {
 
 namespace {
 
-// Looks in contact without coming nearer to the device, after which the tool counts as resting: contact and
-// collision can take turns for ever.
+// Looks in contact without progress that end a tick: contact and collision can take turns for ever.
 constexpr int kPatience = 4;
-
-Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g) {
-  Vector6 other;
-  other << q * a_g.head<3>(), q * a_g.tail<3>();
-  return other;
-}
 
 }  // namespace
 
@@ -99,19 +93,15 @@ ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, Conta
   Look here = look(pose, contacts, report);
   const ContactState first = here.state;
   bool same_state = true;
-  double nearest = std::numeric_limits<double>::infinity();
-  int without_progress = 0;
+  Progress progress(p_.at_rest_m, kPatience);
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
     const Wanted wanted = wanted_step(pose, a_gu, here, report);
     const double left = way_m(a_gu, reach_m_);
-    if (here.state == ContactState::contact) {
-      without_progress = left < nearest - p_.at_rest_m ? 0 : without_progress + 1;
-      nearest = std::min(nearest, left);
-    }
+    if (here.state == ContactState::contact) progress.look(left);
     const bool may_rest = here.state != ContactState::entrenched || wanted.trapped;
     report.at_rest = (may_rest && way_m(wanted.a_g, reach_m_) <= p_.at_rest_m) ||
-                     (here.state == ContactState::contact && without_progress >= kPatience);
+                     (here.state == ContactState::contact && progress.has_ended());
     if (here.state == ContactState::free && left <= p_.at_rest_m) pose = device;
     if (report.at_rest || spent(report)) break;
     const bool arrives = here.state == ContactState::free && wanted.a_g == a_gu;
