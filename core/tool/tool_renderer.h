@@ -22,8 +22,6 @@ class ToolRenderer final : public Renderer {
   void on_frame(const Frame& frame) override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 
-  const ToolPose& pose() const { return pose_; }
-
  private:
   void measure(RenderOutput& out);
 
