@@ -19,8 +19,10 @@ class NeighbourSearch {
   // finish(). One reader at a time: an implementation may keep what it made for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
-  // Every point that was measured, for those who look at them all, with its columns; in the order of the
-  // search. room holds them where the search does not store them.
+  // Every point that was measured, for those who look at them all, in the order of the search. This one
+  // writes what gather() finds into room: positions, and radii and stiffness where there are some, but no
+  // normals and no colours. A search over a stored cloud gives the cloud itself, so all its columns, and the
+  // rows of missing measurements too.
   virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& room) const;
   virtual bool has_fixture_radius() const { return false; }
   // Some radius is above 0: there are forbidden regions, chapter 5.
