@@ -80,7 +80,7 @@ TEST(PolylinePath, PieceOfNoLengthTakesNoTime) {
 
 TEST(Waypoints, RowsArePlacesWithTheSpeedOnTheWayThere) {
   const FlatGrid scene = made<FlatGrid>();
-  const Waypoints device({{0, 0.01, 0, 0, 0.1, 0.01, 0, 0.05, 0.1, -0.01, 0, 0, 0.1, -0.01, 0.3, 0.1}},
+  const Waypoints device({{0, 0.01, 0, 7, 0.1, 0.01, 0, 0.05, 0.1, -0.01, 0, 0, 0.1, -0.01, 0.3, 0.1}},
                          scene);
   EXPECT_DOUBLE_EQ(device.duration_s(), 2 + 3);
   expect_at(device.at(0).position_W, {0, 0.01, 0});

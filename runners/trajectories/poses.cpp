@@ -22,10 +22,12 @@ Vec3 turn(const DeviceState& from, const DeviceState& to) {
 }  // namespace
 
 Parameters parameters(Poses::Settings& s) {
-  return {{"poses", Rows{{"x_m", "y_m", "z_m", "rx_deg", "ry_deg", "rz_deg", "duration_s"}, &s.poses}, -1000,
-           1000,
-           "poses to visit: place, rotation vector in the world frame, duration of the way there; 0 jumps. A "
-           "way turns by less than 180 degrees, the shorter way round: for more, put a pose between"}};
+  return {
+      {"poses", Rows{{"x_m", "y_m", "z_m", "rx_deg", "ry_deg", "rz_deg", "duration_s"}, &s.poses}, -1000,
+       1000,
+       "poses to visit: place, rotation vector in the world frame, duration of the way there; 0 jumps. The "
+       "first is where the motion starts: its duration is not used. A way turns by less than 180 degrees, "
+       "the shorter way round: for more, put a pose between"}};
 }
 
 std::string conflict(const Poses::Settings& s) {

@@ -14,7 +14,8 @@ class Poses final : public Trajectory {
  public:
   struct Settings {
     // Rows of x, y, z in metres, a rotation vector in degrees (world frame: axis times angle, from the tool's
-    // axes) and the duration in s of the way there; 0 jumps. The first row is the start.
+    // axes) and the duration in s of the way there; 0 jumps. The first row is the start; its duration is not
+    // used.
     std::vector<double> poses{0, 0, 0, 0, 0, 0, 0};
   };
 

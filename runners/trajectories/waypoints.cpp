@@ -3,8 +3,10 @@
 namespace remote_touch {
 
 Parameters parameters(Waypoints::Settings& s) {
-  return {{"waypoints", Rows{{"x_m", "y_m", "z_m", "speed_m_per_s"}, &s.waypoints}, -100, 100,
-           "points to visit, each with the speed of the way there; speed 0 jumps"}};
+  return {
+      {"waypoints", Rows{{"x_m", "y_m", "z_m", "speed_m_per_s"}, &s.waypoints}, -100, 100,
+       "points to visit, each with the speed of the way there; speed 0 jumps. The first is where the motion "
+       "starts: its speed is not used"}};
 }
 
 std::string conflict(const Waypoints::Settings& s) {
