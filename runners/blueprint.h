@@ -59,6 +59,12 @@ struct CatalogEntry {
 using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
 using FixtureEntry = CatalogEntry<FixtureRule>;
 using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
-using RendererEntry = CatalogEntry<Renderer, double, const Kernels&>;  // the haptic rate in Hz
+
+// Of the hand that a renderer is for: six where its outputs have RenderOutput::tool.
+enum class Freedoms { three, six };
+
+struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
+  Freedoms freedoms = Freedoms::three;
+};
 
 }  // namespace remote_touch

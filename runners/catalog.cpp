@@ -53,8 +53,8 @@ TrajectoryEntry trajectory(const char* name, const char* summary) {
 }
 
 template <class Product, class Settings>
-RendererEntry renderer(const char* name, const char* summary) {
-  return {name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>};
+RendererEntry renderer(const char* name, Freedoms freedoms, const char* summary) {
+  return {{name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>}, freedoms};
 }
 
 const ScenarioEntry kScenarios[] = {
@@ -94,8 +94,10 @@ const TrajectoryEntry kTrajectories[] = {
 };
 
 const RendererEntry kRenderers[] = {
-    renderer<ProxyRenderer, ProxyParameters>("proxy", "3-DOF point cloud proxy, chapters 4 and 5"),
-    renderer<LoadedTool, LoadedTool::Settings>("tool", "6-DOF rendering of a rigid tool, chapter 6"),
+    renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three,
+                                             "3-DOF point cloud proxy, chapters 4 and 5"),
+    renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six,
+                                               "6-DOF rendering of a rigid tool, chapter 6"),
 };
 
 }  // namespace

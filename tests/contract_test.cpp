@@ -50,6 +50,15 @@ TEST(RendererContract, NoForceInFreeSpace) {
   }
 }
 
+TEST(RendererContract, HasAsManyDegreesOfFreedomAsItsEntrySays) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+    renderer->on_frame(scenes::frame(scenes::flat_grid(40)));
+    EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+  }
+}
+
 TEST(RendererContract, PushesTheHandOutOfTheSurface) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);

@@ -146,10 +146,10 @@ class WrongRenderer final : public Renderer {
 // As a line of the catalog would be.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
-  return {name, "wrong in one way", []() -> std::unique_ptr<Blueprint<Renderer, double, const Kernels&>> {
-            return std::make_unique<
-                BlueprintFor<WrongRenderer<kFault>, ProxyParameters, Renderer, double, const Kernels&>>();
-          }};
+  return {{name, "wrong in one way", []() -> std::unique_ptr<Blueprint<Renderer, double, const Kernels&>> {
+             return std::make_unique<
+                 BlueprintFor<WrongRenderer<kFault>, ProxyParameters, Renderer, double, const Kernels&>>();
+           }}};
 }
 
 }  // namespace remote_touch

@@ -37,12 +37,7 @@ class Subject {
   }
   Outputs play(const MetamorphicScene& scene) const {
     const auto renderer = blueprint()->build(scene.haptic_rate_hz, kernels_);
-    Outputs outputs = remote_touch::play(scene, *renderer);
-    if (!outputs.empty() && outputs.front().tool)
-      throw InputError(
-          entry_.name,
-          "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");
-    return outputs;
+    return remote_touch::play(scene, *renderer);
   }
   Outputs play(const Variation& run) const {
     const auto changed = blueprint();
@@ -121,6 +116,10 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop) {
+  if (entry.freedoms == Freedoms::six)
+    throw InputError(
+        entry.name,
+        "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");
   const Subject subject(entry, assignments, kernels);
   std::vector<CheckResult> results;
   for (const MetamorphicScene& scene : verification_scenes(kernels)) {
@@ -135,11 +134,6 @@ std::vector<CheckName> check_names() {
   for (const MetamorphicRelation& relation : metamorphic_relations())
     names.push_back({relation.name, relation.meaning});
   return names;
-}
-
-bool renders_a_tool(const RendererEntry& entry, const Kernels& kernels) {
-  const auto renderer = entry.make()->build(1000, kernels);
-  return renderer->step({}, 0).tool.has_value();
 }
 
 }  // namespace remote_touch

@@ -26,10 +26,9 @@ struct CheckResult {
 };
 
 // All results, scene by scene. The first of each scene, "touch", is that the renderer pushes back in most
-// ticks: without that the others would say little. assignments: "r1_m=0.004". Throws InputError for an
-// assignment that the renderer refuses, and for a parameter that a change of units cannot follow (see
-// dimension.h).
-// stop: when set, ends between two scenes with Interrupted.
+// ticks: without that the others would say little. assignments: "r1_m=0.004". Throws InputError for a
+// renderer of six degrees of freedom, for an assignment that the renderer refuses, and for a parameter that a
+// change of units cannot follow (see dimension.h). stop: when set, ends between two scenes with Interrupted.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop = nullptr);
@@ -40,8 +39,5 @@ struct CheckName {
 };
 // In the order of the results.
 std::vector<CheckName> check_names();
-
-// Whether its outputs are those of a 6-DOF tool; the scenes of these checks are for a proxy.
-bool renders_a_tool(const RendererEntry& entry, const Kernels& kernels);
 
 }  // namespace remote_touch
