@@ -139,16 +139,26 @@ TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
   }
 }
 
-// Flush after a turn: at the corners of the tool the field is blunt, and must not be taken for a ridge
-// inside.
-TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetIsLetGo) {
-  const Trace trace = run(R"({"name": "sheet", "normal": [0, 1, 0], "width_m": 0.078, "height_m": 0.078})",
-                          tool("slab-20", "look-ahead"),
-                          poses("[0,-0.06,0,3,0,0,0], [0,-0.003,0,3,0,0,0.5], [0,-0.003,0,0,0,0,0.3], "
-                                "[0,-0.06,0,0,0,0,0.5]"));
-  for (std::size_t i = 500; i < 800; ++i) EXPECT_LT(trace.proxy(i).y(), -0.0099);
-  const std::size_t last = trace.length() - 1;
-  EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12);
+// Flush, as it comes or after a turn: the points beside the tool lie in the plane of its face, and must not
+// be walls to its sides; at its corners the field is blunt, and must not be taken for a ridge inside.
+TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
+  for (const std::string tilt : {"0", "3"})
+    for (const std::string width : {"0.078", "0.15"}) {
+      const Trace trace = run(
+          R"({"name": "sheet", "normal": [0, 1, 0], "width_m": )" + width + R"(, "height_m": )" + width + "}",
+          tool("slab-20", "look-ahead"),
+          poses("[0,-0.06,0," + tilt + ",0,0,0], [0,-0.003,0," + tilt +
+                ",0,0,0.5], [0,-0.003,0,0,0,0,0.3], [0.013,-0.003,0.009,0,0,0,0.3], "
+                "[0.013,-0.06,0.009,0,0,0,0.5]"));
+      const std::string what = "tilt " + tilt + ", width " + width;
+      for (std::size_t i = 500; i < 1100; ++i) ASSERT_LT(trace.proxy(i).y(), -0.0099) << what;
+      for (std::size_t i = 800; i < 1100; ++i) {
+        const Vec3 lag = trace.proxy(i) - trace.hip(i);
+        ASSERT_LT(std::hypot(lag.x(), lag.z()), 1e-9) << what << ", tick " << i;
+      }
+      const std::size_t last = trace.length() - 1;
+      EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12) << what;
+    }
 }
 
 // What held the tool is forgotten once it is left behind: a ball that was at the back of a plane, and went
