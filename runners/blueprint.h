@@ -23,7 +23,7 @@ class Blueprint {
  public:
   virtual ~Blueprint() = default;
   virtual Parameters settings() = 0;                      // pointers into this object
-  virtual std::string contradiction() const = 0;          // empty when the settings fit together
+  virtual std::string contradiction() const = 0;          // "r1_m = 1: allowed ..."; empty: they fit together
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };

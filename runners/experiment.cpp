@@ -36,8 +36,7 @@ Part<Entry> read_part(const Json& json, std::span<const Entry> entries, const st
   part.blueprint = find_entry(entries, part.name, path + ".name").make();
   read_parameters(json, part.blueprint->settings(), path, true);
   const std::string contradiction = part.blueprint->contradiction();
-  if (!contradiction.empty())
-    throw InputError(path + "." + contradiction, "together with the other settings");
+  if (!contradiction.empty()) throw InputError(path + "." + contradiction);
   return part;
 }
 
@@ -65,8 +64,7 @@ std::optional<DepthPipelineSettings> read_depth_pipeline(const Json& json) {
   DepthPipelineSettings settings;
   read_parameters(json, parameters(settings), "depth_pipeline", false);
   const std::string contradiction = conflict(settings);
-  if (!contradiction.empty())
-    throw InputError("depth_pipeline." + contradiction, "together with the other settings");
+  if (!contradiction.empty()) throw InputError("depth_pipeline." + contradiction);
   return settings;
 }
 

@@ -32,7 +32,7 @@ class Subject {
     auto blueprint = entry_.make();
     read_parameters(configuration, blueprint->settings(), "", false);
     const std::string contradiction = blueprint->contradiction();
-    if (!contradiction.empty()) throw InputError(contradiction, "together with the other settings");
+    if (!contradiction.empty()) throw InputError(contradiction);
     return blueprint;
   }
   Outputs play(const MetamorphicScene& scene) const {
