@@ -18,8 +18,9 @@ VoxelMotion::Look VoxelMotion::look(const ToolPose& pose, ContactList& contacts,
                                     ToolMotionReport& report) const {
   ++report.detections;
   const VoxelContacts found = contacts.in_voxels(pose);
-  report.touch_W.setZero();
-  for (const ToolContact& contact : found.contacts) report.touch_W += pose.q_WT * contact.n_T;
+  Vec3 touch_T = Vec3::Zero();
+  for (const ToolContact& contact : found.contacts) touch_T += contact.n_T;
+  report.touch_W = pose.q_WT * touch_T;
   if (found.collided) return {ContactState::entrenched, found.contacts};
   return {found.touched ? ContactState::contact : ContactState::free, found.contacts};
 }
