@@ -28,9 +28,6 @@ class TouchFinder {
   // pre: distance_m < kFieldMargin_m.
   std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const;
 
-  Vec3 in_tool_frame(const ToolPose& pose, std::uint32_t point) const {
-    return pose.q_WT.conjugate() * (cloud_.point(point) - pose.p_W);
-  }
   Voxel voxel(const Vec3& p_T) const;
 
  private:
