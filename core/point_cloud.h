@@ -1,6 +1,7 @@
 // A point cloud in columns, and the image layout that an organised cloud keeps.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,6 +39,9 @@ struct PointCloud {
   std::optional<ImageLayout> image;  // set when the points are the pixels of one image
 
   std::size_t size() const { return x.size(); }
+  bool is_measured(std::size_t i) const {
+    return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
+  }
   bool has_normals() const { return !nx.empty(); }
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/kernels.h"
+#include "core/morton_order.h"
 
 namespace remote_touch {
 
@@ -15,40 +15,6 @@ namespace {
 constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
 constexpr std::uint32_t kTileSide_px = 8;
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
-
-bool measured(const PointCloud& cloud, std::size_t i) {
-  return std::isfinite(cloud.x[i]) && std::isfinite(cloud.y[i]) && std::isfinite(cloud.z[i]);
-}
-
-// Every third bit from the lowest on.
-std::uint64_t spread(std::uint64_t bits) {
-  bits &= 0x1fffff;
-  bits = (bits | bits << 32) & 0x1f00000000ffff;
-  bits = (bits | bits << 16) & 0x1f0000ff0000ff;
-  bits = (bits | bits << 8) & 0x100f00f00f00f00f;
-  bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
-  return (bits | bits << 2) & 0x1249249249249249;
-}
-
-// The measured points along a Morton curve; equal codes in the order of the cloud.
-std::vector<std::uint32_t> along_curve(const PointCloud& cloud) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (measured(cloud, i)) low = low.cwiseMin(cloud.point(i)), high = high.cwiseMax(cloud.point(i));
-  const double largest = std::max((high - low).maxCoeff(), 1e-9);
-  const double per_m = 0x1ffffe / largest;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!measured(cloud, i)) continue;
-    const Vec3 u = (cloud.point(i) - low) * per_m;
-    const auto part = [&](int axis) { return spread(static_cast<std::uint64_t>(u[axis])) << axis; };
-    codes.emplace_back(part(0) | part(1) | part(2), static_cast<std::uint32_t>(i));
-  }
-  std::sort(codes.begin(), codes.end());
-  std::vector<std::uint32_t> order;
-  for (const auto& code : codes) order.push_back(code.second);
-  return order;
-}
 
 // The smallest sphere around the middle of the box of count items.
 template <class Item>  // (i) -> BoundingSphere
@@ -143,11 +109,11 @@ void TiledCloud::assign(const PointCloud& cloud) {
             points.clear();
             for (std::uint32_t row = v; row < std::min(v + kTileSide_px, height); ++row)
               for (std::uint32_t column = u; column < std::min(u + kTileSide_px, width); ++column)
-                if (measured(cloud, row * width + column)) points.push_back(row * width + column);
+                if (cloud.is_measured(row * width + column)) points.push_back(row * width + column);
             add_tile(cloud, points);
           }
   } else {
-    const std::vector<std::uint32_t> order = along_curve(cloud);
+    const std::vector<std::uint32_t> order = morton_order(cloud);
     for (std::size_t i = 0; i < order.size(); i += kTilePoints)
       add_tile(cloud, std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i)));
   }
