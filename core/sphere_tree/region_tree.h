@@ -1,0 +1,37 @@
+// The forbidden regions of a frame as a sphere tree, 7.3.2.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/point_cloud.h"
+#include "core/sphere_tree/sphere_tree.h"
+
+namespace remote_touch {
+
+// A leaf for every measured point with r_f above 0, of that radius; world frame. A node of the lowest level
+// for every patch of 16 x 16 pixels that has some, in blocks of 4 x 4 patches; for a cloud that is no image
+// for every kPatchPoints of them along a space-filling curve.
+class RegionTree {
+ public:
+  static constexpr int kPatchSide_px = 16;
+  static constexpr std::size_t kPatchPoints = 256;
+
+  void assign(const PointCloud& cloud);  // allocates
+
+  const SphereTree& spheres() const { return spheres_; }
+  // Of each leaf, the number of its point in the cloud.
+  const std::vector<std::uint32_t>& points() const { return points_; }
+
+ private:
+  void add_patches_of_image(const PointCloud& cloud);
+  void add_patches_along_curve(const PointCloud& cloud);
+  void gather(const PointCloud& cloud, std::uint32_t point);
+  void close_patch();
+
+  SphereTree spheres_;
+  std::vector<std::uint32_t> points_;
+  std::vector<Sphere> patch_;
+};
+
+}  // namespace remote_touch

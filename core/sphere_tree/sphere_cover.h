@@ -1,0 +1,38 @@
+// Few spheres that cover many points: greedy, each next sphere the one that covers most of what is left.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/sphere_tree/sphere_tree.h"
+
+namespace remote_touch {
+
+class SphereCover {
+ public:
+  // points, and spheres to choose from; cell_m: of the grid that finds points, about the size of a sphere.
+  SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m);
+
+  // Spheres of the choice, grown by growth_m, until all points are covered that any of them covers, or until
+  // there are more than most; of two that cover as many the one that comes first.
+  struct Result {
+    std::vector<Sphere> spheres;
+    std::size_t left = 0;  // points that are not covered
+  };
+  Result cover(double growth_m, std::size_t most) const;
+
+ private:
+  // Calls act(point) for the points in the sphere.
+  template <class Act>
+  void within(const Sphere& sphere, const Act& act) const;
+  std::int64_t cell_along(int axis, double x) const;
+
+  std::vector<Sphere> choice_;
+  double cell_m_;
+  Vec3 low_;
+  std::int64_t cells_[3];
+  std::vector<Vec3> points_;           // cell by cell
+  std::vector<std::uint32_t> starts_;  // of each cell, its first point; one more at the end
+};
+
+}  // namespace remote_touch

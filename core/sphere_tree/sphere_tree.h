@@ -1,0 +1,50 @@
+// Spheres under bounding spheres, 7.3.2 and 7.4: what is far away is passed over in one test.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/vector.h"
+
+namespace remote_touch {
+
+struct Sphere {
+  Vec3 centre = Vec3::Zero();
+  double radius_m = 0;
+};
+
+// Around the mean of the centres, (7.3): quick to make rather than the smallest. pre: not empty.
+Sphere bounding_sphere(std::span<const Sphere> spheres);
+
+// first .. first + count - 1: its children, of the level below; on the lowest level leaves.
+struct SphereNode {
+  Sphere sphere;
+  std::uint32_t first = 0, count = 0;
+};
+
+class SphereTree {
+ public:
+  // Bounding spheres above the lowest level hold this many each, as long as there are more.
+  static constexpr std::size_t kBranching = 8;
+
+  void clear();
+  // One more node of the lowest level. Nodes that are added one after the other should be near each other:
+  // they get into one node of the next level. None is made of no leaves.
+  void add(std::span<const Sphere> leaves);
+  // The levels above; once, after the last add().
+  void finish();
+
+  bool empty() const { return leaves_.empty(); }
+  std::span<const Sphere> leaves() const { return leaves_; }
+  // From the lowest up, at least one unless the tree is empty.
+  std::size_t level_count() const { return levels_.size(); }
+  std::span<const SphereNode> level(std::size_t i) const { return levels_[i]; }
+  std::span<const SphereNode> top() const { return levels_.back(); }
+
+ private:
+  std::vector<Sphere> leaves_;
+  std::vector<std::vector<SphereNode>> levels_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,206 @@
+#include "core/sphere_tree/tool_spheres.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unordered_set>
+
+#include "core/input_error.h"
+#include "core/sphere_tree/sphere_cover.h"
+#include "core/tool/contact_thinning.h"
+#include "core/tool/triangle_tree.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Places of the surface that are to be covered, about: the finer the more leaves there are.
+constexpr double kSamples = 60000, kSamplesOfLeaf = 100;
+constexpr double kDenser = 0.4;      // are the places that the result is measured at
+constexpr double kDominated = 0.85;  // see inscribed_balls()
+constexpr int kBisections = 12;      // of the growth
+constexpr int kPlacesOfLeaf = 200;   // at which a leaf's distance from the mesh is measured
+constexpr std::size_t kLeavesOfNode = 8;
+
+Vec3 corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
+  return mesh.vertices[static_cast<std::size_t>(mesh.triangles[triangle][i])];
+}
+
+// Places of every triangle no farther apart than spacing_m, its corners among them; of a fine mesh many more
+// than one for every square of that side.
+std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m) {
+  std::vector<Vec3> samples;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 a = corner(mesh, t, 0), ab = corner(mesh, t, 1) - a, ac = corner(mesh, t, 2) - a;
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing_m)));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) samples.push_back(a + (double(i) / n) * ab + (double(j) / n) * ac);
+  }
+  return samples;
+}
+
+// Of the places in every cube of side spacing_m the first.
+std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m) {
+  std::unordered_set<std::uint64_t> seen;
+  std::vector<Vec3> kept;
+  for (const Vec3& place : places)
+    if (seen.insert(cell_number(place, 1 / spacing_m)).second) kept.push_back(place);
+  return kept;
+}
+
+double area_of(const TriangleMesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 a = corner(mesh, t, 0);
+    area += 0.5 * (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).norm();
+  }
+  return area;
+}
+
+// The largest balls inscribed in the tool: those around nodes of the field near its medial axis. From any
+// other place the distance to the surface grows by nearly the whole way to one of the neighbours, and the
+// ball there holds the ball here.
+std::vector<Sphere> inscribed_balls(const VoxelTool& tool) {
+  const VoxelGrid& grid = tool.grid;
+  const int n[3] = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
+  const auto at = [&](int i, int j, int k) {
+    return static_cast<double>(
+        tool.distance_m[(static_cast<std::size_t>(k) * n[1] + static_cast<std::size_t>(j)) * n[0] +
+                        static_cast<std::size_t>(i)]);
+  };
+  std::vector<Sphere> balls;
+  for (int k = 1; k + 1 < n[2]; ++k)
+    for (int j = 1; j + 1 < n[1]; ++j)
+      for (int i = 1; i + 1 < n[0]; ++i) {
+        const double here = -at(i, j, k);
+        if (!(here > 0)) continue;
+        double steepest = 0;
+        for (int dk = -1; dk <= 1; ++dk)
+          for (int dj = -1; dj <= 1; ++dj)
+            for (int di = -1; di <= 1; ++di) {
+              if (di == 0 && dj == 0 && dk == 0) continue;
+              const double way = grid.size_m * std::sqrt(di * di + dj * dj + dk * dk);
+              steepest = std::max(steepest, (-at(i + di, j + dj, k + dk) - here) / way);
+            }
+        if (steepest < kDominated) balls.push_back({grid.origin_T + grid.size_m * Vec3(i, j, k), here});
+      }
+  // Deep inside the field can be too large by a voxel.
+  const TriangleTree triangles(tool.mesh);
+#pragma omp parallel for schedule(dynamic, 64)
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    balls[i].radius_m = std::sqrt(triangles.nearest(balls[i].centre, 0).squared_m2);
+  return balls;
+}
+
+// The least growth with which most_leaves cover the surface, by bisection between none and the whole tool.
+SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, std::size_t most_leaves,
+                             double& growth_m) {
+  double low = 0, high = 2 * tool.reach_m;
+  SphereCover::Result best = cover.cover(high, most_leaves);
+  for (int i = 0; i < kBisections; ++i) {
+    // Most of the way is far too much: the first steps divide by ten.
+    const double middle = low == 0 ? 0.1 * high : 0.5 * (low + high);
+    SphereCover::Result result = cover.cover(middle, most_leaves);
+    if (result.left == 0 && result.spheres.size() <= most_leaves)
+      best = std::move(result), high = middle;
+    else
+      low = middle;
+  }
+  growth_m = high;
+  return best;
+}
+
+// Leaves that are near each other follow each other: halves along the longest side, and halves of these.
+void sort_by_place(std::span<Sphere> leaves) {
+  if (leaves.size() <= 2) return;
+  Vec3 low = leaves[0].centre, high = low;
+  for (const Sphere& leaf : leaves) low = low.cwiseMin(leaf.centre), high = high.cwiseMax(leaf.centre);
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  std::stable_sort(leaves.begin(), leaves.end(),
+                   [axis](const Sphere& a, const Sphere& b) { return a.centre[axis] < b.centre[axis]; });
+  // Whole nodes in the first half.
+  const std::size_t nodes = (leaves.size() + kLeavesOfNode - 1) / kLeavesOfNode;
+  const std::size_t half = leaves.size() > kLeavesOfNode ? (nodes / 2) * kLeavesOfNode : leaves.size() / 2;
+  sort_by_place(leaves.first(half)), sort_by_place(leaves.subspan(half));
+}
+
+SphereTree tree_of(std::vector<Sphere> leaves) {
+  sort_by_place(leaves);
+  SphereTree tree;
+  const std::span<const Sphere> all = leaves;
+  for (std::size_t first = 0; first < all.size(); first += kLeavesOfNode)
+    tree.add(all.subspan(first, std::min(kLeavesOfNode, all.size() - first)));
+  tree.finish();
+  return tree;
+}
+
+// The most that a sample of the surface lies outside all leaves.
+double farthest_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
+  double farthest = 0;
+#pragma omp parallel for reduction(max : farthest)
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Sphere& leaf : leaves)
+      least = std::min(least, (samples[i] - leaf.centre).norm() - leaf.radius_m);
+    farthest = std::max(farthest, least);
+  }
+  return farthest;
+}
+
+// The most that a place of a leaf lies outside the mesh, over places spread evenly on it.
+double farthest_outside_m(const VoxelTool& tool, std::span<const Sphere> leaves) {
+  const TriangleTree triangles(tool.mesh);
+  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
+  double farthest = 0;
+#pragma omp parallel for schedule(dynamic) reduction(max : farthest)
+  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+    int face = 0;
+    for (int i = 0; i < kPlacesOfLeaf; ++i) {
+      const double z = 1 - (2 * i + 1.0) / kPlacesOfLeaf, around = std::sqrt(1 - z * z);
+      const Vec3 way(around * std::cos(turn * i), around * std::sin(turn * i), z);
+      const Vec3 place = leaves[leaf].centre + leaves[leaf].radius_m * way;
+      if (sample_field(tool, place).distance_m <= 0) continue;
+      const TriangleTree::Nearest nearest = triangles.nearest(place, face);
+      face = nearest.face;
+      farthest = std::max(farthest, std::sqrt(nearest.squared_m2));
+    }
+  }
+  return farthest;
+}
+
+}  // namespace
+
+ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
+  std::vector<Sphere> balls = inscribed_balls(tool);
+  if (balls.empty())
+    throw InputError("tool", "no place of its grid is inside; allowed a smaller renderer.tool_voxel_m");
+  const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * most_leaves));
+  const SphereCover cover(thinned(surface_samples(tool.mesh, spacing_m), spacing_m), std::move(balls),
+                          2 * spacing_m);
+  ToolSpheres made;
+  std::vector<Sphere> leaves =
+      tightest(cover, tool, static_cast<std::size_t>(most_leaves), made.growth_m).spheres;
+  // Between the places that were covered some of the surface is left.
+  const std::vector<Vec3> dense = surface_samples(tool.mesh, kDenser * spacing_m);
+  const double left_m = std::max(0.0, farthest_inside_m(dense, leaves));
+  for (Sphere& leaf : leaves) leaf.radius_m += left_m;
+  made.growth_m += left_m;
+  made.inside_m = std::max(0.0, farthest_inside_m(dense, leaves));
+  made.outside_m = farthest_outside_m(tool, leaves);
+  made.spheres = tree_of(std::move(leaves));
+  return made;
+}
+
+std::string text(const ToolSpheres& made) {
+  const auto mm = [](double metres) {
+    const std::string all = std::to_string(1e3 * metres);
+    return all.substr(0, all.find('.') + 3);
+  };
+  return std::to_string(made.spheres.leaves().size()) + " spheres, at most " + mm(made.outside_m) +
+         " mm outside the mesh; its surface is at most " + mm(made.inside_m) + " mm outside them";
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+// A tool as a sphere tree, made from its mesh beforehand, 7.4: what the dissertation takes from the Sphere
+// Tree Toolkit [118]. Leaves are balls inscribed in the tool, all grown by the same growth: the least with
+// which so many of them cover the surface.
+#pragma once
+
+#include <string>
+
+#include "core/sphere_tree/sphere_tree.h"
+#include "core/tool/voxel_tool.h"
+
+namespace remote_touch {
+
+struct ToolSpheres {
+  SphereTree spheres;  // in the tool frame
+  double growth_m = 0;
+  // How far the union of the leaves is from the mesh: the most that a leaf stands out of it, and the most
+  // that the surface stands out of all leaves, both measured on dense samples. Nothing is left of the second,
+  // and no more than growth_m can be of the first.
+  double outside_m = 0, inside_m = 0;
+};
+std::string text(const ToolSpheres& spheres);
+
+inline constexpr int kFewestLeaves = 1, kMostLeaves = 10000;
+
+// pre: most_leaves in the range above. Fewer leaves are made where they do. Throws InputError for a tool
+// without a node of its grid inside.
+ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves);
+
+}  // namespace remote_touch
