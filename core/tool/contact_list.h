@@ -9,17 +9,12 @@
 #include "core/tool/contact_thinning.h"
 #include "core/tool/disk_contact.h"
 #include "core/tool/motion_program.h"
+#include "core/tool/near_contacts.h"
 #include "core/tool/near_disks.h"
 #include "core/tool/tool_parameters.h"
 #include "core/tool/touch_finder.h"
 
 namespace remote_touch {
-
-// What a detection finds for the look-ahead rule.
-struct NearContacts {
-  std::span<const ToolContact> contacts;
-  double deepest_m = 0;  // largest depth, below 0 where nothing is touched; -infinity: nothing is near
-};
 
 // What a detection finds for the printed rule.
 struct VoxelContacts {
@@ -37,7 +32,7 @@ struct Touched {
 };
 
 // Lists are valid until the next call. More contacts than the motion can take are thinned.
-class ContactList {
+class ContactList final : public NearContactSource {
  public:
   ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
               const Kernels& kernels);
@@ -47,7 +42,7 @@ class ContactList {
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().
-  NearContacts near(const ToolPose& pose, double side);
+  NearContacts near(const ToolPose& pose, double side) override;
   // The points in shell and interior voxels. Those without a normal are left out.
   VoxelContacts in_voxels(const ToolPose& pose);
   // Points in shell or interior voxels, and under the look-ahead rule those whose disk is touched.

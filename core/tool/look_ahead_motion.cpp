@@ -51,7 +51,7 @@ Vector6 LookAheadMotion::step_towards(const Vector6& a_gu, const ToolPose& pose,
   return capped(turned(pose.q_WT, motion.a_g), reach_m_, longest_m);
 }
 
-ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, ContactList& contacts,
+ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, NearContactSource& source,
                                        bool updated) {
   ToolMotionReport report;
   const Vec3 start_W = pose.p_W;
@@ -60,7 +60,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, C
   settling_ |= updated;
   Progress progress(p_.at_rest_m, kPatience);
   while (true) {
-    const NearContacts near = contacts.near(pose, settling_ ? side_ : 0);
+    const NearContacts near = source.near(pose, settling_ ? side_ : 0);
     ++report.detections;
     if (near.deepest_m <= kCollision_m) settling_ = false;
     if (near.contacts.empty()) side_ = 1;  // what held the tool is left behind

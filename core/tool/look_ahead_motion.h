@@ -3,15 +3,18 @@
 // same program. Not in the dissertation.
 #pragma once
 
+#include "core/tool/near_contacts.h"
 #include "core/tool/tool_motion.h"
 
 namespace remote_touch {
 
-class LookAheadMotion final : public ToolMotion {
+class LookAheadMotion {
  public:
-  LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool)
-      : p_(parameters), reach_m_(tool.reach_m), program_(tool) {}
-  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
+  // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
+  LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
+      : p_(parameters), reach_m_(reach_m), program_(tool) {}
+  // As ToolMotion::move().
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated);
 
  private:
   Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
