@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/sphere_tree/tool_spheres.h"
 #include "core/tool/look_ahead_motion.h"
@@ -104,6 +106,16 @@ TEST(RegionContacts, ABallLiesInTheCreaseOfTwoRegions) {
   held.move_to(at({0.002, 0, 0}));
   EXPECT_NEAR(held.pose.p_W.y(), 0.04, 1e-4);  // 30, 40, 50 mm
   EXPECT_NEAR(held.pose.p_W.x(), 0, 1e-4);
+}
+
+// The same where both lines are alike: one of the two must not hide the other.
+TEST(RegionContacts, ABallLiesInAnObtuseCrease) {
+  Held held(kBox, one_leaf(0.01));
+  const Vec3 a = Vec3(1, 0.05, 0.05).normalized(), b = Vec3(1, 0.85, 0.85).normalized();
+  held.frame(regions_at({-0.05 * a, -0.05 * b}));  // the ball touches both with its middle in the origin
+  held.pose.p_W = 0.05 * (a + b);
+  held.move_to(at(-0.005 * (a + b)));
+  EXPECT_NEAR(held.pose.p_W.norm(), 0, 2e-4);
 }
 
 TEST(RegionContacts, WithoutRegionsTheToolFollows) {

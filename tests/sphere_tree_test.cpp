@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/sphere_tree/region_tree.h"
 #include "core/sphere_tree/tree_collision.h"

@@ -74,6 +74,35 @@ TEST(ToolSpheres, CoverTheToolTheCloserTheMoreThereAre) {
   }
 }
 
+// The same two numbers by other means: of a box the distance is known, and its surface is easily walked over.
+TEST(ToolSpheres, WhatIsToldOfABoxIsTrue) {
+  const Vec3 half_m(0.02, 0.005, 0.01);
+  const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
+  const PointCloud ways = scenes::random_cloud(3000, 1, 8);
+  double outside_m = 0, inside_m = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (const Sphere& leaf : made.spheres.leaves())
+      outside_m = std::max(
+          outside_m, scenes::box_distance(half_m, leaf.centre + leaf.radius_m * ways.point(i).normalized()));
+    const Vec3 way = ways.point(i) / ways.point(i).cwiseAbs().maxCoeff();  // one side of the box
+    double least_m = 1;
+    for (const Sphere& leaf : made.spheres.leaves())
+      least_m = std::min(least_m, (half_m.cwiseProduct(way) - leaf.centre).norm() - leaf.radius_m);
+    inside_m = std::max(inside_m, least_m);
+  }
+  EXPECT_GT(made.growth_m, 1e-3);  // or there would be nothing to tell
+  EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
+  EXPECT_LT(outside_m, made.growth_m + 1e-6);
+  EXPECT_LT(inside_m, 5e-5);
+}
+
+TEST(ToolSpheres, TellsNoLessThanItIs) {
+  ToolSpheres made;
+  made.outside_m = 0.001291;
+  EXPECT_EQ(text(made),
+            "0 spheres, at most 1.30 mm outside the mesh; its surface is at most 0.00 mm outside them");
+}
+
 TEST(ToolSpheres, ABallIsNearlyOneSphere) {
   const ToolSpheres made = make_tool_spheres(tool_of("ball"), 1);
   ASSERT_EQ(made.spheres.leaves().size(), 1u);

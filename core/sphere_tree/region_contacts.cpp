@@ -8,6 +8,7 @@ namespace remote_touch {
 
 namespace {
 
+constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
 constexpr double kCell_m = 4e-3, kCellGrowth = 1.5;  // as for points, see contact_list.cpp
 
 std::size_t way_number(const Vec3& way) {
@@ -26,14 +27,14 @@ RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double lo
       collision_(*tool_),
       deepest_(kWays * tool_->leaves().size()) {
   chosen_.reserve(deepest_.size());
-  contacts_.reserve(deepest_.size());
+  contacts_.reserve(std::max(kMost, deepest_.size()));
 }
 
 Vec3 RegionContacts::way_out_W(const LeafPair& pair) const {
   return collision_.tool_leaf(pair.tool).centre - regions_.spheres().leaves()[pair.region].centre;
 }
 
-void RegionContacts::choose(std::span<const LeafPair> pairs) {
+void RegionContacts::choose_deepest(std::span<const LeafPair> pairs) {
   ++detection_;
   chosen_.clear();
   for (const LeafPair& pair : pairs) {
@@ -57,14 +58,16 @@ ToolContact RegionContacts::contact(const LeafPair& pair, const ToolPose& pose) 
 }
 
 NearContacts RegionContacts::near(const ToolPose& pose, double) {
-  choose(collision_.near(pose, regions_.spheres(), look_ahead_m_));
-  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
+  const std::span<const LeafPair> pairs = collision_.near(pose, regions_.spheres(), look_ahead_m_);
   contacts_.clear();
-  for (const std::uint32_t at : chosen_) {
-    contacts_.push_back(contact(deepest_[at].pair, pose));
-    found.deepest_m = std::max(found.deepest_m, contacts_.back().depth_m);
+  if (pairs.size() <= kMost) {
+    for (const LeafPair& pair : pairs) contacts_.push_back(contact(pair, pose));
+  } else {
+    choose_deepest(pairs);
+    for (const std::uint32_t at : chosen_) contacts_.push_back(contact(deepest_[at].pair, pose));
   }
-  constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
+  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
+  for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
   for (double cell_m = kCell_m; contacts_.size() > kMost; cell_m *= kCellGrowth)
     thinning_.thin(contacts_, cell_m);
   found.contacts = contacts_;

@@ -11,9 +11,10 @@
 
 namespace remote_touch {
 
-// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres. Of the pairs
-// of one leaf of the tool whose lines are alike the deepest counts: regions overlap, and deep inside there
-// are tens of thousands.
+// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres. Where there
+// are more than the motion takes, of the pairs of one leaf of the tool whose lines are alike the deepest
+// counts: regions overlap, and deep inside there are tens of thousands of pairs. Their list grows with the
+// most that were found: such a detection allocates.
 class RegionContacts final : public NearContactSource {
  public:
   // tool: in the tool frame.
@@ -32,7 +33,7 @@ class RegionContacts final : public NearContactSource {
     LeafPair pair;
     std::uint32_t detection = 0;  // that it was found in
   };
-  void choose(std::span<const LeafPair> pairs);
+  void choose_deepest(std::span<const LeafPair> pairs);
   ToolContact contact(const LeafPair& pair, const ToolPose& pose) const;
   Vec3 way_out_W(const LeafPair& pair) const;
 
@@ -41,7 +42,7 @@ class RegionContacts final : public NearContactSource {
   RegionTree regions_;
   TreeCollision collision_;
   std::vector<Deepest> deepest_;       // of every leaf of the tool and way
-  std::vector<std::uint32_t> chosen_;  // those of this detection
+  std::vector<std::uint32_t> chosen_;  // those of this detection, as numbers in deepest_
   std::uint32_t detection_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_;

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 void RegionTree::gather(const PointCloud& cloud, std::uint32_t point) {
   const double radius_m = cloud.fixture_radius_m[point];
-  if (!(radius_m > 0) || !cloud.is_measured(point)) return;
+  if (!(radius_m > 0 && std::isfinite(radius_m)) || !cloud.is_measured(point)) return;
   patch_.push_back({cloud.point(point), radius_m});
   points_.push_back(point);
 }

@@ -27,16 +27,24 @@ Vec3 corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
   return mesh.vertices[static_cast<std::size_t>(mesh.triangles[triangle][i])];
 }
 
-// Places of every triangle no farther apart than spacing_m, its corners among them; of a fine mesh many more
-// than one for every square of that side.
+// Places of every triangle no farther apart than spacing_m, its corners among them: rows along its longest
+// side up to the corner above. Of a fine mesh they are many more than one for every square of that side.
 std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m) {
   std::vector<Vec3> samples;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 a = corner(mesh, t, 0), ab = corner(mesh, t, 1) - a, ac = corner(mesh, t, 2) - a;
-    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing_m)));
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; i + j <= n; ++j) samples.push_back(a + (double(i) / n) * ab + (double(j) / n) * ac);
+    std::size_t first = 0;
+    const auto side = [&](std::size_t i) { return Vec3(corner(mesh, t, (i + 1) % 3) - corner(mesh, t, i)); };
+    for (std::size_t i = 1; i < 3; ++i)
+      if (side(i).norm() > side(first).norm()) first = i;
+    const Vec3 a = corner(mesh, t, first), base = side(first), up = corner(mesh, t, (first + 2) % 3) - a;
+    const double length = base.norm(), height = length > 0 ? base.cross(up).norm() / length : 0;
+    const int columns = std::max(1, static_cast<int>(std::ceil(length / spacing_m))),
+              rows = std::max(1, static_cast<int>(std::ceil(height / spacing_m)));
+    for (int j = 0; j <= rows; ++j)
+      for (int i = 0; i <= columns; ++i) {
+        const double above = double(j) / rows, along = double(i) / columns;
+        samples.push_back(a + above * up + (1 - above) * along * base);
+      }
   }
   return samples;
 }
@@ -184,7 +192,8 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
   std::vector<Sphere> leaves =
       tightest(cover, tool, static_cast<std::size_t>(most_leaves), made.growth_m).spheres;
   // Between the places that were covered some of the surface is left.
-  const std::vector<Vec3> dense = surface_samples(tool.mesh, kDenser * spacing_m);
+  const double finer_m = kDenser * spacing_m;
+  const std::vector<Vec3> dense = thinned(surface_samples(tool.mesh, finer_m), 0.5 * finer_m);
   const double left_m = std::max(0.0, farthest_inside_m(dense, leaves));
   for (Sphere& leaf : leaves) leaf.radius_m += left_m;
   made.growth_m += left_m;
@@ -196,8 +205,9 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
 
 std::string text(const ToolSpheres& made) {
   const auto mm = [](double metres) {
-    const std::string all = std::to_string(1e3 * metres);
-    return all.substr(0, all.find('.') + 3);
+    const auto hundredths = static_cast<long>(std::ceil(1e5 * metres));  // never less than it is
+    const std::string part = std::to_string(100 + hundredths % 100);
+    return std::to_string(hundredths / 100) + "." + part.substr(1);
   };
   return std::to_string(made.spheres.leaves().size()) + " spheres, at most " + mm(made.outside_m) +
          " mm outside the mesh; its surface is at most " + mm(made.inside_m) + " mm outside them";

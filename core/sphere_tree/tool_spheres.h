@@ -1,6 +1,6 @@
 // A tool as a sphere tree, made from its mesh beforehand, 7.4: what the dissertation takes from the Sphere
-// Tree Toolkit [118]. Leaves are balls inscribed in the tool, all grown by the same growth: the least with
-// which so many of them cover the surface.
+// Tree Toolkit [118]. Leaves are balls inscribed in the tool, all grown by the same growth: about the least
+// with which so many of them cover the surface.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ struct ToolSpheres {
   SphereTree spheres;  // in the tool frame
   double growth_m = 0;
   // How far the union of the leaves is from the mesh: the most that a leaf stands out of it, and the most
-  // that the surface stands out of all leaves, both measured on dense samples. Nothing is left of the second,
-  // and no more than growth_m can be of the first.
+  // that the surface stands out of all leaves, both measured on dense samples. The first can be no more than
+  // growth_m; the leaves were grown until nothing was left of the second on these samples.
   double outside_m = 0, inside_m = 0;
 };
 std::string text(const ToolSpheres& spheres);
