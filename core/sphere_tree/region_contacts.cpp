@@ -8,9 +8,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
-constexpr double kCell_m = 4e-3, kCellGrowth = 1.5;  // as for points, see contact_list.cpp
-
 std::size_t way_number(const Vec3& way) {
   const Vec3 along = way.cwiseAbs();
   const std::size_t largest =
@@ -27,7 +24,7 @@ RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double lo
       collision_(*tool_),
       deepest_(kWays * tool_->leaves().size()) {
   chosen_.reserve(deepest_.size());
-  contacts_.reserve(std::max(kMost, deepest_.size()));
+  contacts_.reserve(std::max(ContactThinning::kMost, deepest_.size()));
 }
 
 Vec3 RegionContacts::way_out_W(const LeafPair& pair) const {
@@ -60,7 +57,7 @@ ToolContact RegionContacts::contact(const LeafPair& pair, const ToolPose& pose) 
 NearContacts RegionContacts::near(const ToolPose& pose, double) {
   const std::span<const LeafPair> pairs = collision_.near(pose, regions_.spheres(), look_ahead_m_);
   contacts_.clear();
-  if (pairs.size() <= kMost) {
+  if (pairs.size() <= ContactThinning::kMost) {
     for (const LeafPair& pair : pairs) contacts_.push_back(contact(pair, pose));
   } else {
     choose_deepest(pairs);
@@ -68,8 +65,7 @@ NearContacts RegionContacts::near(const ToolPose& pose, double) {
   }
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
-  for (double cell_m = kCell_m; contacts_.size() > kMost; cell_m *= kCellGrowth)
-    thinning_.thin(contacts_, cell_m);
+  thinning_.thin(contacts_);
   found.contacts = contacts_;
   return found;
 }

@@ -70,7 +70,7 @@ double area_of(const TriangleMesh& mesh) {
 // The largest balls inscribed in the tool: those around nodes of the field near its medial axis. From any
 // other place the distance to the surface grows by nearly the whole way to one of the neighbours, and the
 // ball there holds the ball here.
-std::vector<Sphere> inscribed_balls(const VoxelTool& tool) {
+std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& triangles) {
   const VoxelGrid& grid = tool.grid;
   const int n[3] = {grid.cells[0] + 1, grid.cells[1] + 1, grid.cells[2] + 1};
   const auto at = [&](int i, int j, int k) {
@@ -94,8 +94,7 @@ std::vector<Sphere> inscribed_balls(const VoxelTool& tool) {
             }
         if (steepest < kDominated) balls.push_back({grid.origin_T + grid.size_m * Vec3(i, j, k), here});
       }
-  // Deep inside the field can be too large by a voxel.
-  const TriangleTree triangles(tool.mesh);
+      // Deep inside the field can be too large by a voxel.
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::size_t i = 0; i < balls.size(); ++i)
     balls[i].radius_m = std::sqrt(triangles.nearest(balls[i].centre, 0).squared_m2);
@@ -159,8 +158,8 @@ double farthest_inside_m(std::span<const Vec3> samples, std::span<const Sphere> 
 }
 
 // The most that a place of a leaf lies outside the mesh, over places spread evenly on it.
-double farthest_outside_m(const VoxelTool& tool, std::span<const Sphere> leaves) {
-  const TriangleTree triangles(tool.mesh);
+double farthest_outside_m(const VoxelTool& tool, const TriangleTree& triangles,
+                          std::span<const Sphere> leaves) {
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
   double farthest = 0;
 #pragma omp parallel for schedule(dynamic) reduction(max : farthest)
@@ -182,7 +181,8 @@ double farthest_outside_m(const VoxelTool& tool, std::span<const Sphere> leaves)
 }  // namespace
 
 ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
-  std::vector<Sphere> balls = inscribed_balls(tool);
+  const TriangleTree triangles(tool.mesh);
+  std::vector<Sphere> balls = inscribed_balls(tool, triangles);
   if (balls.empty())
     throw InputError("tool", "no place of its grid is inside; allowed a smaller renderer.tool_voxel_m");
   const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * most_leaves));
@@ -198,7 +198,7 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
   for (Sphere& leaf : leaves) leaf.radius_m += left_m;
   made.growth_m += left_m;
   made.inside_m = std::max(0.0, farthest_inside_m(dense, leaves));
-  made.outside_m = farthest_outside_m(tool, leaves);
+  made.outside_m = farthest_outside_m(tool, triangles, leaves);
   made.spheres = tree_of(std::move(leaves));
   return made;
 }

@@ -13,12 +13,6 @@ constexpr double kTouch_m = 1e-4;       // a disk closer to the tool than this i
 constexpr double kSearch_m = 3e-4;      // a disk closer than this has its nearest place searched
 constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
 
-// A step turns the tool by so little that two points of 4 mm ask for the same motion within a tenth of a
-// millimetre; what is left over the next detection finds. Larger cells where these are still too many:
-// contacts have to stay spread over the tool.
-constexpr double kCell_m = 4e-3, kCellGrowth = 1.5;
-constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
-
 }  // namespace
 
 ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
@@ -26,7 +20,7 @@ ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParame
     : p_(parameters),
       kernels_(kernels),
       finder_(std::move(tool), kernels),
-      disks_(parameters.disk_share, kCell_m) {}
+      disks_(parameters.disk_share, ContactThinning::kCell_m) {}
 
 void ContactList::on_frame(const PointCloud& cloud) {
   finder_.on_frame(cloud);
@@ -41,8 +35,7 @@ void ContactList::on_frame(const PointCloud& cloud) {
 }
 
 std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
-  for (double cell_m = kCell_m; contacts.size() > kMost; cell_m *= kCellGrowth)
-    thinning_.thin(contacts, cell_m);
+  thinning_.thin(contacts);
   return contacts;
 }
 
@@ -100,7 +93,7 @@ NearContacts ContactList::near(const ToolPose& pose, double side) {
   contacts_.clear();
   disks_.look(finder_, kernels_, pose, reach_m);
   gather_near();
-  if (near_.size() > kMost)
+  if (near_.size() > ContactThinning::kMost)
     gather_deepest(side);
   else
     for (const NearDisk& near : near_) contacts_.push_back(contact(near.disk, side));

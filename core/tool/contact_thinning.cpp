@@ -47,6 +47,11 @@ std::size_t ContactThinning::cell(std::uint64_t cell_and_octant) {
   return slot->cell;
 }
 
+void ContactThinning::thin(std::vector<ToolContact>& contacts) {
+  constexpr double kGrowth = 1.5;
+  for (double cell_m = kCell_m; contacts.size() > kMost; cell_m *= kGrowth) thin(contacts, cell_m);
+}
+
 void ContactThinning::thin(std::vector<ToolContact>& contacts, double cell_m) {
   begin();
   std::size_t kept = 0;

@@ -22,10 +22,16 @@ class ContactThinning {
   // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
   std::size_t cell(std::uint64_t cell_and_octant);
 
-  // Keeps the deepest contact of every cell, in place.
-  void thin(std::vector<ToolContact>& contacts, double cell_m);
+  // Keeps the deepest contact of every cell, in place, as long as there are more than the motion can take.
+  // Cells of kCell_m at first: a step turns the tool by so little that two points of 4 mm ask for the same
+  // motion within a tenth of a millimetre, and what is left over the next detection finds. Then larger ones,
+  // for contacts have to stay spread over the tool.
+  void thin(std::vector<ToolContact>& contacts);
+  static constexpr double kCell_m = 4e-3;
+  static constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
 
  private:
+  void thin(std::vector<ToolContact>& contacts, double cell_m);
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t cell = 0;
