@@ -24,7 +24,8 @@ void Trace::reserve(std::size_t ticks) {
   frame_hash.reserve(ticks);
 }
 
-void Trace::append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth) {
+void Trace::append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
+                   const std::optional<HandState>& hand) {
   time_s.push_back(time);
   push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
       push(normal, out.normal_W), push(carried_m, out.carried_m), push(slave_m, out.slave_W);
@@ -40,6 +41,23 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   slave_distance_m.push_back(truth.slave_distance_m);
   frame_hash.push_back(truth.frame_hash);
   if (out.tool) append_tool(device, *out.tool);
+  if (out.guidance) append_guidance(*out.guidance);
+  if (hand) append_hand(device, *hand);
+}
+
+void Trace::append_guidance(const GuidanceOutput& guidance) {
+  guidance_pulls.push_back(guidance.pulls ? 1 : 0);
+  push(guidance_force_N, guidance.force_N), push(guidance_torque_Nm, guidance.torque_Nm);
+  push(goal_m, guidance.goal_W), push(goal_orientation, guidance.goal_orientation_W);
+  sequence_step.push_back(guidance.sequence_step);
+  sequence_running.push_back(guidance.sequence_running ? 1 : 0);
+  sequence_missed.push_back(guidance.sequence_missed);
+}
+
+void Trace::append_hand(const DeviceState& device, const HandState& hand) {
+  push(intended_m, hand.intended_W), push(intended_orientation, hand.intended_orientation_W);
+  push(device_force_N, hand.force_N), push(device_torque_Nm, hand.torque_Nm);
+  buttons.push_back(static_cast<std::int32_t>(device.buttons));
 }
 
 void Trace::append_tool(const DeviceState& device, const ToolOutput& tool) {
@@ -104,8 +122,12 @@ std::vector<Column> Trace::columns() const {
        1,
        {}},
   };
-  if (has_tool())
-    for (Column& column : tool_columns()) list.push_back(std::move(column));
+  const auto add = [&](std::vector<Column> more) {
+    for (Column& column : more) list.push_back(std::move(column));
+  };
+  if (has_tool()) add(tool_columns());
+  if (has_guidance()) add(guidance_columns());
+  if (has_hand()) add(hand_columns());
   list.push_back(
       {kRunningHash, "1", "fingerprint of all columns up to this tick", running_hash(list), 1, {}});
   return list;
@@ -127,6 +149,39 @@ std::vector<Column> Trace::tool_columns() const {
        1,
        {"no", "yes"}},
       {"disabled_points", "1", "points of the newest frame without a normal", disabled_points, 1, {}},
+  };
+}
+
+std::vector<Column> Trace::guidance_columns() const {
+  return {
+      {"guidance_pulls",
+       "1",
+       "a guidance fixture is active and its target is seen",
+       guidance_pulls,
+       1,
+       {"no", "yes"}},
+      {"guidance_force", "N", "force of guidance on the hand, part of force", guidance_force_N, 3, {}},
+      {"guidance_torque", "N m", "torque of guidance on the hand, part of torque", guidance_torque_Nm, 3, {}},
+      {"guidance_goal", "m", "where guidance pulls the tool to, world frame", goal_m, 3, {}},
+      {"guidance_orientation", "1", "orientation of the goal, quaternion w x y z", goal_orientation, 4, {}},
+      {"sequence_step", "1", "current step of the task, from 0", sequence_step, 1, {}},
+      {"sequence_running", "1", "the step has begun", sequence_running, 1, {"no", "yes"}},
+      {"sequence_missed", "1", "steps that ended by their deadline so far", sequence_missed, 1, {}},
+  };
+}
+
+std::vector<Column> Trace::hand_columns() const {
+  return {
+      {"intended_position", "m", "where the operator wants the device, world frame", intended_m, 3, {}},
+      {"intended_orientation",
+       "1",
+       "orientation that the operator wants, quaternion w x y z",
+       intended_orientation,
+       4,
+       {}},
+      {"device_force", "N", "force that the device exerts on the hand", device_force_N, 3, {}},
+      {"device_torque", "N m", "torque that the device exerts on the hand", device_torque_Nm, 3, {}},
+      {"buttons", "1", "buttons of the device that are down, a bit each", buttons, 1, {}},
   };
 }
 

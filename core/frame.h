@@ -1,8 +1,11 @@
 // What crosses the seam between a sensor and a renderer, and between a device and a renderer.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "core/guidance/guidance_target.h"
 #include "core/neighbour_search.h"
 #include "core/vector.h"
 
@@ -14,12 +17,14 @@ struct Frame {
   double captured_s = 0;
   double arrives_s = 0;
   std::shared_ptr<const NeighbourSearch> points;
+  std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
 };
 
-// The haptic interface point (HIP) in the world frame.
+// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  std::uint32_t buttons = 0;
 };
 
 }  // namespace remote_touch

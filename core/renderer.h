@@ -35,6 +35,18 @@ struct ToolOutput {
   int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
 };
 
+// What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
+struct GuidanceOutput {
+  bool pulls = false;  // a guidance fixture is active and the newest frame shows its target
+  Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
+  // Where it pulls to, world frame; NaN where it does not.
+  Vec3 goal_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::Quaterniond goal_orientation_W{Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN())};
+  int sequence_step = 0;          // the task's current step; as many as it has after the last
+  bool sequence_running = false;  // the step has begun
+  int sequence_missed = 0;        // steps that ended by their deadline so far
+};
+
 // Metres, newtons, world frame. force_N acts on the hand that holds the device.
 struct RenderOutput {
   Vec3 proxy_W = Vec3::Zero();
@@ -54,6 +66,7 @@ struct RenderOutput {
   int frame_index = -1;                 // newest frame in use, -1 before the first
   RenderStatus status = RenderStatus::ok;
   std::optional<ToolOutput> tool;  // a 3-DOF renderer has none
+  std::optional<GuidanceOutput> guidance;  // of experiments with guidance or a sequence
 };
 
 class Renderer {

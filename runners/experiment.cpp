@@ -1,5 +1,6 @@
 #include "runners/experiment.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -58,14 +59,49 @@ std::vector<Part<FixtureEntry>> read_fixtures(const Json& list) {
   return parts;
 }
 
-std::optional<DepthPipelineSettings> read_depth_pipeline(const Json& json) {
-  if (json.is_null()) return {};
-  if (!json.is_object()) throw InputError("depth_pipeline", "allowed {parameters}, or to leave it out");
-  DepthPipelineSettings settings;
-  read_parameters(json, parameters(settings), "depth_pipeline", false);
+template <class Settings>
+Settings read_settings(const Json& json, const std::string& path) {
+  if (!json.is_object()) throw InputError(path, "allowed {parameters}, or to leave it out");
+  Settings settings;
+  read_parameters(json, parameters(settings), path, false);
   const std::string contradiction = conflict(settings);
-  if (!contradiction.empty()) throw InputError("depth_pipeline." + contradiction);
+  if (!contradiction.empty()) throw InputError(path + "." + contradiction);
   return settings;
+}
+
+// A part of the experiment that may be left out.
+template <class Settings>
+std::optional<Settings> read_section(Json& configuration, const std::string& path) {
+  const Json json = taken(configuration, path);
+  if (json.is_null()) return {};
+  return read_settings<Settings>(json, path);
+}
+
+std::vector<SequenceStep> read_sequence(const Json& list) {
+  std::vector<SequenceStep> steps;
+  if (list.is_null()) return steps;
+  if (!list.is_array()) throw InputError("sequence", "allowed a list of {\"action\": ..., parameters}");
+  for (std::size_t i = 0; i < list.size(); ++i)
+    steps.push_back(read_settings<SequenceStep>(list[i], "sequence." + std::to_string(i)));
+  return steps;
+}
+
+template <class Settings>
+void write_section(const std::optional<Settings>& section, const char* path, Json& json) {
+  if (!section) return;
+  Settings settings = *section;
+  json[path] = Json::object();
+  write_parameters(parameters(settings), json[path]);
+}
+
+// Of a rule that is not built: some read files when they are.
+FixtureValues values_of(const Part<FixtureEntry>& rule) {
+  Json all = Json::object(), own = Json::object();
+  write_parameters(rule.blueprint->settings(), all);
+  FixtureValues values;
+  for (const Parameter& p : parameters(values)) own[p.name] = all[p.name];
+  read_parameters(own, parameters(values), rule.name, false);
+  return values;
 }
 
 template <class Entry>
@@ -88,11 +124,17 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
 Experiment Experiment::from_json(Json configuration) {
   Experiment experiment;
   experiment.scenario_ = read_part(taken(configuration, "scenario"), scenarios(), "scenario");
-  experiment.depth_pipeline_ = read_depth_pipeline(taken(configuration, "depth_pipeline"));
+  experiment.depth_pipeline_ = read_section<DepthPipelineSettings>(configuration, "depth_pipeline");
   experiment.fixtures_ = read_fixtures(taken(configuration, "fixtures"));
+  experiment.guidance_ = read_section<GuidanceSettings>(configuration, "guidance");
+  experiment.sequence_ = read_sequence(taken(configuration, "sequence"));
   experiment.renderer_ = read_part(taken(configuration, "renderer"), renderers(), "renderer");
   experiment.trajectory_ = read_part(taken(configuration, "trajectory"), trajectories(), "trajectory");
+  experiment.operator_ = read_section<OperatorSettings>(configuration, "operator");
+  experiment.device_ = read_section<MotorSettings>(configuration, "device");
   read_parameters(configuration, parameters(experiment.settings_), "", false);
+  const std::string contradiction = conflict(experiment.fixture_values(), experiment.sequence_);
+  if (!contradiction.empty()) throw InputError(contradiction);
   return experiment;
 }
 
@@ -106,15 +148,19 @@ std::string Experiment::to_json() const {
   RunSettings settings = settings_;
   write_parameters(parameters(settings), json);
   json["scenario"] = part_json(scenario_);
-  if (depth_pipeline_) {
-    DepthPipelineSettings pipeline = *depth_pipeline_;
-    json["depth_pipeline"] = Json::object();
-    write_parameters(parameters(pipeline), json["depth_pipeline"]);
-  }
+  write_section(depth_pipeline_, "depth_pipeline", json);
   json["fixtures"] = Json::array();
   for (const auto& rule : fixtures_) json["fixtures"].push_back(part_json(rule));
+  write_section(guidance_, "guidance", json);
+  for (SequenceStep step : sequence_) {
+    Json step_json = Json::object();
+    write_parameters(parameters(step), step_json);
+    json["sequence"].push_back(step_json);
+  }
   json["renderer"] = part_json(renderer_);
   json["trajectory"] = part_json(trajectory_);
+  write_section(operator_, "operator", json);
+  write_section(device_, "device", json);
   return json.dump();
 }
 
@@ -136,20 +182,44 @@ std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenari
   return trajectory_.blueprint->build(scenario);
 }
 
-std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels) const {
-  return renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
+std::vector<FixtureValues> Experiment::fixture_values() const {
+  std::vector<FixtureValues> values;
+  for (const auto& rule : fixtures_) values.push_back(values_of(rule));
+  return values;
 }
 
-FixtureAssignment Experiment::build_fixtures() const {
+bool Experiment::is_guided() const {
+  const std::vector<FixtureValues> values = fixture_values();
+  return !sequence_.empty() || std::any_of(values.begin(), values.end(), [](const FixtureValues& v) {
+    return v.role == FixtureRole::guidance;
+  });
+}
+
+std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
+                                                     std::shared_ptr<FixtureSwitches> switches) const {
+  auto renderer = renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
+  if (!is_guided()) return renderer;
+  if (!switches) switches = std::make_shared<FixtureSwitches>();
+  return std::make_unique<GuidedRenderer>(std::move(renderer), guidance_.value_or(GuidanceSettings{}),
+                                          fixture_values(), sequence_, std::move(switches));
+}
+
+FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   for (const auto& rule : fixtures_) rules.push_back(rule.blueprint->build());
-  return FixtureAssignment(std::move(rules));
+  // Frames of a scene at rest are sent on only where something can change.
+  return FixtureAssignment(std::move(rules), sequence_.empty() ? nullptr : std::move(switches));
 }
 
-FrameProcessing Experiment::build_processing(const Kernels& kernels) const {
-  FrameProcessing processing{nullptr, build_fixtures()};
+FrameProcessing Experiment::build_processing(const Kernels& kernels,
+                                             std::shared_ptr<const FixtureSwitches> switches) const {
+  FrameProcessing processing{nullptr, build_fixtures(std::move(switches))};
   if (depth_pipeline_) processing.depth = std::make_unique<DepthPipeline>(*depth_pipeline_, kernels);
   return processing;
+}
+
+SimulatedHand Experiment::build_hand() const {
+  return {operator_, device_, 1 / settings_.haptic_rate_hz};
 }
 
 }  // namespace remote_touch

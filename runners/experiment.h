@@ -1,4 +1,5 @@
-// One resolved configuration: scenario, depth pipeline, fixtures, renderer, trajectory, durations, seed.
+// One resolved configuration: scenario, depth pipeline, fixtures, guidance, task, renderer, trajectory,
+// operator, device, durations, seed.
 #pragma once
 
 #include <memory>
@@ -7,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/guidance/guided_renderer.h"
 #include "runners/catalog.h"
 #include "runners/frame_stream.h"
+#include "runners/operator/simulated_hand.h"
 #include "runners/stored.h"
 
 namespace remote_touch {
@@ -48,15 +51,27 @@ class Experiment {
 
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
-  std::unique_ptr<Renderer> build_renderer(const Kernels& kernels) const;
-  FixtureAssignment build_fixtures() const;
-  FrameProcessing build_processing(const Kernels& kernels) const;
+  // switches: where a task sets and the processing of frames reads which fixtures count; without a task there
+  // are none to set.
+  std::unique_ptr<Renderer> build_renderer(const Kernels& kernels,
+                                           std::shared_ptr<FixtureSwitches> switches = nullptr) const;
+  FixtureAssignment build_fixtures(std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
+  FrameProcessing build_processing(const Kernels& kernels,
+                                   std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
+  SimulatedHand build_hand() const;
 
  private:
+  std::vector<FixtureValues> fixture_values() const;
+  bool is_guided() const;
+
   RunSettings settings_;
   Part<ScenarioEntry> scenario_;
   std::optional<DepthPipelineSettings> depth_pipeline_;
   std::vector<Part<FixtureEntry>> fixtures_;
+  std::optional<GuidanceSettings> guidance_;
+  std::vector<SequenceStep> sequence_;
+  std::optional<OperatorSettings> operator_;
+  std::optional<MotorSettings> device_;
   Part<RendererEntry> renderer_;
   Part<TrajectoryEntry> trajectory_;
 };

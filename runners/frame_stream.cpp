@@ -45,22 +45,27 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
   while (!on_the_way_.empty() && on_the_way_.front().arrives_s <= now_s) {
     const OnTheWay arrived = on_the_way_.front();
     on_the_way_.erase(on_the_way_.begin());
-    const auto cloud = points(arrived.frame);
-    if (hash_frames_) hash_ = hash_of(arrived.frame, *cloud);
-    renderer.on_frame({arrived.frame, captured_s(arrived.frame), arrived.arrives_s, cloud});
+    Frame frame{arrived.frame, captured_s(arrived.frame), arrived.arrives_s, nullptr};
+    fill(frame);
+    if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
+    renderer.on_frame(frame);
   }
 }
 
-std::shared_ptr<const NeighbourSearch> FrameStream::points(int frame) const {
-  if (!processing_.changes_points()) return scenario_.points(seen(frame));
-  PointCloud cloud = scenario_.cloud(seen(frame));
+void FrameStream::fill(Frame& frame) const {
+  if (!processing_.changes_points()) {
+    frame.points = scenario_.points(seen(frame.index));
+    return;
+  }
+  PointCloud cloud = scenario_.cloud(seen(frame.index));
   if (processing_.depth) {
     if (!cloud.image)
       throw InputError("depth_pipeline", "this scenario's frames are no depth images; allowed none");
     processing_.depth->process(cloud);
   }
-  processing_.fixtures.assign(cloud, captured_s(frame));
-  return make_search(std::move(cloud));
+  frame.guidance = processing_.fixtures.targets(cloud, frame.captured_s);
+  processing_.fixtures.assign(cloud, frame.captured_s);
+  frame.points = make_search(std::move(cloud));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {

@@ -52,7 +52,7 @@ class FrameStream {
   int seen(int frame) const;  // the scenario's frame that this one shows
   double captured_s(int frame) const;
   void send(int frame);
-  std::shared_ptr<const NeighbourSearch> points(int frame) const;
+  void fill(Frame& frame) const;  // with its points and targets
   std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
 
   const Scenario& scenario_;

@@ -53,9 +53,11 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const Kernels& kernels = options.kernels ? *options.kernels : kernels_for(best_isa());
   const auto scenario = experiment.build_scenario(kernels);
   const auto trajectory = experiment.build_trajectory(*scenario);
-  const auto renderer = experiment.build_renderer(kernels);
-  FrameStream frames(*scenario, experiment.build_processing(kernels), experiment.settings().delivery,
+  const auto switches = std::make_shared<FixtureSwitches>();
+  const auto renderer = experiment.build_renderer(kernels, switches);
+  FrameStream frames(*scenario, experiment.build_processing(kernels, switches), experiment.settings().delivery,
                      experiment.settings().key, options.hash_frames);
+  SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
 
   Trace trace;
@@ -66,11 +68,12 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     // Time is made from the tick's number, never added up.
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     frames.deliver_until(time_s, *renderer);
-    const DeviceState device = trajectory->at(time_s);
+    const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()));
+    hand.feel(device, out);
+    trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()), hand.state());
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }

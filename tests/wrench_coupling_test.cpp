@@ -33,6 +33,11 @@ ToolPose on_loop(double s) {
           rotation({0.6 * std::sin(w), 0.8 * std::cos(w) - 0.3, 0.5 * std::sin(2 * w)})};
 }
 
+Wrench wrench_of(const ToolParameters& p, const Eigen::Matrix3d& inertia_m2, const ToolPose& tool,
+                 const ToolPose& device) {
+  return coupling_wrench(coupling_of(p, p.stiffness_N_per_m), inertia_m2, tool, device);
+}
+
 // Work of the wrench on the hand around the loop, relative to the largest energy on it. Gauss quadrature of
 // two nodes on every step, with the device's twist by central differences in the group.
 double relative_loop_work(const ToolParameters& p, const ToolPose& tool, int steps) {
@@ -44,7 +49,7 @@ double relative_loop_work(const ToolParameters& p, const ToolPose& tool, int ste
         return Vector6(displacement(on_loop(s - d), on_loop(s + d)) / (2 * d));
       };
       const Vector6 twist = (4 * difference(h / 2) - difference(h)) / 3;
-      const Wrench w = coupling_wrench(p, uneven_inertia(), tool, on_loop(s));
+      const Wrench w = wrench_of(p, uneven_inertia(), tool, on_loop(s));
       work += 0.5 / steps * (w.force_N.dot(twist.head<3>()) + w.torque_Nm.dot(twist.tail<3>()));
       peak = std::max(peak, energy(p, tool, on_loop(s)));
     }
@@ -54,7 +59,7 @@ double relative_loop_work(const ToolParameters& p, const ToolPose& tool, int ste
 
 TEST(WrenchCoupling, PullsTheHandTowardsTheTool) {
   const ToolParameters p = without_limits();
-  const Wrench w = coupling_wrench(p, uneven_inertia(), {}, {{0.001, 0, 0}, rotation({0, 0.1, 0})});
+  const Wrench w = wrench_of(p, uneven_inertia(), {}, {{0.001, 0, 0}, rotation({0, 0.1, 0})});
   EXPECT_LT((w.force_N - Vec3(-0.6, 0, 0)).norm(), 1e-12);
   EXPECT_LT((w.torque_Nm - Vec3(0, -0.1 * 600 * 9e-4, 0)).norm(), 1e-12);
 }
@@ -64,7 +69,7 @@ TEST(WrenchCoupling, TorqueIsMinusTheDerivativeOfTheEnergy) {
   const ToolPose tool{{0.01, 0, 0}, rotation({0.2, -0.4, 0.9})};
   for (int i = 0; i < 20; ++i) {
     const ToolPose device = on_loop(i / 20.0);
-    const Wrench w = coupling_wrench(p, uneven_inertia(), tool, device);
+    const Wrench w = wrench_of(p, uneven_inertia(), tool, device);
     for (int axis = 0; axis < 6; ++axis) {
       Vector6 nudge = Vector6::Zero();
       nudge[axis] = 1e-6;
@@ -104,7 +109,7 @@ TEST(WrenchCoupling, ThePrintedTorqueDoesWork) {
 TEST(WrenchCoupling, IsCutToItsLimits) {
   ToolParameters p;
   p.largest_force_N = 3, p.largest_torque_Nm = 0.1;
-  const Wrench w = coupling_wrench(p, uneven_inertia(), {}, {{1, 2, 0}, rotation({0, 0, 3})});
+  const Wrench w = wrench_of(p, uneven_inertia(), {}, {{1, 2, 0}, rotation({0, 0, 3})});
   EXPECT_NEAR(w.force_N.norm(), 3, 1e-12);
   EXPECT_NEAR(w.torque_Nm.norm(), 0.1, 1e-12);
   EXPECT_LT(w.force_N.normalized().dot(Vec3(1, 2, 0).normalized()), -1 + 1e-12);

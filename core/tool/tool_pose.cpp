@@ -2,6 +2,18 @@
 
 namespace remote_touch {
 
+namespace {
+constexpr double kFarthestHip_m = 1e6;  // as for the proxy: a device farther away is no hand's
+}
+
+std::optional<ToolPose> held_by(const DeviceState& device) {
+  const bool usable = device.position_W.allFinite() &&
+                      device.position_W.cwiseAbs().maxCoeff() <= kFarthestHip_m &&
+                      device.orientation_W.coeffs().allFinite() && device.orientation_W.norm() > 0.5;
+  if (!usable) return {};
+  return ToolPose{device.position_W, device.orientation_W.normalized()};
+}
+
 ToolPose moved(const ToolPose& pose, const Vector6& a_g) {
   return {pose.p_W + a_g.head<3>(), (rotation(a_g.tail<3>()) * pose.q_WT).normalized()};
 }

@@ -3,6 +3,9 @@
 // rotation vectors: the exponential map from the left.
 #pragma once
 
+#include <optional>
+
+#include "core/frame.h"
 #include "core/rotation.h"
 #include "core/vector.h"
 
@@ -19,6 +22,10 @@ struct ToolPose {
     return p_W == other.p_W && q_WT.coeffs() == other.q_WT.coeffs();
   }
 };
+
+// Of a tool that the device holds by its centre of mass; none for a device that is not finite, more than
+// 1000 km away or without an orientation.
+std::optional<ToolPose> held_by(const DeviceState& device);
 
 ToolPose moved(const ToolPose& pose, const Vector6& a_g);
 // (6.2): the displacement that takes one pose to the other in a unit step, in world axes.

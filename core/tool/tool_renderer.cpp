@@ -1,6 +1,7 @@
 #include "core/tool/tool_renderer.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/tool/wrench_coupling.h"
@@ -8,13 +9,6 @@
 namespace remote_touch {
 
 namespace {
-
-constexpr double kFarthestHip_m = 1e6;  // as for the proxy: a device farther away is no hand's
-
-bool usable(const DeviceState& device) {
-  return device.position_W.allFinite() && device.position_W.cwiseAbs().maxCoeff() <= kFarthestHip_m &&
-         device.orientation_W.coeffs().allFinite() && device.orientation_W.norm() > 0.5;
-}
 
 constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
 
@@ -30,16 +24,11 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       velocity_(parameters.longest_prediction_s) {}
 
 void ToolRenderer::on_frame(const Frame& frame) {
-  if (frame_index_ >= 0 && !(frame.captured_s > frame_captured_s_)) {
-    stale_frame_ = true;
-    return;
-  }
+  if (!order_.take(frame)) return;
   PointCloud room;
   contacts_.on_frame(frame.points->every_point(kernels_, room));
   is_measured_ = false;
   updated_ = true;
-  frame_index_ = frame.index;
-  frame_captured_s_ = frame.captured_s;
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
   pose_.p_W += correction;
@@ -48,16 +37,16 @@ void ToolRenderer::on_frame(const Frame& frame) {
 
 RenderOutput ToolRenderer::step(const DeviceState& device, double) {
   RenderOutput out;
-  out.frame_index = frame_index_;
+  out.frame_index = order_.newest();
   out.carried_m = std::exchange(carried_m_, Vec3::Zero());
   out.tool.emplace();
-  const bool device_usable = usable(device);
-  const ToolPose goal{device.position_W, device.orientation_W.normalized()};
-  if (!device_usable) {
+  const std::optional<ToolPose> held = held_by(device);
+  if (!held) {
     out.status = RenderStatus::device_not_finite;  // hold still and let go
   } else {
+    const ToolPose& goal = *held;
     if (!placed_) pose_ = goal, placed_ = true;
-    if (frame_index_ < 0) {
+    if (order_.newest() < 0) {
       pose_ = goal;
       out.converged = true;
       out.status = RenderStatus::no_frame;
@@ -74,7 +63,8 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double) {
       out.tool->detections = report.detections;
       out.tool->budget_exhausted = !report.at_rest;
     }
-    const Wrench wrench = coupling_wrench(p_, tool_->inertia_m2, pose_, goal);
+    const Wrench wrench =
+        coupling_wrench(coupling_of(p_, p_.stiffness_N_per_m), tool_->inertia_m2, pose_, goal);
     out.force_N = wrench.force_N;
     out.tool->torque_Nm = wrench.torque_Nm;
   }
@@ -83,8 +73,7 @@ RenderOutput ToolRenderer::step(const DeviceState& device, double) {
   out.normal_W = normal_W_;
   out.surface_velocity_m_per_s = velocity_.m_per_s();
   measure(out);
-  if (std::exchange(stale_frame_, false) && out.status == RenderStatus::ok)
-    out.status = RenderStatus::stale_frame_dropped;
+  out.status = order_.status(out.status);
   return out;
 }
 

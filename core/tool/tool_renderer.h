@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/frame_order.h"
 #include "core/renderer.h"
 #include "core/surface_velocity.h"
 #include "core/tool/contact_list.h"
@@ -36,10 +37,8 @@ class ToolRenderer final : public Renderer {
   Vec3 normal_W_ = Vec3::Zero();  // of contact: where the points push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
-  int frame_index_ = -1;
-  double frame_captured_s_ = 0;
+  FrameOrder order_;
   Vec3 carried_m_ = Vec3::Zero();
-  bool stale_frame_ = false;
 
   ToolPose measured_at_;  // the last pose measured, while the frame is the same
   Touched touched_;

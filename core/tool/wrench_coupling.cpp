@@ -27,19 +27,19 @@ Eigen::Matrix3d inverse_left_jacobian(const Vec3& phi) {
   return Eigen::Matrix3d::Identity() - 0.5 * cross + c * cross * cross;
 }
 
-Wrench coupling_wrench(const ToolParameters& parameters, const Eigen::Matrix3d& inertia_m2,
-                       const ToolPose& tool, const ToolPose& device) {
+Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inertia_m2, const ToolPose& tool,
+                       const ToolPose& device) {
   const Vector6 a_gu = displacement(tool, device);
   const Vec3 phi = a_gu.tail<3>();
-  const double k = parameters.stiffness_N_per_m;
+  const double k = spring.stiffness_N_per_m;
   Vec3 torque;
-  if (parameters.torque_rule == TorqueRule::printed) {
+  if (spring.torque_rule == TorqueRule::printed) {
     torque = k * (tool.q_WT * (inertia_m2 * (tool.q_WT.conjugate() * phi)));
   } else {
-    const double rotational = k * parameters.gyration_radius_m * parameters.gyration_radius_m;
+    const double rotational = k * spring.gyration_radius_m * spring.gyration_radius_m;
     torque = inverse_left_jacobian(phi).transpose() * (rotational * phi);
   }
-  return {cut(-k * a_gu.head<3>(), parameters.largest_force_N), cut(-torque, parameters.largest_torque_Nm)};
+  return {cut(-k * a_gu.head<3>(), spring.largest_force_N), cut(-torque, spring.largest_torque_Nm)};
 }
 
 }  // namespace remote_touch

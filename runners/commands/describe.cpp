@@ -19,6 +19,16 @@ void print(const Parameters& parameters) {
                 value_text(p).c_str(), allowed(p).c_str());
 }
 
+// Prints a part of experiments that is no entry of the catalog, if it has that name.
+template <class Settings>
+bool describe_section(const char* section, const char* what, const std::string& name) {
+  if (name != section) return false;
+  std::printf("%s: %s\n", section, what);
+  Settings settings;
+  print(parameters(settings));
+  return true;
+}
+
 // Prints the entry of that name, if the table has it.
 template <class Entry>
 bool describe_entry(std::span<const Entry> entries, const char* kind, const std::string& name) {
@@ -80,13 +90,19 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     print_run_settings();
     found = true;
   }
-  if (name == "depth-pipeline") {
-    std::puts(
-        "depth-pipeline: \"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1");
-    DepthPipelineSettings settings;
-    print(parameters(settings));
-    found = true;
-  }
+  found |= describe_section<DepthPipelineSettings>(
+      "depth-pipeline",
+      "\"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1", name);
+  found |= describe_section<GuidanceSettings>(
+      "guidance", "\"guidance\" of an experiment: the springs of fixtures with role = guidance, 7.3.2", name);
+  found |= describe_section<SequenceStep>(
+      "sequence", "\"sequence\" of an experiment: a list of such steps, which lock and activate fixtures",
+      name);
+  found |= describe_section<OperatorSettings>(
+      "operator",
+      "\"operator\" of an experiment: a simulated hand that follows the trajectory and feels forces", name);
+  found |= describe_section<MotorSettings>(
+      "device", "\"device\" of an experiment: which axes of the haptic device have motors", name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())

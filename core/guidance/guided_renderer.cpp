@@ -1,0 +1,154 @@
+#include "core/guidance/guided_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+bool is_for(FixtureAction action, FixtureRole role) {
+  const bool forbidden = action == FixtureAction::lock || action == FixtureAction::unlock;
+  return forbidden == (role == FixtureRole::forbidden);
+}
+
+bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& label, FixtureAction action) {
+  const auto names = [&](const SequenceStep& s) {
+    return s.action != FixtureAction::wait && !label.empty() && s.fixture == label;
+  };
+  const auto first = std::find_if(steps.begin(), steps.end(), names);
+  return first != steps.end() && first->action == action;
+}
+
+}  // namespace
+
+std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
+  if (!steps.empty() && fixtures.size() > FixtureSwitches::kMost)
+    return "sequence: more than " + std::to_string(FixtureSwitches::kMost) + " fixtures";
+  for (std::size_t i = 0; i < fixtures.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
+        return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label + "\": there are two";
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].fixture.empty()) continue;
+    const std::string at = "sequence." + std::to_string(i);
+    const auto named = std::find_if(fixtures.begin(), fixtures.end(),
+                                    [&](const auto& fixture) { return fixture.label == steps[i].fixture; });
+    if (named == fixtures.end())
+      return at + ".fixture = \"" + steps[i].fixture + "\": no fixture has this label";
+    if (!is_for(steps[i].action, named->role))
+      return at + ".action: allowed " +
+             (named->role == FixtureRole::forbidden ? "lock, unlock" : "activate, release, wait") +
+             " for this fixture's role";
+  }
+  return {};
+}
+
+GuidedRenderer::GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
+                               const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
+                               std::shared_ptr<FixtureSwitches> switches)
+    : inner_(std::move(inner)),
+      settings_(settings),
+      sequence_(std::move(steps)),
+      switches_(std::move(switches)) {
+  begin_with(fixtures);
+}
+
+void GuidedRenderer::begin_with(const std::vector<FixtureValues>& fixtures) {
+  const auto first_is = [&](const FixtureValues& fixture, FixtureAction action) {
+    return first_action_is(sequence_.steps(), fixture.label, action);
+  };
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    const FixtureValues& fixture = fixtures[i];
+    labels_.push_back(fixture.label);
+    if (fixture.role == FixtureRole::guidance)
+      guides_.push_back({i,
+                         fixture.stiffness_N_per_m,
+                         fixture.radius_m,
+                         !first_is(fixture, FixtureAction::activate),
+                         Vec3::Zero(),
+                         {}});
+    else if (i < FixtureSwitches::kMost)
+      switches_->set(i, !first_is(fixture, FixtureAction::lock));
+  }
+}
+
+void GuidedRenderer::on_frame(const Frame& frame) {
+  inner_->on_frame(frame);
+  if (!order_.take(frame)) return;
+  for (std::size_t i = 0; i < guides_.size(); ++i)
+    guides_[i].target = i < frame.guidance.size() ? frame.guidance[i] : GuidanceTarget{};
+}
+
+// pre: there is one of that label.
+std::size_t GuidedRenderer::number_of(const std::string& label) const {
+  return static_cast<std::size_t>(std::find(labels_.begin(), labels_.end(), label) - labels_.begin());
+}
+
+GuidedRenderer::Guide* GuidedRenderer::guide_of(std::size_t fixture) {
+  const auto found = std::find_if(guides_.begin(), guides_.end(),
+                                  [&](const Guide& guide) { return guide.fixture == fixture; });
+  return found == guides_.end() ? nullptr : &*found;
+}
+
+void GuidedRenderer::act(const SequenceStep& step) {
+  if (step.action == FixtureAction::wait) return;
+  const std::size_t fixture = number_of(step.fixture);
+  Guide* const guide = guide_of(fixture);
+  if (guide == nullptr) {
+    switches_->set(fixture, step.action == FixtureAction::lock);
+    return;
+  }
+  const bool activates = step.action == FixtureAction::activate;
+  if (activates)
+    for (Guide& other : guides_) other.active = false;
+  guide->active = activates;
+  if (activates) guide->offset_m = step.offset_m;
+}
+
+// Of the tool, not of the device: it is the tool that the robot follows.
+bool GuidedRenderer::reached(const SequenceStep& step, const RenderOutput& out) const {
+  if (step.done != StepEnd::reached) return false;
+  const std::size_t fixture = number_of(step.fixture);
+  for (const Guide& guide : guides_) {
+    if (guide.fixture != fixture) continue;
+    const std::optional<ToolPose> there = goal(guide);
+    if (!there || !((out.proxy_W - there->p_W).norm() <= guide.reached_m)) return false;
+    if (!out.tool) return true;
+    const Vec3 turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate());
+    return turn.norm() <= settings_.reached_deg * kRadiansPerDegree;
+  }
+  return false;
+}
+
+void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
+  for (const Guide& guide : guides_) {
+    const std::optional<ToolPose> there = guide.active ? goal(guide) : std::nullopt;
+    if (!there) continue;
+    const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, *there, device);
+    out.guidance->pulls = true;
+    out.guidance->goal_W = there->p_W, out.guidance->goal_orientation_W = there->q_WT;
+    out.guidance->force_N += wrench.force_N;
+    if (out.tool) out.guidance->torque_Nm += wrench.torque_Nm;
+  }
+  out.force_N += out.guidance->force_N;
+  if (out.tool) out.tool->torque_Nm += out.guidance->torque_Nm;
+}
+
+RenderOutput GuidedRenderer::step(const DeviceState& device, double time_s) {
+  RenderOutput out = inner_->step(device, time_s);
+  out.guidance.emplace();
+  sequence_.look_at(device.buttons);
+  while (true) {
+    if (sequence_.begins(time_s)) act(sequence_.step());
+    if (sequence_.is_over() || !sequence_.ends(time_s, reached(sequence_.step(), out))) break;
+  }
+  if (const std::optional<ToolPose> held = held_by(device)) pull(*held, out);
+  out.guidance->sequence_step = sequence_.current();
+  out.guidance->sequence_running = sequence_.is_running();
+  out.guidance->sequence_missed = sequence_.missed();
+  return out;
+}
+
+}  // namespace remote_touch

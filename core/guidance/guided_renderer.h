@@ -1,0 +1,62 @@
+// Guidance on top of any renderer, 7.4: the wrench towards the active fixture's goal is added to its own, and
+// the steps of a task switch fixtures on and off.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/fixtures/fixture_rule.h"
+#include "core/frame_order.h"
+#include "core/guidance/fixture_sequence.h"
+#include "core/guidance/fixture_switches.h"
+#include "core/guidance/guidance_spring.h"
+#include "core/renderer.h"
+
+namespace remote_touch {
+
+// What is wrong about a task with these fixtures, as one line; empty when they fit together: labels are
+// unique and known, forbidden fixtures are locked and guidance is activated.
+std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
+
+class GuidedRenderer final : public Renderer {
+ public:
+  // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment looks at. A
+  // fixture begins as the opposite of what the task does first with it; one that no step names is locked or
+  // active from the beginning. pre: conflict(fixtures, steps) is empty.
+  GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
+                 const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
+                 std::shared_ptr<FixtureSwitches> switches);
+
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  struct Guide {
+    std::size_t fixture;       // in the list
+    double stiffness_N_per_m;  // -1: that of the settings
+    double reached_m;
+    bool active;
+    Vec3 offset_m = Vec3::Zero();  // of the step that activated it
+    GuidanceTarget target;         // in the newest frame
+  };
+  void begin_with(const std::vector<FixtureValues>& fixtures);
+  void act(const SequenceStep& step);
+  bool reached(const SequenceStep& step, const RenderOutput& out) const;
+  void pull(const ToolPose& device, RenderOutput& out) const;
+  std::size_t number_of(const std::string& label) const;
+  Guide* guide_of(std::size_t fixture);
+  std::optional<ToolPose> goal(const Guide& guide) const {
+    return guidance_goal(settings_, guide.target, guide.offset_m);
+  }
+
+  const std::unique_ptr<Renderer> inner_;
+  const GuidanceSettings settings_;
+  std::vector<std::string> labels_;
+  std::vector<Guide> guides_;
+  FixtureSequence sequence_;
+  const std::shared_ptr<FixtureSwitches> switches_;
+  FrameOrder order_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+// A haptic device that senses all six axes and has motors for some of them, such as the five of the device of
+// 7.5.
+#pragma once
+
+#include <string>
+
+#include "core/parameter.h"
+#include "core/tool/wrench_coupling.h"
+
+namespace remote_touch {
+
+struct MotorSettings {
+  bool moves_x = true, moves_y = true, moves_z = true;
+  bool turns_x = true, turns_y = true, turns_z = true;
+  double largest_force_N = 0;
+  double largest_torque_Nm = 0;
+};
+
+Parameters parameters(MotorSettings& s);
+inline std::string conflict(const MotorSettings&) {
+  return {};
+}
+
+// What the device exerts on the hand of a wrench that it is told to: forces along the base axes and torques
+// about the axes of the handle, which are those of the tool, as far as there are motors; cut to their largest
+// lengths before.
+Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& told);
+
+}  // namespace remote_touch
