@@ -14,5 +14,7 @@ struct HueSaturationLightness {
 
 // rgb = 0xRRGGBB, as the sensor gives it: no gamma or colour profile.
 HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb);
+// The nearest of 2^24 colours. pre: in the ranges above; a hue of 360 is one of 0.
+std::uint32_t rgb(const HueSaturationLightness& colour);
 
 }  // namespace remote_touch

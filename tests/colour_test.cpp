@@ -52,6 +52,12 @@ double channel(const HueSaturationLightness& colour, double n) {
   return 255 * (colour.lightness - a * std::max(-1.0, std::min({k - 3, 9 - k, 1.0})));
 }
 
+TEST(Colour, TheInverseGivesTheSameColourBack) {
+  for (std::uint32_t colour = 0; colour <= 0xFFFFFF; colour += 997)
+    ASSERT_EQ(rgb(hue_saturation_lightness(colour)), colour) << std::hex << colour;
+  EXPECT_EQ(rgb({360, 1, 0.5}), 0xFF0000u);
+}
+
 TEST(Colour, ComesBackFromHueSaturationAndLightness) {
   for (int red = 0; red < 256; red += 5)
     for (int green = 0; green < 256; green += 3)
