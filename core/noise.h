@@ -19,7 +19,14 @@ struct NoiseKey {
 };
 
 // Independent uses of one key.
-enum class NoiseUse : std::uint32_t { point_position = 0, depth = 1, delivery = 2, motion = 3 };
+enum class NoiseUse : std::uint32_t {
+  point_position = 0,
+  depth = 1,
+  delivery = 2,
+  motion = 3,
+  colour = 4,
+  dropout = 5,
+};
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
 inline constexpr double kLargestNormal = 6.661;

@@ -61,7 +61,7 @@ DepthCamera::DepthCamera(const DepthCameraSettings& settings, const NoiseKey& ke
 IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
   const int width = intrinsics_.width, height = intrinsics_.height;
   const std::size_t count = static_cast<std::size_t>(width) * height;
-  IdealView view{{width, height, std::vector<double>(count)}, {}, {}};
+  IdealView view{{width, height, std::vector<double>(count)}, {}, {}, {}};
   if (coloured) view.colour.resize(count);
   const Vec3 origin = X_WC_.translation();
 #pragma omp parallel for schedule(static)
@@ -125,7 +125,8 @@ void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, 
   kernels_.normals(stream, pixel.data(), width, normal.data(), unused.data(), unused_too.data());
   for (std::size_t u = 0; u < width; ++u) {
     double& z = depth.z_m[first + u];
-    z += settings_.noise_per_m * z * z * normal[u];
+    const double factor = view.depth_noise_factor.empty() ? 1 : view.depth_noise_factor[first + u];
+    z += settings_.noise_per_m * z * z * normal[u] * factor;
     // The sensor counts whole disparities, proportional to 1/z.
     if (steps > 0) z = steps / std::floor(steps / z + 0.5);
     // Nothing is measured at a hole, nor behind the camera, where strong noise can throw a depth.

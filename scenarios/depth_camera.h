@@ -45,9 +45,10 @@ using RayCast = std::function<RayHit(const Vec3& origin_W, const Vec3& ray_W)>;
 
 // A scene at one instant, as an ideal camera would see it. Columns have an entry for every pixel.
 struct IdealView {
-  DepthImage depth;                   // NaN beyond 3 m
-  std::vector<char> hole;             // 1 where the sensor gives nothing, for a depth edge is near
-  std::vector<std::uint32_t> colour;  // 0xRRGGBB; empty for a scene without colours
+  DepthImage depth;                             // NaN beyond 3 m
+  std::vector<char> hole;                       // 1 where the sensor gives nothing, for a depth edge is near
+  std::vector<std::uint32_t> colour;            // 0xRRGGBB; empty for a scene without colours
+  std::vector<double> depth_noise_factor = {};  // times the camera's own noise; empty: 1 everywhere
 };
 
 class DepthCamera {
