@@ -25,6 +25,7 @@
 #include "scenarios/sheet.h"
 #include "scenarios/slot.h"
 #include "scenarios/triangle_wave.h"
+#include "scenarios/valve_tank.h"
 #include "scenarios/wedge.h"
 
 namespace remote_touch {
@@ -66,6 +67,8 @@ const ScenarioEntry kScenarios[] = {
     scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
     scenario<BeatingHeart>("beating-heart",
                            "a simulated depth camera looks down on a beating organ on a table"),
+    scenario<ValveTank>("valve-tank",
+                        "a simulated colour and depth camera looks at two valves in turbid water, 7.5.1"),
     scenario<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
     scenario<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
     scenario<Wedge>("wedge", "two walls that lean apart, close on a tool and open again"),

@@ -210,7 +210,7 @@ TEST_F(ScenarioContract, RatesAndTimesMakeSense) {
 }
 
 TEST_F(ScenarioContract, OtherSeedsGiveOtherNoise) {
-  for (const char* name : {"moving-lift", "camera-scene", "beating-heart"}) {
+  for (const char* name : {"moving-lift", "camera-scene", "beating-heart", "valve-tank"}) {
     const auto entry = find_entry(scenarios(), name, "scenario");
     const PointCloud a = entry.make()->build(NoiseKey{1}, scenes::kernels())->cloud(0);
     const PointCloud b = entry.make()->build(NoiseKey{2}, scenes::kernels())->cloud(0);

@@ -114,7 +114,9 @@ bool carries_unit(const std::string& name) {
                                               "most_lightness",
                                               "frame_drop_probability",
                                               "detections_per_tick",
-                                              "disk_share"};
+                                              "disk_share",
+                                              "colour_noise",
+                                              "dropout"};
   static const char* const kUnits[] = {"_m",        "_s",       "_hz",      "_deg",      "_px",
                                        "_per_m",    "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s",
                                        "_m_per_s2", "_N",       "_Nm"};
