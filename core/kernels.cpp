@@ -14,6 +14,7 @@ namespace {
   {                                                                                                \
     isa, level::append_within, level::survey, level::first_hit, level::way_out, level::normals,    \
         level::candidates, level::spheres_near, level::points_in_cells, level::disks_in_field,     \
+        level::append_near_regions, level::deepest_region, level::next_deepest_region,             \
         level::depth_to_points, level::filter_depth, level::plane_normals, level::points_to_cloud, \
         level::normals_to_cloud                                                                    \
   }

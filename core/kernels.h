@@ -123,6 +123,27 @@ struct PosedField {
   double size;
 };
 
+// Spheres with consecutive numbers, first of all the one that is named; padded with far-away ones of radius 0
+// to a multiple of kLanes.
+struct SphereRun {
+  const double* x;
+  const double* y;
+  const double* z;
+  const double* radius;
+  std::size_t padded_count;
+  std::uint32_t first;
+};
+
+// Regions near a leaf of a tool: the gap between both surfaces, the way out of the region (unit; where the
+// centres coincide the second axis), and the region's number. Room for all and 2 kLanes more.
+struct NearRegions {
+  double* gap;
+  double* nx;
+  double* ny;
+  double* nz;
+  std::uint32_t* number;
+};
+
 // Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
 inline constexpr double kRoundsToWhole = 0x1.8p52;
 // Taken away before, it makes that rounding down; what is less than a hair below a whole number counts as it.
@@ -178,6 +199,17 @@ struct Kernels {
   // and lower_bound_m() tell, but for places outside the grid, whose lower is NaN.
   void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double share,
                          double cells_per_m, const PosedField&, const DiskColumns&);
+  // Appends the spheres of a run with gaps of margin or less to a leaf, x, y, z and radius, 7.4.1. Returns
+  // the new count. Gap: |leaf - sphere| - both radii, the leaf's first; NaN is no gap.
+  std::size_t (*append_near_regions)(const SphereRun&, const double leaf[4], double margin,
+                                     const NearRegions&, std::size_t count);
+  // The first with the least gap; count where there is none. Writes infinity behind the last gap.
+  std::size_t (*deepest_region)(const NearRegions&, std::size_t count);
+  // Makes the gaps infinite of the one that is kept and of those that it stands for: the cosine between both
+  // lines is alike or more, and no motion of the leaf of this length or less that obeys the one kept violates
+  // them. Returns the deepest of the others, as above; after deepest_region().
+  std::size_t (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept, double motion,
+                                     double alike);
   // The points of one row in the camera frame, their z times scale.
   void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
   // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of

@@ -317,5 +317,100 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
         }
 }
 
+// --- leaves of a tool and regions ---
+
+// A patch of regions of different sizes, with the leaf at the middle of the first.
+struct Patch {
+  std::vector<double> x, y, z, radius;
+  std::vector<double> gap, nx, ny, nz;
+  std::vector<std::uint32_t> number;
+  std::size_t count = 0;
+
+  explicit Patch(int regions) {
+    const PointCloud at = scenes::random_cloud(regions, 0.05, 21),
+                     sizes = scenes::random_cloud(regions, 1, 22);
+    x = at.x, y = at.y, z = at.z;
+    for (const double size : sizes.x) radius.push_back(0.01 * (size + 1));
+    const std::size_t padded = (x.size() + kLanes - 1) / kLanes * kLanes;
+    for (auto* column : {&x, &y, &z}) column->resize(padded, kFarAway);
+    radius.resize(padded, 0);
+    for (auto* column : {&gap, &nx, &ny, &nz}) column->assign(padded + 2 * kLanes, -7);
+    number.assign(padded + 2 * kLanes, 7);
+  }
+  SphereRun run() const { return {x.data(), y.data(), z.data(), radius.data(), x.size(), 500}; }
+  NearRegions near() { return {gap.data(), nx.data(), ny.data(), nz.data(), number.data()}; }
+};
+
+TEST(NearRegions, SameAsAPlainLoopOnEveryLevel) {
+  const int regions = 203;
+  for (const Kernels* kernels : every_level())
+    for (const double margin : {-0.01, 0.0, 0.004, 0.1})
+      for (const bool at_a_middle : {false, true}) {
+        Patch patch(regions);
+        const double leaf[4] = {at_a_middle ? patch.x[3] : 0.01, at_a_middle ? patch.y[3] : 0.02,
+                                at_a_middle ? patch.z[3] : -0.01, 0.005};
+        const std::size_t count = kernels->append_near_regions(patch.run(), leaf, margin, patch.near(), 2);
+        std::size_t n = 2;
+        for (std::uint32_t i = 0; i < regions; ++i) {
+          const Vec3 way(leaf[0] - patch.x[i], leaf[1] - patch.y[i], leaf[2] - patch.z[i]);
+          const double gap = way.norm() - leaf[3] - patch.radius[i];
+          if (!(gap <= margin)) continue;
+          ASSERT_LT(n, count);
+          EXPECT_EQ(patch.number[n], 500 + i);
+          EXPECT_EQ(patch.gap[n], gap);
+          const Vec3 normal(patch.nx[n], patch.ny[n], patch.nz[n]);
+          EXPECT_LT((normal - (way.norm() > 0 ? way.normalized() : Vec3(Vec3::UnitY()))).norm(), 1e-15);
+          ++n;
+        }
+        ASSERT_EQ(count, n);
+        EXPECT_EQ(patch.gap[1], -7) << "wrote before the end";
+      }
+}
+
+TEST(NearRegions, OfNoNumberThereAreNone) {
+  for (const Kernels* kernels : every_level()) {
+    Patch patch(20);
+    const double nowhere[4] = {std::nan(""), 0, 0, 0.01}, inverted[4] = {0, 0, 0, -0.5};
+    EXPECT_EQ(kernels->append_near_regions(patch.run(), nowhere, 1, patch.near(), 0), 0u);
+    EXPECT_EQ(kernels->append_near_regions(patch.run(), inverted, 0, patch.near(), 0), 0u);
+    EXPECT_EQ(kernels->deepest_region(patch.near(), 0), 0u);
+  }
+}
+
+// From the deepest to the shallowest, and of each what it stands for goes; bit for bit alike.
+TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
+  const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
+  for (const double alike : {-2.0, 0.9})
+    for (const double motion : {0.001, 0.01}) {
+      std::vector<std::size_t> kept_before;
+      for (const Kernels* kernels : every_level()) {
+        Patch patch(400);
+        const std::size_t count = kernels->append_near_regions(patch.run(), leaf, 0.04, patch.near(), 0);
+        const std::vector<double> gap = patch.gap;
+        std::vector<char> gone(count, 0);
+        std::vector<std::size_t> kept;
+        for (std::size_t at = kernels->deepest_region(patch.near(), count); at < count;
+             at = kernels->next_deepest_region(patch.near(), count, at, motion, alike)) {
+          for (std::size_t i = 0; i < count; ++i)
+            ASSERT_TRUE(gone[i] || gap[at] < gap[i] || (gap[at] == gap[i] && at <= i));
+          ASSERT_FALSE(gone[at]);
+          kept.push_back(at);
+          for (std::size_t i = 0; i < count; ++i) {
+            const double cosine =
+                patch.nx[i] * patch.nx[at] + patch.ny[i] * patch.ny[at] + patch.nz[i] * patch.nz[at];
+            const double rise = gap[i] - gap[at];
+            const double slack = rise * rise - motion * motion * (2 - 2 * cosine);
+            if (i == at || (slack > 1e-15 && cosine > alike)) gone[i] = 1;
+          }
+        }
+        EXPECT_GE(kept.size(), alike > 0 || motion > 0.005 ? 5u : 1u);
+        EXPECT_LT(kept.size(), count);
+        EXPECT_TRUE(std::count(gone.begin(), gone.end(), 0) == 0);
+        if (kept_before.empty()) kept_before = kept;
+        EXPECT_EQ(kept, kept_before) << kernels->isa;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace remote_touch

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "core/sphere_tree/tool_spheres.h"
 #include "core/tool/look_ahead_motion.h"
+#include "tests/allocation_counter.h"
 #include "tests/box_tool.h"
 #include "tests/scenes.h"
 
@@ -68,7 +71,7 @@ struct Held {
   Held(std::shared_ptr<const VoxelTool> tool_, std::shared_ptr<const SphereTree> leaves_)
       : tool(tool_),
         leaves(leaves_),
-        contacts(leaves, ToolParameters{}.look_ahead_m),
+        contacts(leaves, ToolParameters{}.look_ahead_m, scenes::kernels()),
         motion({}, *tool, 0.05) {}
   void frame(const PointCloud& cloud) { contacts.on_frame(cloud), updated = true; }
   // Ticks until the tool rests.
@@ -154,6 +157,149 @@ TEST(RegionContacts, AFrameThatSwallowsTheToolPushesItOut) {
     held.move_to(device);
     EXPECT_LT(deepest_m(*held.leaves, held.pose, cloud), kSettled_m) << y_m;
   }
+}
+
+// Few regions 8 mm apart: their creases are so obtuse that both lines are within ten degrees, and a leaf that
+// kept only one of them would go to and fro.
+TEST(RegionContacts, ComesToRestInAnObtuseCrease) {
+  for (const double apart_m : {0.001, 0.003, 0.008, 0.02}) {
+    std::vector<Vec3> places;
+    for (int i = -3; i <= 3; ++i)
+      for (int j = -3; j <= 3; ++j) places.emplace_back((i + 0.5) * apart_m, 0, (j + 0.5) * apart_m);
+    const PointCloud cloud = regions_at(places);
+    for (const auto& leaves : {one_leaf(0.005), spheres_of_box()}) {
+      Held held(kBox, leaves);
+      held.frame(cloud);
+      held.pose.p_W = {0.001, 0.08, 0.0005};
+      // 20 mm deep, beside the middle of the crease of four.
+      const ToolPose device{{1e-4, 0.025, -2e-4}, rotation({0.02, 0.3, -0.01})};
+      held.move_to(device);
+      const ToolPose rest = held.pose;
+      double way = 0;
+      for (int tick = 0; tick < 50; ++tick) {
+        held.motion.move(held.pose, device, held.contacts, false);
+        way = std::max(way, (held.pose.p_W - rest.p_W).norm());
+      }
+      EXPECT_LT(way, 1e-5) << apart_m;
+      EXPECT_LT(deepest_m(*held.leaves, held.pose, cloud), kSettled_m) << apart_m;
+    }
+  }
+}
+
+// What is chosen, against all pairs: no motion of half the look-ahead that obeys the contacts of a leaf
+// violates any of its pairs.
+TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
+  const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
+  const double look_ahead_m = ToolParameters{}.look_ahead_m;
+  RegionContacts contacts(one_leaf(0.006), look_ahead_m, scenes::kernels());
+  contacts.on_frame(cloud);
+  int pairs = 0, kept = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double a = 0.0628 * i, out_m = 0.0505 - 1e-5 * i;
+    const Vec3 p_W(0.045 * std::cos(a), out_m, 0.045 * std::sin(a));
+    const NearContacts near = contacts.near(at(p_W), 0);
+    kept += static_cast<int>(near.contacts.size());
+    for (std::size_t m = 0; m < motions.size(); ++m) {
+      const Vec3 u = 0.5 * look_ahead_m * motions.point(m).normalized();
+      bool obeys = true;
+      for (const ToolContact& c : near.contacts) obeys = obeys && c.n_T.dot(u) >= c.depth_m;
+      for (std::size_t j = 0; obeys && j < cloud.size(); ++j) {
+        const Vec3 way = p_W - cloud.point(j);
+        const double gap_m = way.norm() - 0.006 - kRadius_m;
+        if (gap_m > look_ahead_m) continue;
+        ++pairs;
+        EXPECT_GE(way.normalized().dot(u), -gap_m - 1e-12);
+      }
+    }
+  }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(pairs, 10000);
+}
+
+// The same contacts from every level of the kernels, and from whatever was looked at before.
+TEST(RegionContacts, DoNotDependOnTheLevelOrTheLookBefore) {
+  const PointCloud cloud = wheel(), ways = scenes::random_cloud(60, 0.05, 4);
+  const double look_ahead_m = ToolParameters{}.look_ahead_m;
+  RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));
+  slowest.on_frame(cloud);
+  std::size_t found = 0;
+  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
+    if (isa > best_isa()) continue;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const ToolPose pose{ways.point(i), rotation(20 * ways.point(i))};
+      RegionContacts fresh(spheres_of_box(), look_ahead_m, kernels_for(isa));
+      fresh.on_frame(cloud);
+      const NearContacts a = fresh.near(pose, 0), b = slowest.near(pose, 0);
+      EXPECT_EQ(a.deepest_m, b.deepest_m);
+      ASSERT_EQ(a.contacts.size(), b.contacts.size());
+      for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+        EXPECT_EQ(a.contacts[k].r_T, b.contacts[k].r_T);
+        EXPECT_EQ(a.contacts[k].n_T, b.contacts[k].n_T);
+        EXPECT_EQ(a.contacts[k].depth_m, b.contacts[k].depth_m);
+      }
+      found += a.contacts.size();
+    }
+  }
+  EXPECT_GT(found, 1000u);
+}
+
+// Clear, in contact and deep inside, and what is touched is told without memory too.
+TEST(RegionContacts, AllocatesOnlyWithAFrame) {
+  Held held(kBox, spheres_of_box());
+  const PointCloud cloud = wheel();
+  for (const double y_m : {0.15, 0.06, 0.03, 0.01}) {
+    held.frame(cloud);
+    held.pose = {{0.04, y_m, 0.01}, rotation({0.3, 0.2, 0.1})};
+    const ToolPose device = held.pose;
+    const std::size_t before = allocation_count();
+    for (int tick = 0; tick < 5; ++tick) {
+      held.motion.move(held.pose, device, held.contacts, std::exchange(held.updated, false));
+      held.contacts.touched(held.pose, 600);
+    }
+    EXPECT_EQ(allocation_count(), before) << y_m;
+  }
+}
+
+// --- what is touched ---
+
+TEST(RegionTouch, IsThatOfAllPairs) {
+  PointCloud cloud = wheel();
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.stiffness_N_per_m.push_back(i % 5 == 0 ? std::nan("") : 100.0 * static_cast<double>(i % 7 + 1));
+  const double look_ahead_m = ToolParameters{}.look_ahead_m, own = 600;
+  const auto leaves = spheres_of_box();
+  RegionContacts contacts(leaves, look_ahead_m, scenes::kernels());
+  contacts.on_frame(cloud);
+  int touching = 0, clear = 0;
+  for (int i = 0; i < 60; ++i) {
+    const ToolPose pose{{0.04, 0.0555 - 2e-4 * i + (i % 4 == 0 ? 0.02 : 0), 0.01},
+                        rotation({0.02, 0.1 * i, 0})};
+    double nearest_m = std::numeric_limits<double>::infinity(), weights = 0, weighted = 0;
+    int pairs = 0, tool_leaves = 0;
+    for (const Sphere& leaf : leaves->leaves()) {
+      const int before = pairs;
+      for (std::size_t j = 0; j < cloud.size(); ++j) {
+        const double gap_m = (pose.p_W + pose.q_WT * leaf.centre - cloud.point(j)).norm() - leaf.radius_m -
+                             cloud.fixture_radius_m[j];
+        if (gap_m <= look_ahead_m) nearest_m = std::min(nearest_m, gap_m);
+        if (gap_m > 1e-4) continue;
+        const double k = cloud.stiffness_N_per_m[j], weight = std::clamp((1e-4 - gap_m) / 2e-4, 0.0, 1.0);
+        ++pairs, weights += weight, weighted += weight * (std::isnan(k) ? own : k);
+      }
+      tool_leaves += pairs > before ? 1 : 0;
+    }
+    const RegionTouch touch = contacts.touched(pose, own);
+    EXPECT_EQ(touch.leaf_pairs, pairs);
+    EXPECT_EQ(touch.tool_leaves, tool_leaves);
+    EXPECT_NEAR(touch.stiffness_N_per_m, pairs > 0 ? weighted / weights : own, 1e-6);
+    if (std::isfinite(nearest_m))
+      EXPECT_NEAR(touch.nearest_m, nearest_m, 1e-12);
+    else
+      EXPECT_EQ(touch.nearest_m, nearest_m);
+    touching += pairs > 0, clear += std::isinf(nearest_m);
+  }
+  EXPECT_GT(touching, 20);
+  EXPECT_GT(clear, 10);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "core/sphere_tree/region_tree.h"
 #include "core/sphere_tree/tree_collision.h"
+#include "tests/allocation_counter.h"
 #include "tests/scenes.h"
 
 namespace remote_touch {
@@ -91,13 +92,18 @@ TEST(RegionTree, HasALeafForEveryMeasuredPointWithARegion) {
   }
 }
 
-// Patches of 16 x 16 pixels: one for each that has a region, none for the others.
-TEST(RegionTree, HasAPatchForEverySquareOfTheImageWithARegion) {
+PointCloud image_of(int width, int height) {
   PointCloud cloud;
   cloud.image.emplace();
-  cloud.image->camera = {100, 70, 100, 100, 50, 35};
-  for (int v = 0; v < 70; ++v)
-    for (int u = 0; u < 100; ++u) cloud.append(Vec3(0.001 * u, 0.001 * v, 1));
+  cloud.image->camera = {width, height, 100, 100, 0.5 * width, 0.5 * height};
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) cloud.append(Vec3(0.001 * u, 0.001 * v, 1));
+  return cloud;
+}
+
+// Patches of 16 x 16 pixels: one for each that has a region, none for the others.
+TEST(RegionTree, HasAPatchForEverySquareOfTheImageWithARegion) {
+  PointCloud cloud = image_of(100, 70);
   cloud.fixture_radius_m.assign(cloud.size(), 0);
   for (const auto& [u, v] : {std::pair{0, 0}, {15, 15}, {16, 15}, {99, 69}})
     cloud.fixture_radius_m[static_cast<std::size_t>(v * 100 + u)] = 0.02;
@@ -106,6 +112,32 @@ TEST(RegionTree, HasAPatchForEverySquareOfTheImageWithARegion) {
   EXPECT_EQ(tree.points(), (std::vector<std::uint32_t>{0, 1515, 1516, 6999}));
   ASSERT_EQ(tree.spheres().level(0).size(), 3u);
   EXPECT_EQ(tree.spheres().level(0)[0].count, 2u);
+}
+
+TEST(RegionTree, KeepsTheStiffnessOfItsPoints) {
+  PointCloud cloud = scenes::random_cloud(500, 0.1, 5);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
+  RegionTree tree;
+  tree.assign(cloud);
+  EXPECT_TRUE(std::isnan(tree.stiffness_N_per_m(0)));
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.stiffness_N_per_m.push_back(10.0 * static_cast<double>(i));
+  tree.assign(cloud);
+  for (std::uint32_t leaf = 0; leaf < tree.points().size(); ++leaf)
+    EXPECT_EQ(tree.stiffness_N_per_m(leaf), 10.0 * tree.points()[leaf]);
+}
+
+// A stream of frames of one size: what the first one needed is there for the next.
+TEST(RegionTree, KeepsItsMemoryFromFrameToFrame) {
+  PointCloud cloud = image_of(200, 200);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
+  RegionTree tree;
+  tree.assign(cloud);
+  std::fill_n(cloud.fixture_radius_m.begin(), 5000, 0.0);
+  const std::size_t before = allocation_count();
+  tree.assign(cloud);
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_EQ(tree.points().size(), cloud.size() - 5000);
 }
 
 TEST(RegionTree, WithoutRegionsIsEmpty) {
@@ -135,22 +167,18 @@ std::vector<LeafPair> every_pair(const SphereTree& tool, const ToolPose& pose, c
   return pairs;
 }
 
-bool before(const LeafPair& a, const LeafPair& b) {
-  return a.tool != b.tool ? a.tool < b.tool : a.region < b.region;
-}
-
 TEST(TreeCollision, FindsWhatBruteForceFinds) {
   const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
                    regions = tree_of(random_spheres(4000, 0.05, 2), 100);
-  TreeCollision collision(tool);
+  TreeCollision collision(tool, scenes::kernels());
+  collision.on_frame(regions);
+  std::vector<LeafPair> room(tool.leaves().size() * regions.leaves().size());
   std::size_t most = 0, none = 0;
   for (int i = 0; i < 40; ++i) {
     const ToolPose pose{{0.008 * i - 0.1, 0.004 * i, 0.01}, rotation({0.1 * i, 0.3, -0.05 * i})};
     for (const double margin_m : {-0.001, 0.0, 0.004}) {
       std::vector<LeafPair> expected = every_pair(tool, pose, regions, margin_m);
-      const auto found = collision.near(pose, regions, margin_m);
-      std::vector<LeafPair> pairs(found.begin(), found.end());
-      std::sort(pairs.begin(), pairs.end(), before);
+      const std::span<const LeafPair> pairs = std::span(room).first(collision.near(pose, margin_m, room));
       ASSERT_EQ(pairs.size(), expected.size());
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         EXPECT_EQ(pairs[k].tool, expected[k].tool);
@@ -164,14 +192,40 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
   EXPECT_GT(none, 10u);
 }
 
+// Room for 100 of thousands: the deepest.
+TEST(TreeCollision, KeepsTheDeepestPairsWhereRoomEnds) {
+  const SphereTree tool = tree_of(random_spheres(112, 0.03, 1), 8),
+                   regions = tree_of(random_spheres(4000, 0.05, 2), 100);
+  TreeCollision collision(tool, scenes::kernels());
+  collision.on_frame(regions);
+  std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), room(100);
+  ASSERT_EQ(collision.near({}, 0.002, room), expected.size());
+  ASSERT_GT(expected.size(), 1000u);
+  std::stable_sort(expected.begin(), expected.end(),
+                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
+  std::stable_sort(room.begin(), room.end(),
+                   [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
+  for (std::size_t i = 0; i < room.size(); ++i) {
+    EXPECT_EQ(room[i].tool, expected[i].tool);
+    EXPECT_EQ(room[i].region, expected[i].region);
+  }
+  EXPECT_EQ(collision.near({}, 0.002, {}), expected.size());
+}
+
 TEST(TreeCollision, NothingIsNearWhatIsEmptyOrNoNumber) {
   const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
-  TreeCollision collision(tool), of_nothing(nothing);
-  EXPECT_TRUE(collision.near({}, nothing, 1).empty());
-  EXPECT_TRUE(of_nothing.near({}, tool, 1).empty());
+  std::vector<LeafPair> room(100);
+  const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
+    TreeCollision collision(of, scenes::kernels());
+    collision.on_frame(regions);
+    return collision.near(pose, 1, room);
+  };
+  EXPECT_GT(count(tool, tool, {}), 100u);
+  EXPECT_EQ(count(tool, nothing, {}), 0u);
+  EXPECT_EQ(count(nothing, tool, {}), 0u);
   ToolPose pose;
   pose.p_W.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(collision.near(pose, tool, 1).empty());
+  EXPECT_EQ(count(tool, tool, pose), 0u);
 }
 
 }  // namespace

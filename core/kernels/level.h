@@ -26,6 +26,11 @@
                               std::uint32_t* found);                                                         \
   void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count,             \
                       double share, double cells_per_m, const PosedField& field, const DiskColumns& disks);  \
+  std::size_t append_near_regions(const SphereRun& run, const double leaf[4], double margin,                 \
+                                  const NearRegions& near, std::size_t count);                               \
+  std::size_t deepest_region(const NearRegions& near, std::size_t count);                                    \
+  std::size_t next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,              \
+                                  double motion, double alike);                                              \
   void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out);                           \
   void filter_depth(const RowBand& band, const PointPlanes& in, float* change);                              \
   void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2], \

@@ -1,6 +1,7 @@
 #include "core/sphere_tree/region_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -8,66 +9,87 @@ namespace remote_touch {
 
 namespace {
 
-std::size_t way_number(const Vec3& way) {
-  const Vec3 along = way.cwiseAbs();
-  const std::size_t largest =
-      along.x() >= along.y() ? (along.x() >= along.z() ? 0 : 2) : (along.y() >= along.z() ? 1 : 2);
-  const std::size_t octant = (way.x() < 0 ? 4u : 0u) | (way.y() < 0 ? 2u : 0u) | (way.z() < 0 ? 1u : 0u);
-  return 3 * octant + largest;
-}
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// As many contacts as ContactThinning can sort without losing any.
+constexpr std::size_t kMostToThin = ContactThinning::kMostCells / 2;
 
 }  // namespace
 
-RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m)
+RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m,
+                               const Kernels& kernels)
     : tool_(std::move(tool)),
       look_ahead_m_(look_ahead_m),
-      collision_(*tool_),
-      deepest_(kWays * tool_->leaves().size()) {
-  chosen_.reserve(deepest_.size());
-  contacts_.reserve(std::max(ContactThinning::kMost, deepest_.size()));
+      collision_(*tool_, kernels),
+      choice_(look_ahead_m, kernels),
+      deepest_(tool_->leaves().size(), kNone) {
+  contacts_.reserve(kMostToThin);
 }
 
-Vec3 RegionContacts::way_out_W(const LeafPair& pair) const {
-  return collision_.tool_leaf(pair.tool).centre - regions_.spheres().leaves()[pair.region].centre;
+void RegionContacts::on_frame(const PointCloud& cloud) {
+  regions_.assign(cloud);
+  collision_.on_frame(regions_.spheres());
+  std::fill(deepest_.begin(), deepest_.end(), kNone);
 }
 
-void RegionContacts::choose_deepest(std::span<const LeafPair> pairs) {
-  ++detection_;
-  chosen_.clear();
-  for (const LeafPair& pair : pairs) {
-    const std::size_t at = kWays * pair.tool + way_number(way_out_W(pair));
-    Deepest& deepest = deepest_[at];
-    if (deepest.detection != detection_)
-      deepest = {pair, detection_}, chosen_.push_back(static_cast<std::uint32_t>(at));
-    else if (pair.gap_m < deepest.pair.gap_m)
-      deepest.pair = pair;
-  }
+// Of the smallest gap of a leaf: that to one region.
+double RegionContacts::bound_m(const CloseLeaf& leaf, std::uint32_t region) const {
+  if (region == kNone) return kInfinite;
+  const Sphere& other = regions_.spheres().leaves()[region];
+  return (leaf.sphere_W.centre - other.centre).norm() - leaf.sphere_W.radius_m - other.radius_m;
 }
 
-// In the tool frame. Centres that coincide tell no way: up is as good as any.
-ToolContact RegionContacts::contact(const LeafPair& pair, const ToolPose& pose) const {
-  const Eigen::Quaterniond q_TW = pose.q_WT.conjugate();
-  const Vec3 way_W = way_out_W(pair);
-  const double length_m = way_W.norm();
-  const Vec3 n_T = q_TW * (length_m > 0 ? Vec3(way_W / length_m) : Vec3(Vec3::UnitY()));
-  const Sphere& leaf = tool_->leaves()[pair.tool];
+// In the tool frame.
+ToolContact RegionContacts::contact(const ChosenPair& pair, const Eigen::Quaterniond& q_TW) const {
+  const Vec3 n_T = q_TW * pair.n_W;
+  const Sphere& leaf = tool_->leaves()[pair.leaf];
   return {leaf.centre - leaf.radius_m * n_T, n_T, -pair.gap_m, 1};
 }
 
+// What a leaf was deepest in a look ago, or its neighbour now, bounds how deep it is, and with that what is
+// worth a look: deep inside the half of all pairs. Which pairs are chosen does not depend on it.
 NearContacts RegionContacts::near(const ToolPose& pose, double) {
-  const std::span<const LeafPair> pairs = collision_.near(pose, regions_.spheres(), look_ahead_m_);
-  contacts_.clear();
-  if (pairs.size() <= ContactThinning::kMost) {
-    for (const LeafPair& pair : pairs) contacts_.push_back(contact(pair, pose));
-  } else {
-    choose_deepest(pairs);
-    for (const std::uint32_t at : chosen_) contacts_.push_back(contact(deepest_[at].pair, pose));
+  choice_.begin();
+  std::uint32_t neighbours = kNone;
+  double least_m = kInfinite;
+  for (const CloseLeaf& leaf : collision_.close_leaves(pose, look_ahead_m_)) {
+    std::uint32_t& deepest = deepest_[leaf.number];
+    const double within_m = choice_.within_m(std::min(bound_m(leaf, deepest), bound_m(leaf, neighbours)));
+    const TreeCollision::Found found = collision_.regions_near(leaf, within_m);
+    if (found.count == 0) continue;
+    deepest = neighbours = choice_.choose(leaf, found);
   }
-  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
-  for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
+  for (const ChosenPair& pair : choice_.chosen()) least_m = std::min(least_m, pair.gap_m);
+  choice_.keep_most_urgent(choice_.is_deep(least_m) ? kMostToThin : ContactThinning::kMost);
+  const Eigen::Quaterniond q_TW = pose.q_WT.conjugate();
+  contacts_.clear();
+  for (const ChosenPair& pair : choice_.chosen()) contacts_.push_back(contact(pair, q_TW));
   thinning_.thin(contacts_);
-  found.contacts = contacts_;
-  return found;
+  return {contacts_, -least_m};
+}
+
+// Once a pair that touches is known, or one that is nearly as near, those farther away say nothing.
+RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N_per_m) {
+  RegionTouch touch{kInfinite, 0, 0, own_stiffness_N_per_m};
+  double weights = 0, weighted = 0;
+  for (const CloseLeaf& leaf : collision_.close_leaves(pose, std::max(look_ahead_m_, kTouch_m))) {
+    const TreeCollision::Found found =
+        collision_.regions_near(leaf, std::max(kTouch_m, std::min(look_ahead_m_, touch.nearest_m)));
+    const int before = touch.leaf_pairs;
+    for (std::size_t i = 0; i < found.count; ++i) {
+      const double gap_m = found.regions.gap[i];
+      touch.nearest_m = std::min(touch.nearest_m, gap_m);
+      if (gap_m > kTouch_m) continue;
+      ++touch.leaf_pairs;
+      const double weight = std::min((kTouch_m - gap_m) / (2 * kTouch_m), 1.0);
+      const double stiffness = regions_.stiffness_N_per_m(found.regions.number[i]);
+      weights += weight;
+      weighted += weight * (std::isnan(stiffness) ? own_stiffness_N_per_m : stiffness);
+    }
+    touch.tool_leaves += touch.leaf_pairs > before ? 1 : 0;
+  }
+  if (touch.nearest_m > look_ahead_m_) touch.nearest_m = kInfinite;
+  if (weights > 0) touch.stiffness_N_per_m = weighted / weights;
+  return touch;
 }
 
 }  // namespace remote_touch

@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/kernels.h"
+#include "core/sphere_tree/pair_choice.h"
 #include "core/sphere_tree/region_tree.h"
 #include "core/sphere_tree/tree_collision.h"
 #include "core/tool/contact_thinning.h"
@@ -11,39 +13,48 @@
 
 namespace remote_touch {
 
-// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres. Where there
-// are more than the motion takes, of the pairs of one leaf of the tool whose lines are alike the deepest
-// counts: regions overlap, and deep inside there are tens of thousands of pairs. Their list grows with the
-// most that were found: such a detection allocates.
+// What a tool touches at a pose.
+struct RegionTouch {
+  double nearest_m;          // smallest gap, negative inside; infinite where none is within the look-ahead
+  int leaf_pairs = 0;        // with gaps of kTouch_m or less
+  int tool_leaves = 0;       // that have one
+  double stiffness_N_per_m;  // mean of k_s over them, by how deep each is; the tool's own without any
+};
+
+// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless others
+// stand for it: see PairChoice. Where more are left than the motion takes, and no leaf is deep, those go that
+// only the longest motions can violate; while one is deep, ContactThinning keeps the deepest of every place
+// and octant of directions, so that what is left is spread over the tool. Does not depend on the kernels'
+// level. Allocates on construction and in on_frame() only.
 class RegionContacts final : public NearContactSource {
  public:
-  // tool: in the tool frame.
-  RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m);
+  // Half the band of gaps in which a pair counts as touching, the less the less deep it is.
+  static constexpr double kTouch_m = 1e-4;
 
-  void on_frame(const PointCloud& cloud) { regions_.assign(cloud); }  // allocates
+  // tool: in the tool frame.
+  RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m, const Kernels& kernels);
+
+  void on_frame(const PointCloud& cloud);
   const RegionTree& regions() const { return regions_; }
 
-  // A region has one outside, so the side says nothing.
+  // A region has one outside, so the side says nothing. The deepest gap is that of all pairs, not only of the
+  // contacts.
   NearContacts near(const ToolPose& pose, double side) override;
 
+  // own_stiffness: k_s of points that have none.
+  RegionTouch touched(const ToolPose& pose, double own_stiffness_N_per_m);
+
  private:
-  // Lines are alike in one octant and with one largest coordinate.
-  static constexpr std::size_t kWays = 24;
-  struct Deepest {
-    LeafPair pair;
-    std::uint32_t detection = 0;  // that it was found in
-  };
-  void choose_deepest(std::span<const LeafPair> pairs);
-  ToolContact contact(const LeafPair& pair, const ToolPose& pose) const;
-  Vec3 way_out_W(const LeafPair& pair) const;
+  static constexpr std::uint32_t kNone = ~0u;
+  double bound_m(const CloseLeaf& leaf, std::uint32_t region) const;
+  ToolContact contact(const ChosenPair& pair, const Eigen::Quaterniond& q_TW) const;
 
   const std::shared_ptr<const SphereTree> tool_;
   const double look_ahead_m_;
   RegionTree regions_;
   TreeCollision collision_;
-  std::vector<Deepest> deepest_;       // of every leaf of the tool and way
-  std::vector<std::uint32_t> chosen_;  // those of this detection, as numbers in deepest_
-  std::uint32_t detection_ = 0;
+  PairChoice choice_;
+  std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region when last looked at
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_;
 };

@@ -2,16 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/morton_order.h"
 
 namespace remote_touch {
 
-void RegionTree::gather(const PointCloud& cloud, std::uint32_t point) {
-  const double radius_m = cloud.fixture_radius_m[point];
-  if (!(radius_m > 0 && std::isfinite(radius_m)) || !cloud.is_measured(point)) return;
-  patch_.push_back({cloud.point(point), radius_m});
-  points_.push_back(point);
+// Most points of most frames have none.
+void RegionTree::gather(const PointCloud& cloud, std::uint32_t first, std::uint32_t count) {
+  for (std::uint32_t point = first; point < first + count; ++point) {
+    const double radius_m = cloud.fixture_radius_m[point];
+    if (!(radius_m > 0)) continue;
+    if (!std::isfinite(radius_m) || !cloud.is_measured(point)) continue;
+    patch_.push_back({cloud.point(point), radius_m});
+    points_.push_back(point);
+    stiffness_N_per_m_.push_back(cloud.stiffness_N_per_m.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                                 : cloud.stiffness_N_per_m[point]);
+  }
 }
 
 void RegionTree::close_patch() {
@@ -28,15 +35,14 @@ void RegionTree::add_patches_of_image(const PointCloud& cloud) {
       for (std::uint32_t v = v0; v < std::min(v0 + kBlock, height); v += kPatch)
         for (std::uint32_t u = u0; u < std::min(u0 + kBlock, width); u += kPatch) {
           for (std::uint32_t row = v; row < std::min(v + kPatch, height); ++row)
-            for (std::uint32_t column = u; column < std::min(u + kPatch, width); ++column)
-              gather(cloud, row * width + column);
+            gather(cloud, row * width + u, std::min(kPatch, width - u));
           close_patch();
         }
 }
 
 void RegionTree::add_patches_along_curve(const PointCloud& cloud) {
   for (const std::uint32_t point : morton_order(cloud)) {
-    gather(cloud, point);
+    gather(cloud, point, 1);
     if (patch_.size() == kPatchPoints) close_patch();
   }
   close_patch();
@@ -45,6 +51,7 @@ void RegionTree::add_patches_along_curve(const PointCloud& cloud) {
 void RegionTree::assign(const PointCloud& cloud) {
   spheres_.clear();
   points_.clear();
+  stiffness_N_per_m_.clear();
   if (cloud.fixture_radius_m.empty()) return;
   if (cloud.image)
     add_patches_of_image(cloud);

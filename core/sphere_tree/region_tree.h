@@ -17,20 +17,24 @@ class RegionTree {
   static constexpr int kPatchSide_px = 16;
   static constexpr std::size_t kPatchPoints = 256;
 
-  void assign(const PointCloud& cloud);  // allocates
+  // Keeps its memory from frame to frame, but for the curve.
+  void assign(const PointCloud& cloud);
 
   const SphereTree& spheres() const { return spheres_; }
   // Of each leaf, the number of its point in the cloud.
   const std::vector<std::uint32_t>& points() const { return points_; }
+  // k_s of a leaf; NaN where its point has none.
+  double stiffness_N_per_m(std::uint32_t leaf) const { return stiffness_N_per_m_[leaf]; }
 
  private:
   void add_patches_of_image(const PointCloud& cloud);
   void add_patches_along_curve(const PointCloud& cloud);
-  void gather(const PointCloud& cloud, std::uint32_t point);
+  void gather(const PointCloud& cloud, std::uint32_t first, std::uint32_t count);
   void close_patch();
 
   SphereTree spheres_;
   std::vector<std::uint32_t> points_;
+  std::vector<double> stiffness_N_per_m_;
   std::vector<Sphere> patch_;
 };
 

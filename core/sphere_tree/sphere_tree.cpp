@@ -28,28 +28,55 @@ Sphere bounding_sphere(std::span<const Sphere> spheres) {
 
 void SphereTree::clear() {
   leaves_.clear();
-  levels_.clear();
+  level_count_ = 0;
+  x_.clear(), y_.clear(), z_.clear(), radius_.clear();
+  run_starts_.clear();
+}
+
+std::vector<SphereNode>& SphereTree::new_level() {
+  if (levels_.size() == level_count_) levels_.emplace_back();
+  std::vector<SphereNode>& level = levels_[level_count_++];
+  level.clear();
+  return level;
+}
+
+void SphereTree::append_run(std::span<const Sphere> leaves) {
+  run_starts_.push_back(x_.size());
+  for (const Sphere& leaf : leaves) {
+    x_.push_back(leaf.centre.x()), y_.push_back(leaf.centre.y()), z_.push_back(leaf.centre.z());
+    radius_.push_back(leaf.radius_m);
+  }
+  const std::size_t padded = (x_.size() + kLanes - 1) / kLanes * kLanes;
+  for (std::vector<double>* column : {&x_, &y_, &z_}) column->resize(padded, kFarAway);
+  radius_.resize(padded, 0);
 }
 
 void SphereTree::add(std::span<const Sphere> leaves) {
   if (leaves.empty()) return;
-  if (levels_.empty()) levels_.emplace_back();
+  if (level_count_ == 0) new_level();
   levels_.front().push_back({bounding_sphere(leaves), static_cast<std::uint32_t>(leaves_.size()),
                              static_cast<std::uint32_t>(leaves.size())});
   leaves_.insert(leaves_.end(), leaves.begin(), leaves.end());
+  append_run(leaves);
+}
+
+SphereRun SphereTree::run(std::size_t node) const {
+  const std::size_t start = run_starts_[node],
+                    end = node + 1 < run_starts_.size() ? run_starts_[node + 1] : x_.size();
+  return {x_.data() + start,      y_.data() + start, z_.data() + start,
+          radius_.data() + start, end - start,       levels_.front()[node].first};
 }
 
 void SphereTree::finish() {
-  while (!levels_.empty() && levels_.back().size() > kBranching) {
-    const std::vector<SphereNode>& below = levels_.back();
-    std::vector<SphereNode> level;
+  while (level_count_ > 0 && top().size() > kBranching) {
+    std::vector<SphereNode>& level = new_level();  // it may move the others
+    const std::vector<SphereNode>& below = levels_[level_count_ - 2];
     for (std::size_t first = 0; first < below.size(); first += kBranching) {
       const std::size_t count = std::min(kBranching, below.size() - first);
       const Sphere sphere =
           around(count, [&](std::size_t i) -> const Sphere& { return below[first + i].sphere; });
       level.push_back({sphere, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
     }
-    levels_.push_back(std::move(level));
   }
 }
 

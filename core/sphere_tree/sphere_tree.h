@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/kernels.h"
 #include "core/vector.h"
 
 namespace remote_touch {
@@ -28,7 +29,7 @@ class SphereTree {
   // Bounding spheres above the lowest level hold this many each, as long as there are more.
   static constexpr std::size_t kBranching = 8;
 
-  void clear();
+  void clear();  // keeps the memory
   // One more node of the lowest level. Nodes that are added one after the other should be near each other:
   // they get into one node of the next level. None is made of no leaves.
   void add(std::span<const Sphere> leaves);
@@ -38,13 +39,21 @@ class SphereTree {
   bool empty() const { return leaves_.empty(); }
   std::span<const Sphere> leaves() const { return leaves_; }
   // From the lowest up, at least one unless the tree is empty.
-  std::size_t level_count() const { return levels_.size(); }
+  std::size_t level_count() const { return level_count_; }
   std::span<const SphereNode> level(std::size_t i) const { return levels_[i]; }
-  std::span<const SphereNode> top() const { return levels_.back(); }
+  std::span<const SphereNode> top() const { return levels_[level_count_ - 1]; }
+  // The leaves of a node of the lowest level, for the kernels.
+  SphereRun run(std::size_t node) const;
 
  private:
+  std::vector<SphereNode>& new_level();
+  void append_run(std::span<const Sphere> leaves);
+
   std::vector<Sphere> leaves_;
-  std::vector<std::vector<SphereNode>> levels_;
+  std::vector<std::vector<SphereNode>> levels_;  // those that are used come first
+  std::size_t level_count_ = 0;
+  std::vector<double> x_, y_, z_, radius_;  // the leaves once more, those of each node padded to kLanes
+  std::vector<std::size_t> run_starts_;     // of each node, in these columns
 };
 
 }  // namespace remote_touch

@@ -1,8 +1,13 @@
 #include "core/sphere_tree/tree_collision.h"
 
+#include <algorithm>
+#include <bit>
+
 namespace remote_touch {
 
 namespace {
+
+static_assert(SphereTree::kBranching <= 32, "the topmost nodes are the bits of a word");
 
 // Without a root, and without a branch more for what is no number: such spheres are never near.
 bool is_near(const Sphere& a, const Sphere& b, double margin_m) {
@@ -10,59 +15,105 @@ bool is_near(const Sphere& a, const Sphere& b, double margin_m) {
   return reach_m >= 0 && (a.centre - b.centre).squaredNorm() <= reach_m * reach_m;
 }
 
-}  // namespace
-
-TreeCollision::TreeCollision(const SphereTree& tool) : tool_(tool), leaves_W_(tool.leaves().size()) {
-  for (std::size_t level = 0; level < tool.level_count(); ++level)
-    levels_W_.emplace_back(tool.level(level).size());
+bool by_number(const LeafPair& a, const LeafPair& b) {
+  return a.tool != b.tool ? a.tool < b.tool : a.region < b.region;
+}
+bool is_deeper(const LeafPair& a, const LeafPair& b) {
+  return a.gap_m != b.gap_m ? a.gap_m < b.gap_m : by_number(a, b);
 }
 
-std::span<const LeafPair> TreeCollision::near(const ToolPose& pose, const SphereTree& regions,
-                                              double margin_m) {
-  found_.clear();
-  if (tool_.empty() || regions.empty()) return {};
-  margin_m_ = margin_m;
-  const Eigen::Matrix3d R_WT = pose.q_WT.toRotationMatrix();
-  const auto placed = [&](const Sphere& sphere) {
-    return Sphere{pose.p_W + R_WT * sphere.centre, sphere.radius_m};
-  };
-  for (std::size_t i = 0; i < leaves_W_.size(); ++i) leaves_W_[i] = placed(tool_.leaves()[i]);
-  for (std::size_t level = 0; level < levels_W_.size(); ++level)
-    for (std::size_t i = 0; i < levels_W_[level].size(); ++i)
-      levels_W_[level][i] = placed(tool_.level(level)[i].sphere);
-  const std::size_t top = tool_.level_count() - 1;
+}  // namespace
+
+TreeCollision::TreeCollision(const SphereTree& tool, const Kernels& kernels)
+    : tool_(tool), kernels_(kernels) {
+  close_.reserve(tool.leaves().size());
+}
+
+void TreeCollision::on_frame(const SphereTree& regions) {
+  regions_ = &regions;
+  const std::size_t room = regions.leaves().size() + 2 * kLanes;
+  if (number_.size() >= room) return;
+  for (std::vector<double>* column : {&gap_, &nx_, &ny_, &nz_}) column->resize(room);
+  number_.resize(room);
+}
+
+Sphere TreeCollision::placed(const Sphere& sphere_T) const {
+  return {p_W_ + R_WT_ * sphere_T.centre, sphere_T.radius_m};
+}
+
+std::uint32_t TreeCollision::tops_near(const Sphere& sphere_W, std::uint32_t among) const {
+  std::uint32_t near = 0;
+  for (; among != 0; among &= among - 1) {
+    const int top = std::countr_zero(among);
+    if (is_near(sphere_W, regions_->top()[static_cast<std::size_t>(top)].sphere, margin_m_))
+      near |= 1u << top;
+  }
+  return near;
+}
+
+std::span<const CloseLeaf> TreeCollision::close_leaves(const ToolPose& pose, double margin_m) {
+  close_.clear();
+  if (tool_.empty() || !regions_ || regions_->empty()) return {};
+  p_W_ = pose.p_W, R_WT_ = pose.q_WT.toRotationMatrix(), margin_m_ = margin_m;
+  const auto every_top = static_cast<std::uint32_t>((std::uint64_t{1} << regions_->top().size()) - 1);
   for (std::uint32_t node = 0; node < tool_.top().size(); ++node)
-    for (std::uint32_t region = 0; region < regions.top().size(); ++region)
-      meet_tool(top, node, regions, region);
+    meet_tool(tool_.level_count() - 1, node, every_top);
+  return close_;
+}
+
+void TreeCollision::meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops) {
+  const SphereNode& node = tool_.level(level)[number];
+  tops = tops_near(placed(node.sphere), tops);
+  if (tops == 0) return;
+  for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
+    if (level > 0)
+      meet_tool(level - 1, child, tops);
+    else
+      close_.push_back({child, tops, placed(tool_.leaves()[child])});
+}
+
+TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double margin_m) {
+  found_ = {{gap_.data(), nx_.data(), ny_.data(), nz_.data(), number_.data()}, 0};
+  for (std::uint32_t tops = leaf.tops; tops != 0; tops &= tops - 1)
+    meet_regions(regions_->level_count() - 1, static_cast<std::uint32_t>(std::countr_zero(tops)),
+                 leaf.sphere_W, margin_m);
   return found_;
 }
 
-void TreeCollision::meet_tool(std::size_t level, std::uint32_t node, const SphereTree& regions,
-                              std::uint32_t top) {
-  const Sphere& region = regions.top()[top].sphere;
-  if (!is_near(levels_W_[level][node], region, margin_m_)) return;
-  const SphereNode& here = tool_.level(level)[node];
-  for (std::uint32_t child = here.first; child < here.first + here.count; ++child)
-    if (level > 0)
-      meet_tool(level - 1, child, regions, top);
-    else
-      meet_regions(child, regions, regions.level_count() - 1, top);
+void TreeCollision::meet_regions(std::size_t level, std::uint32_t number, const Sphere& leaf_W,
+                                 double margin_m) {
+  const SphereNode& node = regions_->level(level)[number];
+  if (!is_near(leaf_W, node.sphere, margin_m)) return;
+  if (level == 0) {
+    const double leaf[4] = {leaf_W.centre.x(), leaf_W.centre.y(), leaf_W.centre.z(), leaf_W.radius_m};
+    found_.count =
+        kernels_.append_near_regions(regions_->run(number), leaf, margin_m, found_.regions, found_.count);
+    return;
+  }
+  for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
+    meet_regions(level - 1, child, leaf_W, margin_m);
 }
 
-void TreeCollision::meet_regions(std::uint32_t leaf, const SphereTree& regions, std::size_t level,
-                                 std::uint32_t node) {
-  const Sphere& tool = leaves_W_[leaf];
-  const SphereNode& here = regions.level(level)[node];
-  if (!is_near(tool, here.sphere, margin_m_)) return;
-  for (std::uint32_t child = here.first; child < here.first + here.count; ++child) {
-    if (level > 0) {
-      meet_regions(leaf, regions, level - 1, child);
-      continue;
+// A heap with the shallowest of those that are kept on top, once there is no more room.
+std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> room) {
+  std::size_t count = 0;
+  for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {
+    const Found found = regions_near(leaf, margin_m);
+    for (std::size_t i = 0; i < found.count; ++i, ++count) {
+      const LeafPair pair{leaf.number, found.regions.number[i], found.regions.gap[i]};
+      if (count < room.size()) {
+        room[count] = pair;
+        if (count + 1 == room.size()) std::make_heap(room.begin(), room.end(), is_deeper);
+      } else if (!room.empty() && is_deeper(pair, room.front())) {
+        std::pop_heap(room.begin(), room.end(), is_deeper);
+        room.back() = pair;
+        std::push_heap(room.begin(), room.end(), is_deeper);
+      }
     }
-    const Sphere& region = regions.leaves()[child];
-    const double gap_m = (tool.centre - region.centre).norm() - tool.radius_m - region.radius_m;
-    if (gap_m <= margin_m_) found_.push_back({leaf, child, gap_m});
   }
+  std::sort(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(std::min(count, room.size())),
+            by_number);
+  return count;
 }
 
 }  // namespace remote_touch

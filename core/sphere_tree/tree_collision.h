@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/kernels.h"
 #include "core/sphere_tree/sphere_tree.h"
 #include "core/tool/tool_pose.h"
 
@@ -15,28 +16,54 @@ struct LeafPair {
   double gap_m;                // between their surfaces, negative where they overlap
 };
 
+// A leaf of the tool at a pose, world frame, that some of the topmost regions may be near.
+struct CloseLeaf {
+  std::uint32_t number;
+  std::uint32_t tops;  // bit i: the region's topmost node i
+  Sphere sphere_W;
+};
+
+// Allocates in the constructor and in on_frame() only.
 class TreeCollision {
  public:
-  // tool: in the tool frame; stays in use.
-  explicit TreeCollision(const SphereTree& tool);
+  // tool: in the tool frame; stays in use, and so do regions.
+  TreeCollision(const SphereTree& tool, const Kernels& kernels);
+  void on_frame(const SphereTree& regions);
 
-  // All pairs of leaves with gaps of margin_m or less, for a tool at a pose: the tool's tree is gone down
-  // depth first against the topmost regions, then the regions' against its leaf. The order depends on the
-  // trees alone. Valid until the next call.
-  std::span<const LeafPair> near(const ToolPose& pose, const SphereTree& regions, double margin_m);
+  // The tool's tree is gone down depth first against the topmost regions. Every leaf with a pair within
+  // margin_m is among those returned, in the order of their numbers. Valid until the next call.
+  std::span<const CloseLeaf> close_leaves(const ToolPose& pose, double margin_m);
 
-  // Of the last call, in the world.
-  const Sphere& tool_leaf(std::uint32_t i) const { return leaves_W_[i]; }
+  // Then the regions' tree against one of them: all regions with gaps of margin_m or less, in an order that
+  // depends on that tree alone. The columns may be changed, and are valid until the next call.
+  struct Found {
+    NearRegions regions;  // normals in the world
+    std::size_t count;
+  };
+  Found regions_near(const CloseLeaf& leaf, double margin_m);
+
+  // All pairs with gaps of margin_m or less, as many as there is room for: where it ends the deepest, of
+  // equally deep ones those with the smaller numbers. Ordered by the leaf of the tool, then the region.
+  // Returns how many there are.
+  std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> room);
 
  private:
-  void meet_tool(std::size_t level, std::uint32_t node, const SphereTree& regions, std::uint32_t top);
-  void meet_regions(std::uint32_t leaf, const SphereTree& regions, std::size_t level, std::uint32_t node);
+  void meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops);
+  // Those of the topmost regions that are near a sphere of the tool.
+  std::uint32_t tops_near(const Sphere& sphere_W, std::uint32_t among) const;
+  Sphere placed(const Sphere& sphere_T) const;
+  void meet_regions(std::size_t level, std::uint32_t number, const Sphere& leaf_W, double margin_m);
 
   const SphereTree& tool_;
-  std::vector<Sphere> leaves_W_;
-  std::vector<std::vector<Sphere>> levels_W_;
+  const SphereTree* regions_ = nullptr;
+  const Kernels& kernels_;
+  Vec3 p_W_ = Vec3::Zero();
+  Eigen::Matrix3d R_WT_ = Eigen::Matrix3d::Identity();
   double margin_m_ = 0;
-  std::vector<LeafPair> found_;
+  std::vector<CloseLeaf> close_;
+  std::vector<double> gap_, nx_, ny_, nz_;
+  std::vector<std::uint32_t> number_;
+  Found found_{};
 };
 
 }  // namespace remote_touch

@@ -1,0 +1,69 @@
+#include "core/sphere_tree/pair_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+PairChoice::PairChoice(double look_ahead_m, const Kernels& kernels)
+    : look_ahead_m_(look_ahead_m), motion_m_(0.5 * look_ahead_m), kernels_(kernels) {
+  chosen_.reserve(kRoom);
+}
+
+void PairChoice::begin() {
+  chosen_.clear();
+  rated_ = 0;
+}
+
+// Normals differ by 2 at most. Grows with the gap, so what is found for a bound of it is enough.
+double PairChoice::within_m(double gap_m) const {
+  return std::min(look_ahead_m_, std::max(gap_m + 2 * motion_m_, 0.5 * gap_m));
+}
+
+std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {
+  if (chosen_.size() + kMostOfLeaf > kRoom) keep_most_urgent(kRoom / 2);
+  const NearRegions& near = found.regions;
+  std::size_t at = kernels_.deepest_region(near, found.count);
+  const std::uint32_t deepest = near.number[at];
+  const double least_m = near.gap[at], most_m = within_m(least_m);
+  const bool deep = is_deep(least_m);
+  constexpr double kAny = -2;  // below every cosine
+  const double motion_m = deep ? 2 * look_ahead_m_ : motion_m_, alike = deep ? kAlike : kAny;
+  for (std::size_t kept = 0; kept < kMostOfLeaf && at < found.count; ++kept) {
+    if (near.gap[at] > most_m) break;
+    chosen_.push_back({leaf.number, near.gap[at], {near.nx[at], near.ny[at], near.nz[at]}, near.gap[at]});
+    at = kernels_.next_deepest_region(near, found.count, at, motion_m, alike);
+  }
+  return deepest;
+}
+
+// Of a leaf the deepest pair comes first, and the others after those that are deeper.
+void PairChoice::rate() {
+  std::size_t first = rated_;
+  for (; rated_ < chosen_.size(); ++rated_) {
+    ChosenPair& pair = chosen_[rated_];
+    if (pair.leaf != chosen_[first].leaf) first = rated_;
+    if (is_deep(chosen_[first].gap_m)) continue;
+    double longest_squared = 0;
+    for (std::size_t i = first; i < rated_; ++i) {
+      const double rise_m = pair.gap_m - chosen_[i].gap_m,
+                   apart_squared = (pair.n_W - chosen_[i].n_W).squaredNorm();
+      if (apart_squared > 0) longest_squared = std::max(longest_squared, rise_m * rise_m / apart_squared);
+    }
+    pair.motion_m = std::max(pair.gap_m, longest_squared > 0 ? std::sqrt(longest_squared) : pair.gap_m);
+  }
+}
+
+void PairChoice::keep_most_urgent(std::size_t most) {
+  if (chosen_.size() <= most) return;
+  rate();
+  const auto is_sooner = [](const ChosenPair& a, const ChosenPair& b) {
+    if (a.motion_m != b.motion_m) return a.motion_m < b.motion_m;
+    return a.leaf != b.leaf ? a.leaf < b.leaf : a.gap_m < b.gap_m;
+  };
+  std::sort(chosen_.begin(), chosen_.end(), is_sooner);
+  chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(most), chosen_.end());
+  rated_ = chosen_.size();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,66 @@
+// Which of the pairs of leaves become constraints, (7.4): far more are near than a motion can take.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/kernels.h"
+#include "core/sphere_tree/tree_collision.h"
+
+namespace remote_touch {
+
+// A pair that is a constraint: n . u >= -gap for the motion u of the middle of the leaf.
+struct ChosenPair {
+  std::uint32_t leaf;  // of the tool
+  double gap_m;
+  Vec3 n_W;         // unit, the way out of the region
+  double motion_m;  // shortest motion of the leaf that can violate it where its other constraints are obeyed
+};
+
+// All pairs of one leaf limit the motion of one point, its middle. From the deepest on, a pair is kept unless
+// one that is kept already stands for it: pair j with the gap g_j goes if there is a deeper one i with
+// g_j - g_i >= |n_j - n_i| m, for then no motion up to the length m that obeys i violates j.
+//
+// As long as the leaf is no deeper than half the look-ahead, m is that half, which is what it moves in a
+// step: nothing is lost that a step could run into. A rule that is content with nearly as much would be
+// wrong. In the obtuse crease of two regions 1 mm apart, the pole of either lies 9 um deep in the other
+// region and 0.8 mm aside, and a tool that sees one region at a time goes to and fro between them.
+//
+// A deeper leaf is on its way out, or in a wedge, and steps are longer: m is twice the look-ahead, and j goes
+// only if its line is also within kAlike of that of i, so that every direction keeps its deepest. What is not
+// half as deep as the deepest pair, nor within a look-ahead of it, goes too: the next look finds it.
+//
+// Of every leaf the deepest pair is kept, so no pair is deeper than all that are kept. Room ends with
+// kMostOfLeaf of a leaf, then the shallower ones are lost, and with kRoom of all, then those are lost that
+// only the longest motions can violate; those of deep leaves count as their gaps, so the deepest stay.
+// Allocates on construction only.
+class PairChoice {
+ public:
+  static constexpr std::size_t kMostOfLeaf = 64, kRoom = 4096;
+  static constexpr double kAlike = 0.90630778703664996;  // cosine of 25 degrees
+
+  PairChoice(double look_ahead_m, const Kernels& kernels);
+
+  void begin();
+  // The gap up to which pairs of a leaf can be kept whose deepest one has this gap, or a smaller one.
+  double within_m(double gap_m) const;
+  // found: all pairs of a leaf within that. Returns the number of its deepest region; pre: found is not
+  // empty.
+  std::uint32_t choose(const CloseLeaf& leaf, const TreeCollision::Found& found);
+
+  std::span<const ChosenPair> chosen() const { return chosen_; }
+  // No more than most of them: those that the shortest motions can violate.
+  void keep_most_urgent(std::size_t most);
+  bool is_deep(double gap_m) const { return gap_m < -motion_m_; }
+
+ private:
+  void rate();
+
+  const double look_ahead_m_, motion_m_;
+  const Kernels& kernels_;
+  std::vector<ChosenPair> chosen_;
+  std::size_t rated_ = 0;  // of them, those whose motion_m is known
+};
+
+}  // namespace remote_touch
