@@ -11,15 +11,15 @@
 namespace remote_touch {
 
 // squares: filled cells of a map, as large as the samples lie apart; map: the same coloured by z; band: from
-// y to z.
-enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band };
+// y to z; image: a pixel in every cell of a grid, of the colour z = 0xRRGGBB.
+enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band, image };
 
 struct Curve {
   std::string table, x, y;  // names of a table and two of its columns
   CurveStyle style = CurveStyle::line;
   std::string label = {};  // empty: not in the legend
   double radius = 0;       // of circles, in data units
-  std::string z = {};      // a third column, of maps and bands
+  std::string z = {};      // a third column, of maps, bands and images
 };
 
 struct Panel {

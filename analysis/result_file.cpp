@@ -65,6 +65,8 @@ std::string style_name(CurveStyle style) {
       return "map";
     case CurveStyle::band:
       return "band";
+    case CurveStyle::image:
+      return "image";
   }
   return "line";
 }

@@ -10,6 +10,8 @@ import matplotlib.ticker
 import matplotlib.transforms
 import numpy as np
 
+from plotting.scene import rgb
+
 CELLS = ("squares", "map")  # the styles that draw cells
 HALO = [matplotlib.patheffects.withStroke(linewidth=4, foreground="white")]  # about a line over cells
 
@@ -83,8 +85,21 @@ def draw_band(axes, curve, _, colour):
                       label=curve.label)
 
 
+def draw_image(axes, curve, _, __):
+    """Its pixels as they are, over the places of their centres; the limits of the panel say which way is up."""
+    (columns, at_column), (rows, at_row) = (np.unique(values, return_inverse=True)
+                                            for values in (curve.x.values, curve.y.values))
+    pixels = np.ones((rows.size, columns.size, 3))
+    pixels[at_row, at_column] = rgb(curve.z.values)
+    across, up = (cell_size(values, (math.nan, math.nan)) / 2 for values in (columns, rows))
+    axes.imshow(pixels, origin="lower", interpolation="nearest", aspect="auto",
+                extent=(columns[0] - across, columns[-1] + across, rows[0] - up, rows[-1] + up))
+    axes.grid(False)
+
+
 DRAW = {"line": draw_line, "dashed": draw_dashed, "steps": draw_steps, "dots": draw_dots,
-        "circle": draw_circles, "bars": draw_bars, "squares": draw_squares, "map": draw_map, "band": draw_band}
+        "circle": draw_circles, "bars": draw_bars, "squares": draw_squares, "map": draw_map, "band": draw_band,
+        "image": draw_image}
 
 
 def has_cells(panel):

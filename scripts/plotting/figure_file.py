@@ -7,8 +7,8 @@ import h5py
 import numpy as np
 
 SCHEMA = "remote-touch-figure/1"
-STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band")
-NEED_Z = ("map", "band")
+STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image")
+NEED_Z = ("map", "band", "image")
 
 
 class PlotError(Exception):
@@ -30,7 +30,7 @@ class Curve:
     style: str
     label: str
     radius: float
-    z: Column | None  # the colours of a map, the other edge of a band; None for every other style
+    z: Column | None  # the colours of a map or an image, the other edge of a band; None for every other style
 
 
 @dataclasses.dataclass
