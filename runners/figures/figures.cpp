@@ -29,8 +29,10 @@ constexpr FigureEntry kFigures[] = {
     {"6.3", "a tool turned in a narrow box of points: displacement, rotation, counts of contacts",
      figure_6_3},
     {"6.4", "a bunny, a hand and a drill slide over recorded objects", figure_6_4},
+    {"7.1-recorded", "an organ model and a dragon found by hue in recorded images", figure_7_1_recorded},
     {"latency", "how far a fixture is violated when frames come late, irregularly or not at all",
      figure_latency},
+    {"turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity},
 };
 
 }  // namespace

@@ -97,7 +97,9 @@ Figure figure_5_8_recorded(const Laboratory& laboratory);
 Figure figure_6_2(const Laboratory& laboratory);
 Figure figure_6_3(const Laboratory& laboratory);
 Figure figure_6_4(const Laboratory& laboratory);
+Figure figure_7_1_recorded(const Laboratory& laboratory);
 Figure figure_bounds(const Laboratory& laboratory);
 Figure figure_eq4_15(const Laboratory& laboratory);
+Figure figure_turbidity(const Laboratory& laboratory);
 
 }  // namespace remote_touch
