@@ -92,9 +92,8 @@ def draw_image(axes, curve, _, __):
     pixels = np.ones((rows.size, columns.size, 3))
     pixels[at_row, at_column] = rgb(curve.z.values)
     across, up = (cell_size(values, (math.nan, math.nan)) / 2 for values in (columns, rows))
-    axes.imshow(pixels, origin="lower", interpolation="nearest", aspect="auto",
+    axes.imshow(pixels, origin="lower", interpolation="nearest",
                 extent=(columns[0] - across, columns[-1] + across, rows[0] - up, rows[-1] + up))
-    axes.grid(False)
 
 
 DRAW = {"line": draw_line, "dashed": draw_dashed, "steps": draw_steps, "dots": draw_dots,
@@ -233,6 +232,17 @@ def add_legend(axes, panel):
         line.set_markersize(max(5, line.get_markersize()))
 
 
+def is_image(panel):
+    """Such a panel is drawn without axes, as wide as it can be."""
+    return any(curve.style == "image" for curve in panel.curves)
+
+
+def without_axes(axes):
+    axes.set_xticks([]), axes.set_yticks([])
+    axes.spines[:].set_visible(False)
+    axes.grid(False)
+
+
 def curve_key(curve, i):
     """What has one colour throughout a figure: a label, or else a quantity and its place in the panel."""
     return curve.label or (curve.y.long_name, i)
@@ -245,11 +255,14 @@ def draw_panel(axes, panel, colours):
     xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
+    axes.set_title(textwrap.fill(panel.title, 80), loc="left")
+    if is_image(panel):
+        without_axes(axes)
+        return
     set_ticks(axes.xaxis, axes.get_xlim(), xs)
     set_ticks(axes.yaxis, axes.get_ylim(), ys)
     if panel.place is not None:  # narrow: the labels would run into each other
         axes.locator_params(axis="x", nbins=5)
-    axes.set_title(textwrap.fill(panel.title, 80), loc="left")
     axes.set_xlabel(with_units(panel.x_label, xs))
     axes.set_ylabel(textwrap.fill(with_units(panel.y_label, ys), 36))
     add_legend(axes, panel)

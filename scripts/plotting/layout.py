@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from plotting.drawing import curve_key, draw_panel, has_cells, legend_below
+from plotting.drawing import curve_key, draw_panel, has_cells, is_image, legend_below
 from plotting.scene import draw_scene
 
 WIDTH_IN, HEIGHT_IN, DPI = 9.0, 6.0, 130
@@ -54,8 +54,10 @@ def row_height(row, columns, rows):
         height = max(share, 3.8) if has_cells(panel) else share
         if panel.scene:
             height = 0.95 * canvas_width(columns) / columns * panel.scene.proportion + 0.6
-        if panel.equal_aspect:
-            (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+        (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+        if is_image(panel):
+            height = 0.95 * canvas_width(columns) / columns * abs(y1 - y0) / abs(x1 - x0) + 0.6
+        elif panel.equal_aspect:
             across = 0.7 * WIDTH_IN / columns
             asked = across * abs(y1 - y0) / abs(x1 - x0) + 0.9
             height = min(max(asked, 1.8 if has_range(panel) else share), HEIGHT_IN)
