@@ -63,8 +63,12 @@ using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
 // Of the hand that a renderer is for: six where its outputs have RenderOutput::tool.
 enum class Freedoms { three, six };
 
+// What a renderer touches of a cloud: all points, or the regions of those with r_f above 0 alone.
+enum class HeldBy { points, regions };
+
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   Freedoms freedoms = Freedoms::three;
+  HeldBy held_by = HeldBy::points;
 };
 
 }  // namespace remote_touch

@@ -5,6 +5,7 @@
 #include "core/fixtures/hue_range.h"
 #include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
+#include "runners/tools/loaded_spheres.h"
 #include "runners/tools/loaded_tool.h"
 #include "runners/trajectories/follow_surface.h"
 #include "runners/trajectories/image_press.h"
@@ -54,8 +55,8 @@ TrajectoryEntry trajectory(const char* name, const char* summary) {
 }
 
 template <class Product, class Settings>
-RendererEntry renderer(const char* name, Freedoms freedoms, const char* summary) {
-  return {{name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>}, freedoms};
+RendererEntry renderer(const char* name, Freedoms freedoms, HeldBy held_by, const char* summary) {
+  return {{name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>}, freedoms, held_by};
 }
 
 const ScenarioEntry kScenarios[] = {
@@ -97,10 +98,13 @@ const TrajectoryEntry kTrajectories[] = {
 };
 
 const RendererEntry kRenderers[] = {
-    renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three,
+    renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three, HeldBy::points,
                                              "3-DOF point cloud proxy, chapters 4 and 5"),
-    renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six,
+    renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six, HeldBy::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
+    renderer<LoadedSpheres, LoadedSpheres::Settings>(
+        "sphere-tree", Freedoms::six, HeldBy::regions,
+        "6-DOF forbidden regions: a tool of spheres against those around points, chapter 7"),
 };
 
 }  // namespace

@@ -45,6 +45,7 @@ class Experiment {
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const RunSettings& settings() const { return settings_; }
+  const std::vector<SequenceStep>& sequence() const { return sequence_; }
   std::string to_json() const;  // complete: every parameter, one line
   // The recordings that a run reads, as they are named; none has been looked for yet.
   std::vector<RecordingPart> inputs() const;

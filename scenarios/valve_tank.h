@@ -34,7 +34,7 @@ class ValveTank final : public Scenario {
     double turbidity_per_m = 0.6;
     double colour_noise = 3;
     double dropout = 0.02;
-    DepthCameraSettings camera{.camera_m = {0, 0.3, 0.9}, .target_m = {0, 0, 0.04}};
+    DepthCameraSettings camera{.camera_m = {0, 0.3, 0.9}, .target_m = {0, 0, 0.04}, .hole_px = 1};
   };
 
   ValveTank(const Settings& settings, const NoiseKey& key, const Kernels& kernels);

@@ -26,11 +26,18 @@ std::unique_ptr<Renderer> build(const RendererEntry& entry) {
   return entry.make()->build(1000, scenes::kernels());
 }
 
+// A flat cloud that holds the renderer: with regions, where it knows nothing else.
+PointCloud grid_for(const RendererEntry& entry, int n) {
+  PointCloud cloud = scenes::flat_grid(n);
+  if (entry.held_by == HeldBy::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
+  return cloud;
+}
+
 // A press into a flat cloud with a new frame every 33 ticks, and back out.
-std::vector<RenderOutput> press(Renderer& renderer) {
+std::vector<RenderOutput> press(const RendererEntry& entry, Renderer& renderer) {
   std::vector<RenderOutput> outputs;
   for (int tick = 0; tick < 200; ++tick) {
-    if (tick % 33 == 0) renderer.on_frame(scenes::frame(scenes::flat_grid(60), tick / 33));
+    if (tick % 33 == 0) renderer.on_frame(scenes::frame(grid_for(entry, 60), tick / 33));
     const double depth = tick < 100 ? 0.02 - 0.0005 * tick : -0.03 + 0.0005 * (tick - 100);
     outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
   }
@@ -40,7 +47,7 @@ std::vector<RenderOutput> press(Renderer& renderer) {
 TEST(RendererContract, NoForceInFreeSpace) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(scenes::flat_grid(40)));
+    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
     for (int tick = 0; tick < 50; ++tick) {
       const RenderOutput out = renderer->step({Vec3(0.001 * tick, 0.03, 0)}, 0.001 * tick);
       EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
@@ -54,7 +61,7 @@ TEST(RendererContract, HasAsManyDegreesOfFreedomAsItsEntrySays) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
     EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
-    renderer->on_frame(scenes::frame(scenes::flat_grid(40)));
+    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
     EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
   }
 }
@@ -63,7 +70,7 @@ TEST(RendererContract, PushesTheHandOutOfTheSurface) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
     double highest = 0;
-    for (const RenderOutput& out : press(*renderer)) highest = std::max(highest, out.force_N.y());
+    for (const RenderOutput& out : press(entry, *renderer)) highest = std::max(highest, out.force_N.y());
     EXPECT_GT(highest, 1) << entry.name;
   }
 }
@@ -71,7 +78,7 @@ TEST(RendererContract, PushesTheHandOutOfTheSurface) {
 TEST(RendererContract, SameInputSameBits) {
   for (const RendererEntry& entry : renderers()) {
     const auto first = build(entry), second = build(entry);
-    const auto a = press(*first), b = press(*second);
+    const auto a = press(entry, *first), b = press(entry, *second);
     for (std::size_t i = 0; i < a.size(); ++i) {
       EXPECT_EQ(a[i].proxy_W, b[i].proxy_W) << entry.name;
       EXPECT_EQ(a[i].force_N, b[i].force_N) << entry.name;
@@ -83,7 +90,7 @@ TEST(RendererContract, SameInputSameBits) {
 TEST(RendererContract, AStepAllocatesNothing) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(scenes::flat_grid(100)));
+    renderer->on_frame(scenes::frame(grid_for(entry, 100)));
     for (int tick = 0; tick < 300; ++tick) {
       // Approach, press, slide fast, jump across the cloud.
       const Vec3 hip(tick < 200 ? 0 : 0.002 * (tick - 250), tick < 100 ? 0.02 - 0.0004 * tick : -0.02,
@@ -108,7 +115,7 @@ TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
 TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(scenes::flat_grid(60)));
+    renderer->on_frame(scenes::frame(grid_for(entry, 60)));
     renderer->step({Vec3(0, 0.02, 0)}, 0);
     const RenderOutput before = renderer->step({Vec3(0, -0.02, 0)}, 0.001);
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {

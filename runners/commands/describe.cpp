@@ -2,12 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/measures.h"
+#include "core/tool/generated_tools.h"
 #include "runners/catalog.h"
 #include "runners/commands/commands.h"
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
 #include "runners/json_parameters.h"
 #include "runners/sweep.h"
+#include "runners/tools/loaded_spheres.h"
+#include "runners/tools/mesh_file.h"
 
 namespace remote_touch {
 
@@ -75,6 +78,19 @@ bool describe_sweep(const std::string& name) {
   return false;
 }
 
+// A built-in tool or a mesh file in metres: what was made of it, as the renderers do by default.
+bool describe_tool(const std::string& name) {
+  const GeneratedTool* built_in = find_generated_tool(name);
+  if (built_in == nullptr && !is_mesh_file(name)) return false;
+  LoadedSpheres::Settings settings;
+  settings.tool.mesh = name;
+  std::string report;
+  load_tool_of_spheres(settings.tool, settings.leaves, &report);
+  std::printf("%s: a tool: %s\n%s\n", name.c_str(), built_in ? built_in->summary : "from a mesh file",
+              report.c_str());
+  return true;
+}
+
 }  // namespace
 
 int command_describe(const CommandLine&, const DescribeRequest& request) {
@@ -103,6 +119,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
       "\"operator\" of an experiment: a simulated hand that follows the trajectory and feels forces", name);
   found |= describe_section<MotorSettings>(
       "device", "\"device\" of an experiment: which axes of the haptic device have motors", name);
+  found |= describe_tool(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())

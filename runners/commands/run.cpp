@@ -1,8 +1,11 @@
+#include <cmath>
 #include <cstdio>
 
 #include "analysis/measures.h"
 #include "analysis/result_file.h"
+#include "analysis/sequence_log.h"
 #include "analysis/whole_file.h"
+#include "core/rotation.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
 #include "runners/commands/shell_command.h"
@@ -20,6 +23,29 @@ std::string normalised(const RunRequest& request) {
   std::vector<std::string> words = {"remote-touch", "run", request.experiment};
   for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
   return shell_command(words);
+}
+
+// The log of a task: a line for every step.
+void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    SequenceStep step = steps[i];
+    const auto action = std::get<Choice>(parameters(step).front().value);
+    std::printf("  sequence.%zu %s %s: ", i, action.names[static_cast<std::size_t>(action.get())].c_str(),
+                step.fixture.c_str());
+    if (i >= log.size()) {
+      std::puts("has not begun");
+      continue;
+    }
+    const SequenceEntry& entry = log[i];
+    std::printf("began at %.3f s", entry.began_s);
+    if (std::isnan(entry.ended_s))
+      std::printf(", has not ended");
+    else
+      std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
+    if (!std::isnan(entry.distance_m)) std::printf(", %.2g m from the goal", entry.distance_m);
+    if (!std::isnan(entry.angle_rad)) std::printf(" and %.2g deg", entry.angle_rad / kRadiansPerDegree);
+    std::puts("");
+  }
 }
 
 }  // namespace
@@ -42,6 +68,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   for (const Measure& measure : measures())
     std::printf("  %-20s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);
+  print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }
 

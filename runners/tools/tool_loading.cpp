@@ -6,6 +6,7 @@
 #include "analysis/sha256.h"
 #include "core/tool/generated_tools.h"
 #include "runners/tools/mesh_file.h"
+#include "runners/tools/spheres_cache.h"
 #include "runners/tools/tool_cache.h"
 
 namespace remote_touch {
@@ -60,7 +61,14 @@ std::vector<RecordingPart> input_files(const ToolSettings& s) {
   return {{s.mesh}};
 }
 
-std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* report) {
+namespace {
+
+struct KeyedTool {
+  std::string key;  // of the cache
+  StoredTool stored;
+};
+
+KeyedTool made_or_stored(const ToolSettings& s) {
   const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair};
   const GeneratedTool* built_in = find_generated_tool(s.mesh);
   const fs::path file = built_in != nullptr ? fs::path() : find_mesh(s.mesh);
@@ -72,17 +80,36 @@ std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* r
                           : sha256_of_file(file) + file.extension().string() + " " + mesh_reader_version();
   const fs::path folder = tool_cache_folder();
   const std::string key = tool_key(source, settings);
-  std::optional<StoredTool> stored = read_tool(folder, key);
-  if (!stored) {
-    if (built_in == nullptr) mesh = read_mesh(file);
-    ToolReport made;
-    stored.emplace();
-    stored->tool = make_voxel_tool(std::move(mesh), settings, made, "renderer.tool_mesh = " + s.mesh);
-    stored->report = text(made);
-    write_tool(folder, key, *stored);
+  if (std::optional<StoredTool> stored = read_tool(folder, key)) return {key, *std::move(stored)};
+  if (built_in == nullptr) mesh = read_mesh(file);
+  ToolReport made;
+  StoredTool stored;
+  stored.tool = make_voxel_tool(std::move(mesh), settings, made, "renderer.tool_mesh = " + s.mesh);
+  stored.report = text(made);
+  write_tool(folder, key, stored);
+  return {key, std::move(stored)};
+}
+
+}  // namespace
+
+std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* report) {
+  KeyedTool made = made_or_stored(s);
+  if (report != nullptr) *report = made.stored.report;
+  return std::make_shared<const VoxelTool>(std::move(made.stored.tool));
+}
+
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& s, int most_leaves, std::string* report) {
+  KeyedTool made = made_or_stored(s);
+  const auto tool = std::make_shared<const VoxelTool>(std::move(made.stored.tool));
+  const fs::path folder = tool_cache_folder();
+  const std::string key = spheres_key(made.key, most_leaves);
+  std::optional<ToolSpheres> spheres = read_spheres(folder, key);
+  if (!spheres) {
+    spheres = make_tool_spheres(*tool, most_leaves);
+    write_spheres(folder, key, *spheres);
   }
-  if (report != nullptr) *report = stored->report;
-  return std::make_shared<const VoxelTool>(std::move(stored->tool));
+  if (report != nullptr) *report = made.stored.report + "\n" + text(*spheres);
+  return {tool, std::make_shared<const ToolSpheres>(*std::move(spheres))};
 }
 
 }  // namespace remote_touch

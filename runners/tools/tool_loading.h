@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parameter.h"
+#include "core/sphere_tree/tool_spheres.h"
 #include "core/tool/voxel_tool.h"
 #include "scenarios/recording_part.h"
 
@@ -28,5 +29,13 @@ std::vector<RecordingPart> input_files(const ToolSettings& settings);
 // file of that name. Throws MissingRecording where there is neither, InputError as read_mesh() and
 // make_voxel_tool() do. report: what text(ToolReport) said when it was made.
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
+
+// The same tool with its sphere tree, which is made once for each number of leaves and kept beside it.
+struct ToolOfSpheres {
+  std::shared_ptr<const VoxelTool> tool;
+  std::shared_ptr<const ToolSpheres> spheres;
+};
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& settings, int most_leaves,
+                                   std::string* report = nullptr);
 
 }  // namespace remote_touch

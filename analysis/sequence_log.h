@@ -1,0 +1,25 @@
+// A task's steps as they went, from the columns of a trace.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "analysis/trace.h"
+
+namespace remote_touch {
+
+// Of a step that has begun. Times of the ticks; NaN for a step that had not ended when the trace did.
+struct SequenceEntry {
+  int step = 0;  // its number in the task
+  double began_s = 0;
+  double ended_s = std::numeric_limits<double>::quiet_NaN();
+  bool missed = false;  // ended by its deadline
+  // From the tool to the goal of guidance when it ended; NaN where nothing pulled, or it has not ended.
+  double distance_m = std::numeric_limits<double>::quiet_NaN();
+  double angle_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+// In the order of the steps; empty for a trace without a task.
+std::vector<SequenceEntry> sequence_log(const Trace& trace);
+
+}  // namespace remote_touch

@@ -1,0 +1,106 @@
+#include "core/sphere_tree/sphere_tree_renderer.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/tool/wrench_coupling.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
+constexpr double kTouch_m = 1e-4;      // as the look-ahead rule has it
+
+double reach_m(const SphereTree& spheres) {
+  double reach = 0;
+  for (const Sphere& leaf : spheres.leaves()) reach = std::max(reach, leaf.centre.norm() + leaf.radius_m);
+  return reach;
+}
+
+ContactState state_of(double gap_m) {
+  if (gap_m < -kTouch_m) return ContactState::entrenched;
+  return gap_m < kTouch_m ? ContactState::contact : ContactState::free;
+}
+
+}  // namespace
+
+Parameters region_parameters(ToolParameters& p) {
+  Parameters all = parameters(p);
+  std::erase_if(all, [](const Parameter& parameter) {
+    for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_share",
+                              "velocity_estimate", "longest_prediction_s"})
+      if (parameter.name == other) return true;
+    return false;
+  });
+  return all;
+}
+
+SphereTreeRenderer::SphereTreeRenderer(const ToolParameters& parameters,
+                                       std::shared_ptr<const VoxelTool> tool,
+                                       std::shared_ptr<const SphereTree> spheres, const Kernels& kernels)
+    : p_(parameters),
+      tool_(std::move(tool)),
+      kernels_(kernels),
+      contacts_(spheres, parameters.look_ahead_m, kernels),
+      motion_(parameters, *tool_, reach_m(*spheres)) {}
+
+void SphereTreeRenderer::on_frame(const Frame& frame) {
+  if (!order_.take(frame)) return;
+  PointCloud room;
+  contacts_.on_frame(frame.points->every_point(kernels_, room));
+  updated_ = true;
+}
+
+// One tick of the quasi-static motion, 7.4.2, and the springs of 7.4.3.
+void SphereTreeRenderer::follow(const ToolPose& device, RenderOutput& out) {
+  const ToolMotionReport report = motion_.move(pose_, device, contacts_, std::exchange(updated_, false));
+  if (!report.push_W.isZero(0))
+    normal_W_ = report.push_W.normalized();
+  else if (report.touch_W.norm() > kNoDirection)
+    normal_W_ = report.touch_W.normalized();
+  out.steps = report.steps;
+  out.converged = report.at_rest;
+  out.tool->active_constraints = report.active_count;
+  out.tool->detections = report.detections;
+  out.tool->budget_exhausted = !report.at_rest;
+}
+
+RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
+  RenderOutput out;
+  out.frame_index = order_.newest();
+  out.tool.emplace();
+  const std::optional<ToolPose> held = held_by(device);
+  if (!held) {
+    out.status = RenderStatus::device_not_finite;  // hold still and let go
+  } else {
+    if (!placed_) pose_ = *held, placed_ = true;
+    if (order_.newest() < 0) {
+      pose_ = *held;
+      out.converged = true;
+      out.status = RenderStatus::no_frame;
+    } else {
+      follow(*held, out);
+    }
+  }
+  const RegionTouch touch = contacts_.touched(pose_, p_.stiffness_N_per_m);
+  if (held) {
+    const Wrench wrench =
+        coupling_wrench(coupling_of(p_, touch.stiffness_N_per_m), tool_->inertia_m2, pose_, *held);
+    out.force_N = wrench.force_N;
+    out.tool->torque_Nm = wrench.torque_Nm;
+  }
+  out.proxy_W = out.slave_W = pose_.p_W;
+  out.tool->orientation_W = pose_.q_WT;
+  out.normal_W = normal_W_;
+  out.state = state_of(touch.nearest_m);
+  out.nearest_m = touch.nearest_m;
+  out.contact_count = touch.leaf_pairs;
+  out.tool->contact_clusters = touch.tool_leaves;
+  out.tool->penetration_m = std::max(0.0, -touch.nearest_m);
+  out.status = order_.status(out.status);
+  return out;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+// 6-DOF forbidden-region virtual fixtures, chapter 7: a tool of spheres is kept out of the regions around the
+// points of a stream.
+#pragma once
+
+#include <memory>
+
+#include "core/frame_order.h"
+#include "core/renderer.h"
+#include "core/sphere_tree/region_contacts.h"
+#include "core/tool/look_ahead_motion.h"
+#include "core/tool/tool_parameters.h"
+#include "core/tool/voxel_tool.h"
+
+namespace remote_touch {
+
+// The device holds the tool by its centre of mass. Only points with r_f above 0 have a region; a point's k_s,
+// where it has one, is the stiffness of the coupling while its region holds the tool, (5.3).
+//
+// Of the output: nearest_m is the smallest gap between a leaf of the tool and a region, infinite beyond the
+// look-ahead; contact_count are the pairs of leaves that touch, contact_clusters the leaves of the tool among
+// them; penetration_m is the deepest leaf in a region.
+class SphereTreeRenderer final : public Renderer {
+ public:
+  // Of the parameters those count that region_parameters() lists. spheres: of the tool, in its frame. pre:
+  // conflict(parameters) is empty.
+  SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+                     std::shared_ptr<const SphereTree> spheres, const Kernels& kernels);
+
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  void follow(const ToolPose& device, RenderOutput& out);
+
+  const ToolParameters p_;
+  const std::shared_ptr<const VoxelTool> tool_;
+  const Kernels& kernels_;
+  RegionContacts contacts_;
+  LookAheadMotion motion_;
+
+  ToolPose pose_;
+  Vec3 normal_W_ = Vec3::Zero();  // of contact: where the regions push the tool
+  bool placed_ = false;           // the tool starts at the first device pose
+  bool updated_ = false;          // a frame came in since the last tick
+  FrameOrder order_;
+};
+
+// Those parameters of a tool that regions have a use for.
+Parameters region_parameters(ToolParameters& p);
+
+}  // namespace remote_touch

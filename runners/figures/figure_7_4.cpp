@@ -1,0 +1,151 @@
+// Fig 7.4: the operator pushes towards the left valve, then the right one, both with 4 cm forbidden regions.
+#include <algorithm>
+#include <cmath>
+
+#include "runners/figures/fixture_run.h"
+#include "runners/figures/tool_picture.h"
+#include "runners/figures/valve_task.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kRegion_m = 0.04;
+constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // in the middle of the two pushes
+constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
+
+// The same push, beside the left valve's middle and 45 mm deeper.
+const char* const kOffCentre =
+    "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
+    "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
+
+// Runs of ticks with force.
+int pushes(const Trace& t) {
+  int count = 0;
+  for (std::size_t i = 1; i < t.length(); ++i)
+    if (t.force(i).norm() > 0.1 && t.force(i - 1).norm() <= 0.1) ++count;
+  return count;
+}
+
+// While no leaf is within the look-ahead of a region.
+double largest_free_force_N(const Trace& t) {
+  double largest = 0;
+  for (std::size_t i = 0; i < t.length(); ++i)
+    if (std::isinf(t.nearest_m[i]) && t.frame_index[i] >= 0) largest = std::max(largest, t.force(i).norm());
+  return largest;
+}
+
+double largest_torque_Nm(const Trace& t, double from_s, double until_s) {
+  double largest = 0;
+  for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
+    largest = std::max(largest, t.torque(i).norm());
+  return largest;
+}
+
+void add_push_claims(Figure& figure, const ValveTask& task, const char* side, double held_s) {
+  const Trace& t = task.trace;
+  const std::size_t held = tick_of(t, held_s);
+  const std::string valve = side;
+  figure.claims.push_back(claim_between(figure.name, "device behind the tool, pushed to the " + valve, "-",
+                                        lag_m(t, held), 0.018, 0.022, "m"));
+  figure.claims.push_back(
+      claim_between(figure.name, "force there", "rises when pushed", t.force(held).norm(), 5, 8, "N"));
+  figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
+                                         "rises when pushed", largest_torque_Nm(t, held_s - 1, held_s + 1),
+                                         0.01, "N m"));
+}
+
+void add_claims(Figure& figure, const ValveTask& task) {
+  const Trace& t = task.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  const std::string name = figure.name;
+  claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0",
+                      largest_free_force_N(t), 0, "N"));
+  claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
+  for (const double free_s : {0.25, kBetween_s, t.time_s.back()})
+    claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
+                        t.force(tick_of(t, free_s)).norm(), 0, "N"));
+  add_push_claims(figure, task, "left", kHeldLeft_s);
+  add_push_claims(figure, task, "right", kHeldRight_s);
+  for (const Valve valve : {Valve::left, Valve::right})
+    claim(claim_at_least(name,
+                         std::string("least distance of the tool's mesh to the true ") +
+                             (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
+                         "-", least_clearance_m(task, valve), kRegion_m - 1e-3, "m"));
+  add_task_claims(figure, task);
+}
+
+// Off the middle and deep: the tool slips round what is in its way. No claim of the paper's: it is told.
+void add_slip(Figure& figure, const ValveTask& slip) {
+  const Trace& t = slip.trace;
+  const std::size_t last = t.length() - 1;
+  const Vec3 aside = t.proxy(last) - t.intended(last);
+  figure.claims.push_back(claim_at_least(figure.name,
+                                         slip.words + ": how far the tool was pushed up, past the valve", "-",
+                                         aside.y(), 0.02, "m"));
+  figure.claims.push_back(claim_at_least(figure.name,
+                                         slip.words + ": least distance of its mesh to the true valve", "-",
+                                         least_clearance_m(slip, Valve::left), kRegion_m - 1e-3, "m"));
+  add_task_claims(figure, slip);
+}
+
+Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
+  Panel panel{title, "time (s)", label, false, {}, {}, {}, std::pair(double(row), 0.0)};
+  panel.curves = {{task.name, "time", column, CurveStyle::line, ""}};
+  return panel;
+}
+
+Table summary_table(const std::vector<ValveTask>& tasks) {
+  QuantityTable rows({tasks[0].name, tasks[1].name});
+  const auto add = [&](const std::string& what, const std::string& unit, auto&& of) {
+    rows.add(what, unit, {of(tasks[0]), of(tasks[1])});
+  };
+  using Task = const ValveTask&;
+  add("least distance of the mesh to the left valve", "m",
+      [](Task task) { return least_clearance_m(task, Valve::left); });
+  add("least distance of the mesh to the right valve", "m",
+      [](Task task) { return least_clearance_m(task, Valve::right); });
+  add("most pairs of leaves that touch", "1", [](Task task) {
+    return double(*std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end()));
+  });
+  add("collision detections in a tick, mean", "1", [](Task task) {
+    double sum = 0;
+    for (const int n : task.trace.detections) sum += n;
+    return sum / double(task.trace.length());
+  });
+  add("ticks that used up their detections", "1", [](Task task) {
+    return double(std::count(task.trace.budget_exhausted.begin(), task.trace.budget_exhausted.end(), 1));
+  });
+  return rows.table("runs", "both runs");
+}
+
+}  // namespace
+
+Figure figure_7_4(const Laboratory& laboratory) {
+  const std::vector<ValveTask> tasks = run_tasks(
+      laboratory, {{"task", "first task", "fig7.4"},
+                   {"slip", "pushed deep beside the middle", "fig7.4", {kOffCentre, "duration_s=3.5"}}});
+  Figure figure{
+      "7.4", "Forbidden regions around two valves",
+      "A simulated camera sees two handwheels in a tank of turbid water; the points of both hues get "
+      "regions of 4 cm. A simulated operator (a mass drawn to its path by a spring) moves a valve "
+      "key of 112 spheres: A) starts, B) pushes towards the left valve, C) towards the right one, D) "
+      "leaves. The pictures show tool (filled) and device (transparent) in B and C, and a push deep "
+      "beside the left valve's middle, where the tool slips round. Everything is simulated."};
+  for (const ValveTask& task : tasks) figure.tables.push_back(task_table(task));
+  figure.tables.push_back(summary_table(tasks));
+  figure.panels = {time_panel(tasks[0], "First task", "force", "force (N)", 0),
+                   time_panel(tasks[0], "", "torque", "torque (N m)", 1),
+                   time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};
+  add_task_picture_tables(figure, laboratory, tasks[0],
+                          {tick_of(tasks[0].trace, kHeldLeft_s), tick_of(tasks[0].trace, kHeldRight_s)});
+  add_task_picture_tables(figure, laboratory, tasks[1], {tasks[1].trace.length() - 1});
+  figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 0, 0, 1));
+  figure.panels.push_back(task_picture(tasks[0], "C) pushed to the right", 1, 1, 1));
+  figure.panels.push_back(task_picture(tasks[1], "Slipped round, at the end", 0, 2, 1));
+  add_claims(figure, tasks[0]);
+  add_slip(figure, tasks[1]);
+  return figure;
+}
+
+}  // namespace remote_touch

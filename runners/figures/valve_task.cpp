@@ -1,0 +1,197 @@
+#include "runners/figures/valve_task.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/measures.h"
+#include "analysis/sequence_log.h"
+#include "core/rotation.h"
+#include "core/sphere_tree/region_tree.h"
+#include "runners/figures/fixture_run.h"
+#include "runners/figures/tool_picture.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kEvery = 5;            // ticks, in tables
+constexpr std::size_t kClearanceEvery = 10;  // ticks, where clearance is looked for
+constexpr double kSettled_m = 1e-4;
+constexpr std::size_t kRegionsEvery = 5;  // of the regions, in pictures
+constexpr int kPlacesOfRegion = 40;
+constexpr std::uint32_t kRegionColour = 0xC0392B;
+
+Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
+  return t.proxy(tick) + t.tool_orientation_at(tick) * p_T;
+}
+
+// Places on the boundary of the union of the regions: those on a region that are in no other.
+std::vector<Vec3> boundary(const SphereTree& regions) {
+  std::vector<Vec3> places;
+  const double golden = 2.399963229728653;
+  for (std::size_t leaf = 0; leaf < regions.leaves().size(); leaf += kRegionsEvery) {
+    const Sphere& region = regions.leaves()[leaf];
+    for (int i = 0; i < kPlacesOfRegion; ++i) {
+      const double y = 1 - (2 * i + 1.0) / kPlacesOfRegion, r = std::sqrt(1 - y * y);
+      const Vec3 place =
+          region.centre + region.radius_m * Vec3(r * std::cos(golden * i), y, r * std::sin(golden * i));
+      const bool covered = std::any_of(regions.leaves().begin(), regions.leaves().end(), [&](const auto& s) {
+        return (place - s.centre).norm() < s.radius_m * (1 - 1e-6);
+      });
+      if (!covered && place.z() > 0) places.push_back(place);
+    }
+  }
+  return places;
+}
+
+// Valves, and of the wall every second pixel of every second row.
+std::vector<std::size_t> shown_points(const PointCloud& cloud) {
+  std::vector<std::size_t> chosen;
+  const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    const bool near = std::abs(p.x()) < 0.24 && std::abs(p.y()) < 0.14;  // NaN is not
+    if (near && (p.z() > 0.02 || (i % 2 == 0 && i / width % 2 == 0))) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::size_t tick_of(const Trace& trace, double time_s) {
+  const auto at = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s - kSameTime_s);
+  return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
+}
+
+std::vector<ValveTask> run_tasks(const Laboratory& laboratory, const std::vector<NamedTask>& tasks) {
+  std::vector<Experiment> experiments;
+  for (const NamedTask& task : tasks)
+    experiments.push_back(Experiment::load(task.experiment, task.overrides));
+  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<ValveTask> runs;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    std::shared_ptr<const Scenario> scenario = experiments[i].build_scenario(laboratory.kernels());
+    std::shared_ptr<const VoxelTool> tool = tool_of(experiments[i]);
+    runs.push_back({tasks[i].name, tasks[i].words, std::move(experiments[i]), std::move(traces[i]),
+                    std::dynamic_pointer_cast<const ValveTank>(scenario), std::move(tool)});
+  }
+  return runs;
+}
+
+double clearance_m(const ValveTask& task, Valve valve, std::size_t tick) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto look = [&](const Vec3& p_T) {
+    least = std::min(least, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
+  };
+  const TriangleMesh& mesh = task.tool->mesh;
+  for (const Vec3& vertex : mesh.vertices) look(vertex);
+  for (const auto& [a, b, c] : mesh.triangles)
+    look((mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)] +
+          mesh.vertices[static_cast<std::size_t>(c)]) /
+         3);
+  return least;
+}
+
+double least_clearance_m(const ValveTask& task, Valve valve) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < task.trace.length(); i += kClearanceEvery) {
+    // No place of the tool can be nearer than this.
+    const double bound_m = task.tank->distance_to_valve(valve, task.trace.proxy(i)) - task.tool->reach_m;
+    if (bound_m < least) least = std::min(least, clearance_m(task, valve, i));
+  }
+  return least;
+}
+
+Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W) {
+  return trace.hip_orientation_at(tick).conjugate() * torque_W;
+}
+
+Table task_table(const ValveTask& task) {
+  const Trace& t = task.trace;
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < t.length(); i += kEvery) {
+    const Vec3 torque_T = about_handle(t, i, t.torque(i)), device_T = about_handle(t, i, t.device_torque(i));
+    rows.push_back({t.time_s[i], t.force(i).norm(), t.torque(i).norm(), torque_T.x(), torque_T.y(),
+                    torque_T.z(), device_T.x(), t.device_force(i).norm(), lag_m(t, i),
+                    (t.intended(i) - t.hip(i)).norm(), double(t.contact_count[i]),
+                    double(t.contact_clusters[i]), double(t.active_constraints[i]), t.penetration_m[i],
+                    double(t.detections[i]), double(t.budget_exhausted[i])});
+  }
+  const std::vector<ColumnName> columns = {
+      {"time", "s", "simulated time"},
+      {"force", "N", "norm of the force"},
+      {"torque", "N m", "norm of the torque"},
+      {"torque_x", "N m", "torque about the handle's x, the roll axis"},
+      {"torque_y", "N m", "about its y"},
+      {"torque_z", "N m", "about its z"},
+      {"exerted_x", "N m", "what the device exerts of it about the roll axis"},
+      {"exerted", "N", "norm of the force that the device exerts"},
+      {"lag", "m", "from the tool to the device"},
+      {"yielded", "m", "from where the operator wants the device to where it is"},
+      {"pairs", "1", "pairs of leaves that touch"},
+      {"leaves", "1", "leaves of the tool among them"},
+      {"active", "1", "constraints that hold the tool"},
+      {"penetration", "m", "deepest leaf of the tool in a region at the end of the tick"},
+      {"detections", "1", "collision detections in the tick"},
+      {"exhausted", "1", "the tick ended before the tool was at rest"}};
+  return table_of(task.name, task.words, columns, rows);
+}
+
+Table sequence_table(const ValveTask& task) {
+  std::vector<std::vector<double>> rows;
+  for (const SequenceEntry& entry : sequence_log(task.trace))
+    rows.push_back({double(entry.step), entry.began_s, entry.ended_s, entry.missed ? 1.0 : 0.0,
+                    entry.distance_m, entry.angle_rad / kRadiansPerDegree});
+  const std::vector<ColumnName> columns = {{"step", "1", "number of the step"},
+                                           {"began", "s", "when it began"},
+                                           {"ended", "s", "when it ended"},
+                                           {"missed", "1", "whether its deadline ended it"},
+                                           {"distance", "m", "from the tool to the goal when it ended"},
+                                           {"angle", "deg", "between tool and goal when it ended"}};
+  return table_of(task.name + "_steps", "steps of the task: " + task.words, columns, rows);
+}
+
+void add_task_picture_tables(Figure& figure, const Laboratory& laboratory, const ValveTask& task,
+                             const std::vector<std::size_t>& ticks) {
+  PointCloud cloud = processed_cloud(task.experiment, laboratory.kernels(), 0);
+  figure.tables.push_back(
+      cloud_table(task.name + "_cloud", "points of the first frame", cloud, shown_points(cloud)));
+  task.experiment.build_fixtures().assign(cloud, 0);
+  RegionTree regions;
+  regions.assign(cloud);
+  std::vector<std::vector<double>> places;
+  for (const Vec3& p : boundary(regions.spheres())) places.push_back({p.x(), p.y(), p.z()});
+  figure.tables.push_back(table_of(task.name + "_regions", "places on the boundary of the forbidden regions",
+                                   {{"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, places));
+  figure.tables.push_back(vertex_table(task.name + "_vertices", task.tool->mesh));
+  figure.tables.push_back(triangle_table(task.name + "_triangles", task.tool->mesh));
+  figure.tables.push_back(pose_table(task.name + "_poses", task.trace, ticks));
+}
+
+Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row,
+                   int column) {
+  Scene scene{{0.42, 0.40, 0.62},
+              {0, 0.01, 0.11},
+              Vec3::UnitY(),
+              0.44,
+              0.8,
+              tool_in_cloud(task.name, instant, 0.003)};
+  ScenePart regions{ScenePart::Kind::points, task.name + "_regions", kRegionColour};
+  regions.size_m = 0.0015, regions.opacity = 0.5, regions.label = "region";
+  scene.parts.insert(scene.parts.begin() + 1, regions);
+  return scene_panel(title, row, column, scene);
+}
+
+void add_task_claims(Figure& figure, const ValveTask& task) {
+  const Trace& t = task.trace;
+  const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
+  claim(claim_at_most(figure.name, task.words + ": ticks with a number that is not finite", "-",
+                      non_finite_share(t), 0, "share"));
+  claim(claim_at_most(figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick",
+                      "very small", *std::max_element(t.penetration_m.begin(), t.penetration_m.end()),
+                      kSettled_m, "m"));
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+#include "runners/tools/loaded_spheres.h"
+
+namespace remote_touch {
+
+Parameters parameters(LoadedSpheres::Settings& s) {
+  Parameters all = parameters(s.tool);
+  all.push_back({"tool_leaves", &s.leaves, kFewestLeaves, kMostLeaves,
+                 "spheres of the tool at most, 7.4: fewer stand farther out of its surface"});
+  for (Parameter& p : region_parameters(s.motion)) all.push_back(std::move(p));
+  return all;
+}
+
+std::string conflict(const LoadedSpheres::Settings& s) {
+  const std::string tool = conflict(s.tool);
+  return tool.empty() ? conflict(s.motion) : tool;
+}
+
+std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s) {
+  return input_files(s.tool);
+}
+
+LoadedSpheres::LoadedSpheres(const Settings& settings, double, const Kernels& kernels)
+    : LoadedSpheres(load_tool_of_spheres(settings.tool, settings.leaves), settings.motion, kernels) {}
+
+LoadedSpheres::LoadedSpheres(const ToolOfSpheres& loaded, const ToolParameters& motion,
+                             const Kernels& kernels)
+    : renderer_(motion, loaded.tool, {loaded.spheres, &loaded.spheres->spheres}, kernels) {}
+
+}  // namespace remote_touch

@@ -1,0 +1,22 @@
+// The sphere trees of tools on disk, beside the tools.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/sphere_tree/tool_spheres.h"
+
+namespace remote_touch {
+
+// Raise it with every change to what make_tool_spheres() gives: it is part of the key.
+inline constexpr int kSpheresFormat = 1;
+
+// From the key of the tool in its cache.
+std::string spheres_key(const std::string& tool_key, int most_leaves);
+
+// As read_tool() and write_tool().
+std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
+bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
+
+}  // namespace remote_touch
