@@ -17,16 +17,16 @@ struct GuidanceTarget {
   Vec3 mean_W = Vec3::Zero();  // of their places, weighted by their shares
   // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for
   // fewer than three points, or where they do not lie in a plane: spread along it at most kFlat times as far
-  // as in the plane's shorter direction.
+  // as in the plane's shorter direction, and in that more than kLine times as far as in the longer.
   Vec3 normal_W = Vec3::Zero();
-  static constexpr double kFlat = 0.25;
+  static constexpr double kFlat = 0.25, kLine = 1e-3;
 
   bool is_seen() const { return points > 0; }
   bool is_flat() const { return !normal_W.isZero(0); }
 };
 
-// From how far each point counts, 0 to 1, as FixtureRule::shares(). The sensor is where the image was taken
-// from, else in the origin.
+// From how far each point counts, 0 to 1, as FixtureRule::shares(); none that is not finite does. The sensor
+// is where the image was taken from, else in the origin.
 GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& shares);
 
 }  // namespace remote_touch
