@@ -30,7 +30,7 @@ Parameters parameters(OperatorSettings& s) {
        "how much of the springs is there, 0 to 1: even between rows; 0 lets the device lead the hand; none: "
        "always 1"},
       {"presses", Rows{{"time_s", "button", "duration_s"}, &s.presses}, 0, 86400,
-       "presses of the handle's buttons 0 to 31"},
+       "presses of the handle's buttons 0 to 31, of 0.01 s or more"},
   };
 }
 
@@ -43,9 +43,12 @@ std::string conflict(const OperatorSettings& s) {
     return "turn_stiffness_Nm_per_rad = " + std::to_string(s.turn_stiffness_Nm_per_rad) + ": allowed below " +
            std::to_string(4 * s.inertia_kg_m2 / t2) + " for this inertia";
   if (const std::string wrong = schedule_conflict(s.grip, "grip", "share"); !wrong.empty()) return wrong;
-  for (std::size_t i = 0; i < s.presses.size(); i += 3)
+  for (std::size_t i = 0; i < s.presses.size(); i += 3) {
     if (const double button = s.presses[i + 1]; button > 31 || button != static_cast<int>(button))
       return "presses: button " + std::to_string(button) + ": allowed whole numbers 0 to 31";
+    if (s.presses[i + 2] < kLongestTick_s)  // no tick might see it
+      return "presses: duration " + std::to_string(s.presses[i + 2]) + ": allowed 0.01 or more";
+  }
   return {};
 }
 
@@ -65,7 +68,7 @@ DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wr
   if (!placed_) pose_ = intended_ = intended, placed_ = true;
   const double g = scheduled(s_.grip, time_s);
   const Vector6 path_velocity = displacement(intended_, intended) / tick_s_;
-  const Vector6 apart = displacement(pose_, intended);
+  const Vector6 apart = displacement(pose_, intended_);
   velocity_ = next_velocity(velocity_, felt.force_N + g * s_.stiffness_N_per_m * apart.head<3>(), s_.mass_kg,
                             s_.damping_Ns_per_m, g * path_velocity.head<3>(), tick_s_);
   turning_ =
@@ -73,7 +76,9 @@ DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wr
                     s_.inertia_kg_m2, s_.turn_damping_Nms_per_rad, g * path_velocity.tail<3>(), tick_s_);
   Vector6 way;
   way << tick_s_ * velocity_, tick_s_ * turning_;
+  const Eigen::Quaterniond before = pose_.q_WT;
   pose_ = moved(pose_, way);
+  if (turning_.isZero(0)) pose_.q_WT = before;  // to which rounding would add
   intended_ = intended;
   return {pose_.p_W, pose_.q_WT, buttons(time_s)};
 }

@@ -27,8 +27,9 @@ Parameters parameters(OperatorSettings& s);
 std::string conflict(const OperatorSettings& s);
 
 // m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended place and g the
-// grip; turns alike, with the inertia of a ball of the hand's. Semi-implicit steps of one tick, the damper
-// implicit: stable for k tick^2 < 4 m, which conflict() asks for at 100 ticks a second.
+// grip; turns alike, with the inertia of a ball of the hand's. Semi-implicit steps of one tick, with the
+// springs of its beginning and the damper of its end: stable for k tick^2 < 4 m, which conflict() asks for at
+// 100 ticks a second.
 class OperatorModel {
  public:
   OperatorModel(const OperatorSettings& settings, double tick_s);
