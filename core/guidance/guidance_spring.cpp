@@ -44,7 +44,7 @@ Parameters parameters(GuidanceSettings& s) {
 }
 
 std::string conflict(const GuidanceSettings& s) {
-  if (s.approach_axis.norm() < 1e-3) return "approach_axis: allowed not to be zero";
+  if (s.approach_axis.norm() < 1e-3) return "approach_axis: allowed 0.001 or longer";
   return {};
 }
 

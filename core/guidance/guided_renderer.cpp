@@ -13,6 +13,20 @@ bool is_for(FixtureAction action, FixtureRole role) {
   return forbidden == (role == FixtureRole::forbidden);
 }
 
+// As it stands in a file.
+std::string action_name(SequenceStep step) {
+  const Parameters all = parameters(step);
+  const Choice& action = std::get<Choice>(all.front().value);
+  return action.names[static_cast<std::size_t>(action.get())];
+}
+
+std::string labels_of(const std::vector<FixtureValues>& fixtures) {
+  std::string text;
+  for (const FixtureValues& fixture : fixtures)
+    if (!fixture.label.empty()) text += (text.empty() ? ": \"" : ", \"") + fixture.label + "\"";
+  return text.empty() ? ", and none has one" : text;
+}
+
 bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& label, FixtureAction action) {
   const auto names = [&](const SequenceStep& s) {
     return s.action != FixtureAction::wait && !label.empty() && s.fixture == label;
@@ -25,22 +39,26 @@ bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& 
 
 std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
   if (!steps.empty() && fixtures.size() > FixtureSwitches::kMost)
-    return "sequence: more than " + std::to_string(FixtureSwitches::kMost) + " fixtures";
+    return "fixtures: " + std::to_string(fixtures.size()) + " rules: allowed " +
+           std::to_string(FixtureSwitches::kMost) + " with a sequence";
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
-        return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label + "\": there are two";
+        return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label +
+               "\": allowed a label of its own, fixtures." + std::to_string(j) + " has this one";
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].fixture.empty()) continue;
     const std::string at = "sequence." + std::to_string(i);
     const auto named = std::find_if(fixtures.begin(), fixtures.end(),
                                     [&](const auto& fixture) { return fixture.label == steps[i].fixture; });
     if (named == fixtures.end())
-      return at + ".fixture = \"" + steps[i].fixture + "\": no fixture has this label";
+      return at + ".fixture = \"" + steps[i].fixture + "\": allowed the label of a fixture" +
+             labels_of(fixtures);
     if (!is_for(steps[i].action, named->role))
-      return at + ".action: allowed " +
-             (named->role == FixtureRole::forbidden ? "lock, unlock" : "activate, release, wait") +
-             " for this fixture's role";
+      return at + ".action = \"" + action_name(steps[i]) + "\": allowed " +
+             (named->role == FixtureRole::forbidden
+                  ? "lock, unlock for a fixture with role = forbidden"
+                  : "activate, release, wait for a fixture with role = guidance");
   }
   return {};
 }
