@@ -102,6 +102,34 @@ TEST(RendererContract, AStepAllocatesNothing) {
   }
 }
 
+// With guidance and a task on top of it as well.
+TEST(RendererContract, AGuidedStepAllocatesNothing) {
+  std::vector<FixtureValues> fixtures(2);
+  fixtures[0].label = "table";
+  fixtures[1].label = "valve", fixtures[1].role = FixtureRole::guidance;
+  SequenceStep lock, activate;
+  lock.action = FixtureAction::lock, lock.fixture = "table", lock.not_before_s = 0.05;
+  activate.action = FixtureAction::activate, activate.fixture = "valve", activate.start = StepStart::button;
+  activate.done = StepEnd::reached, activate.deadline_s = 0.1;
+  for (const RendererEntry& entry : renderers()) {
+    GuidedRenderer renderer(build(entry), {}, fixtures, {lock, activate},
+                            std::make_shared<FixtureSwitches>());
+    Frame frame = scenes::frame(scenes::flat_grid(100));
+    frame.guidance = {{100, Vec3(0.2, 0, 0), Vec3::UnitY()}};
+    renderer.on_frame(frame);
+    RenderOutput out;
+    for (int tick = 0; tick < 300; ++tick) {
+      const DeviceState device{Vec3(0, 0.02 - 0.0004 * std::min(tick, 100), 0),
+                               Eigen::Quaterniond::Identity(), tick / 10 % 10 == 9 ? 1u : 0u};
+      const std::size_t before = allocation_count();
+      out = renderer.step(device, 0.001 * tick);
+      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
+    }
+    EXPECT_EQ(out.guidance->sequence_missed, 1) << entry.name;
+    EXPECT_TRUE(out.guidance->pulls) << entry.name;
+  }
+}
+
 TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);

@@ -20,9 +20,11 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct RunBlueprint {
+// Of settings that are no entry of a list.
+template <class Settings>
+struct Section {
   Parameters settings() { return parameters(values); }
-  RunSettings values;
+  Settings values;
 };
 
 // Calls visit(label, make) for everything that has parameters; make() gives a new owner of default settings.
@@ -32,7 +34,11 @@ void for_each_owner(Visit visit) {
   for (const auto& entry : fixtures()) visit(std::string("fixture rule ") + entry.name, entry.make);
   for (const auto& entry : renderers()) visit(std::string("renderer ") + entry.name, entry.make);
   for (const auto& entry : trajectories()) visit(std::string("trajectory ") + entry.name, entry.make);
-  visit(std::string("run"), [] { return std::make_unique<RunBlueprint>(); });
+  visit(std::string("run"), [] { return std::make_unique<Section<RunSettings>>(); });
+  visit(std::string("guidance"), [] { return std::make_unique<Section<GuidanceSettings>>(); });
+  visit(std::string("sequence"), [] { return std::make_unique<Section<SequenceStep>>(); });
+  visit(std::string("operator"), [] { return std::make_unique<Section<OperatorSettings>>(); });
+  visit(std::string("device"), [] { return std::make_unique<Section<MotorSettings>>(); });
 }
 
 template <class Owner>
@@ -116,10 +122,14 @@ bool carries_unit(const std::string& name) {
                                               "detections_per_tick",
                                               "disk_share",
                                               "colour_noise",
-                                              "dropout"};
-  static const char* const kUnits[] = {"_m",        "_s",       "_hz",      "_deg",      "_px",
-                                       "_per_m",    "_per_min", "_N_per_m", "_Ns_per_m", "_m_per_s",
-                                       "_m_per_s2", "_N",       "_Nm"};
+                                              "dropout",
+                                              "approach_axis",
+                                              "fewest_points",
+                                              "button",
+                                              "share"};
+  static const char* const kUnits[] = {
+      "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",    "_Ns_per_m",
+      "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }
