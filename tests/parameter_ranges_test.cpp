@@ -168,7 +168,7 @@ struct Change {
   void operator()(bool* v) const { *v = !*v; }
   void operator()(std::string* v) const { *v = "a \"name\" \\ of one's own: \u00fc"; }
   void operator()(Vec3* v) const { *v = Vec3(inside(0.1), inside(1.0 / 3), inside(0.7)); }
-  void operator()(const Choice& c) const { c.set(static_cast<int>(c.names.size()) - 1); }
+  void operator()(const Choice& c) const { c.set((c.get() + 1) % static_cast<int>(c.names.size())); }
   void operator()(const Rows& r) const {
     for (std::size_t i = 0; i < 3 * r.columns.size(); ++i)
       r.values->push_back(inside(1 / (3.0 + static_cast<double>(i))));
