@@ -12,8 +12,6 @@
 
 #include "core/rotation.h"
 #include "core/tool/tool_renderer.h"
-#include "runners/experiment.h"
-#include "runners/simulation.h"
 #include "tests/allocation_counter.h"
 #include "tests/box_tool.h"
 #include "tests/scenes.h"
@@ -307,44 +305,6 @@ TEST(GuidedRenderer, TellsWhereTheTaskIs) {
   EXPECT_TRUE(told.pulls) << "a step that is missed undoes nothing";
   told = *r.step(device(kAbove, Vec3::Zero(), 1), 0.52).guidance;
   EXPECT_TRUE(!told.pulls && told.sequence_step == 2);
-}
-
-// --- the whole loop ---
-
-// One point with a region of 2 cm, and a hand that rests 1.5 cm beside it.
-Trace simulated(const std::string& sequence) {
-  return simulate(Experiment::from_json(R"({"duration_s": 1.5,
-      "scenario": {"name": "points", "points": [[0, 0, 0]], "frame_rate_hz": 30},
-      "fixtures": [{"name": "everywhere", "radius_m": 0.02, "label": "ball"}],
-      "sequence": )" + sequence + R"(, "renderer": {"name": "proxy"},
-      "trajectory": {"name": "waypoints", "waypoints": [[0, 0.015, 0, 0]]}})",
-                                        "test"));
-}
-
-// Frames come at n / 30 s, before the tick of that time: what a tick switches is seen from the frame after.
-TEST(GuidedRenderer, RegionsAreSwitchedWithTheNextFrame) {
-  const Trace trace = simulated(R"([{"action": "lock", "fixture": "ball", "not_before_s": 0.5},
-                    {"action": "unlock", "fixture": "ball", "not_before_s": 1.0}])");
-  ASSERT_EQ(trace.length(), 1500u);
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double force_N = trace.force(i).norm();
-    // Unlocked from the beginning; frame 16 comes at 533.3 ms, frame 31 at 1033.3 ms.
-    if (i <= 533 || i >= 1100) {
-      ASSERT_EQ(force_N, 0) << i;
-    } else if (i >= 600 && i <= 1033) {
-      ASSERT_GT(force_N, 0.1) << i;
-    }
-    ASSERT_EQ(trace.sequence_step[i], i < 500 ? 0 : i < 1000 ? 1 : 2) << i;
-  }
-  EXPECT_EQ(trace.frame_index[533], 15);
-  EXPECT_GT(trace.force(534).norm(), 0);
-}
-
-TEST(GuidedRenderer, ARegionThatIsUnlockedFirstBeginsLocked) {
-  const Trace trace = simulated(R"([{"action": "unlock", "fixture": "ball", "not_before_s": 0.5}])");
-  EXPECT_GT(trace.force(100).norm(), 0.1);
-  EXPECT_GT(trace.force(533).norm(), 0.1);
-  EXPECT_EQ(trace.force(600).norm(), 0);
 }
 
 TEST_P(EveryRenderer, AStepAllocatesNothing) {
