@@ -201,16 +201,15 @@ TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
       {{first}, true},
       {{first, step(activate, "valve")}, false},
       {{first, step(release, "valve"), step(activate, "valve")}, true},
-      {{first, step(activate, "valve"), step(release, "valve")}, false}};
+      {{first, step(activate, "valve"), step(release, "valve")}, false},
+      // To wait for it is no action.
+      {{until_reached(step(wait, "valve"))}, true},
+      {{until_reached(step(wait, "valve")), step(activate, "valve")}, false}};
   for (const auto& [steps, pulls] : cases) {
     GuidedRenderer r = guided(Inner::proxy, {guide("valve")}, steps);
     r.on_frame(frame({target(kLeft)}));
     EXPECT_EQ(r.step(device(kAbove), 0).guidance->pulls, pulls) << steps.size();
   }
-  // To wait for it is no action.
-  GuidedRenderer r = guided(Inner::proxy, {guide("valve")}, {until_reached(step(wait, "valve"))});
-  r.on_frame(frame({target(kLeft)}));
-  EXPECT_TRUE(r.step(device(kAbove), 0).guidance->pulls);
 }
 
 // --- tasks ---
