@@ -15,9 +15,12 @@ void PairChoice::begin() {
   rated_ = 0;
 }
 
-// Normals differ by 2 at most. Grows with the gap, so what is found for a bound of it is enough.
+// No motion of half the look-ahead violates a pair with a larger gap, nor, for normals differ by 2 at most,
+// one whose gap is larger by twice that motion than the deepest one's. Grows with the gap, so what is found
+// for a bound of it is enough.
 double PairChoice::within_m(double gap_m) const {
-  return std::min(look_ahead_m_, std::max(gap_m + 2 * motion_m_, 0.5 * gap_m));
+  if (gap_m > motion_m_) return std::min(gap_m, look_ahead_m_);
+  return std::min(motion_m_, std::max(gap_m + 2 * motion_m_, 0.5 * gap_m));
 }
 
 std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {

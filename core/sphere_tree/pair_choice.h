@@ -28,8 +28,9 @@ struct ChosenPair {
 // region and 0.8 mm aside, and a tool that sees one region at a time goes to and fro between them.
 //
 // A deeper leaf is on its way out, or in a wedge, and steps are longer: m is twice the look-ahead, and j goes
-// only if its line is also within kAlike of that of i, so that every direction keeps its deepest. What is not
-// half as deep as the deepest pair, nor within a look-ahead of it, goes too: the next look finds it.
+// only if its line is also within kAlike of that of i, so that every direction keeps its deepest. What is
+// less than half as deep as the deepest pair, and not within a look-ahead of it, goes too: the next look
+// finds it.
 //
 // Of every leaf the deepest pair is kept, so no pair is deeper than all that are kept. Room ends with
 // kMostOfLeaf of a leaf, then the shallower ones are lost, and with kRoom of all, then those are lost that

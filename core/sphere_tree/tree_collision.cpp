@@ -31,6 +31,8 @@ TreeCollision::TreeCollision(const SphereTree& tool, const Kernels& kernels)
 
 void TreeCollision::on_frame(const SphereTree& regions) {
   regions_ = &regions;
+  if (!tool_.empty())
+    patches_.reserve(tool_.level(0).size() * (regions.empty() ? 0 : regions.level(0).size()));
   const std::size_t room = regions.leaves().size() + 2 * kLanes;
   if (number_.size() >= room) return;
   for (std::vector<double>* column : {&gap_, &nx_, &ny_, &nz_}) column->resize(room);
@@ -52,7 +54,7 @@ std::uint32_t TreeCollision::tops_near(const Sphere& sphere_W, std::uint32_t amo
 }
 
 std::span<const CloseLeaf> TreeCollision::close_leaves(const ToolPose& pose, double margin_m) {
-  close_.clear();
+  close_.clear(), patches_.clear();
   if (tool_.empty() || !regions_ || regions_->empty()) return {};
   p_W_ = pose.p_W, R_WT_ = pose.q_WT.toRotationMatrix(), margin_m_ = margin_m;
   const auto every_top = static_cast<std::uint32_t>((std::uint64_t{1} << regions_->top().size()) - 1);
@@ -63,35 +65,40 @@ std::span<const CloseLeaf> TreeCollision::close_leaves(const ToolPose& pose, dou
 
 void TreeCollision::meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops) {
   const SphereNode& node = tool_.level(level)[number];
-  tops = tops_near(placed(node.sphere), tops);
+  const Sphere node_W = placed(node.sphere);
+  tops = tops_near(node_W, tops);
   if (tops == 0) return;
-  for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
-    if (level > 0)
+  if (level > 0) {
+    for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
       meet_tool(level - 1, child, tops);
-    else
-      close_.push_back({child, tops, placed(tool_.leaves()[child])});
+    return;
+  }
+  const auto first_patch = static_cast<std::uint32_t>(patches_.size());
+  for (; tops != 0; tops &= tops - 1)
+    meet_regions(regions_->level_count() - 1, static_cast<std::uint32_t>(std::countr_zero(tops)), node_W);
+  const auto patch_count = static_cast<std::uint32_t>(patches_.size()) - first_patch;
+  if (patch_count == 0) return;
+  for (std::uint32_t leaf = node.first; leaf < node.first + node.count; ++leaf)
+    close_.push_back({leaf, first_patch, patch_count, placed(tool_.leaves()[leaf])});
+}
+
+void TreeCollision::meet_regions(std::size_t level, std::uint32_t number, const Sphere& node_W) {
+  const SphereNode& node = regions_->level(level)[number];
+  if (!is_near(node_W, node.sphere, margin_m_)) return;
+  if (level == 0) return patches_.push_back(number);
+  for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
+    meet_regions(level - 1, child, node_W);
 }
 
 TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double margin_m) {
-  found_ = {{gap_.data(), nx_.data(), ny_.data(), nz_.data(), number_.data()}, 0};
-  for (std::uint32_t tops = leaf.tops; tops != 0; tops &= tops - 1)
-    meet_regions(regions_->level_count() - 1, static_cast<std::uint32_t>(std::countr_zero(tops)),
-                 leaf.sphere_W, margin_m);
-  return found_;
-}
-
-void TreeCollision::meet_regions(std::size_t level, std::uint32_t number, const Sphere& leaf_W,
-                                 double margin_m) {
-  const SphereNode& node = regions_->level(level)[number];
-  if (!is_near(leaf_W, node.sphere, margin_m)) return;
-  if (level == 0) {
-    const double leaf[4] = {leaf_W.centre.x(), leaf_W.centre.y(), leaf_W.centre.z(), leaf_W.radius_m};
-    found_.count =
-        kernels_.append_near_regions(regions_->run(number), leaf, margin_m, found_.regions, found_.count);
-    return;
-  }
-  for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
-    meet_regions(level - 1, child, leaf_W, margin_m);
+  Found found{{gap_.data(), nx_.data(), ny_.data(), nz_.data(), number_.data()}, 0};
+  const Vec3& middle = leaf.sphere_W.centre;
+  const double columns[4] = {middle.x(), middle.y(), middle.z(), leaf.sphere_W.radius_m};
+  for (std::uint32_t i = leaf.first_patch; i < leaf.first_patch + leaf.patch_count; ++i)
+    if (is_near(leaf.sphere_W, regions_->level(0)[patches_[i]].sphere, margin_m))
+      found.count = kernels_.append_near_regions(regions_->run(patches_[i]), columns, margin_m, found.regions,
+                                                 found.count);
+  return found;
 }
 
 // A heap with the shallowest of those that are kept on top, once there is no more room.

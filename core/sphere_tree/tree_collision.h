@@ -16,10 +16,10 @@ struct LeafPair {
   double gap_m;                // between their surfaces, negative where they overlap
 };
 
-// A leaf of the tool at a pose, world frame, that some of the topmost regions may be near.
+// A leaf of the tool at a pose, world frame, and the patches of regions that are near the node it belongs to.
 struct CloseLeaf {
   std::uint32_t number;
-  std::uint32_t tops;  // bit i: the region's topmost node i
+  std::uint32_t first_patch, patch_count;  // in the list of TreeCollision
   Sphere sphere_W;
 };
 
@@ -30,12 +30,13 @@ class TreeCollision {
   TreeCollision(const SphereTree& tool, const Kernels& kernels);
   void on_frame(const SphereTree& regions);
 
-  // The tool's tree is gone down depth first against the topmost regions. Every leaf with a pair within
-  // margin_m is among those returned, in the order of their numbers. Valid until the next call.
+  // The tool's tree is gone down depth first against the topmost regions, then the regions' tree against
+  // every node of the tool's lowest level: what its leaves have in common is looked for once. Every leaf with
+  // a pair within margin_m is among those returned, in the order of their numbers. Valid until the next call.
   std::span<const CloseLeaf> close_leaves(const ToolPose& pose, double margin_m);
 
-  // Then the regions' tree against one of them: all regions with gaps of margin_m or less, in an order that
-  // depends on that tree alone. The columns may be changed, and are valid until the next call.
+  // All regions with gaps of margin_m or less to one of them, in the order of their numbers; no larger a
+  // margin than before. The columns may be changed, and are valid until the next call.
   struct Found {
     NearRegions regions;  // normals in the world
     std::size_t count;
@@ -52,7 +53,7 @@ class TreeCollision {
   // Those of the topmost regions that are near a sphere of the tool.
   std::uint32_t tops_near(const Sphere& sphere_W, std::uint32_t among) const;
   Sphere placed(const Sphere& sphere_T) const;
-  void meet_regions(std::size_t level, std::uint32_t number, const Sphere& leaf_W, double margin_m);
+  void meet_regions(std::size_t level, std::uint32_t number, const Sphere& node_W);
 
   const SphereTree& tool_;
   const SphereTree* regions_ = nullptr;
@@ -61,9 +62,9 @@ class TreeCollision {
   Eigen::Matrix3d R_WT_ = Eigen::Matrix3d::Identity();
   double margin_m_ = 0;
   std::vector<CloseLeaf> close_;
+  std::vector<std::uint32_t> patches_;  // of one node of the tool after the other
   std::vector<double> gap_, nx_, ny_, nz_;
   std::vector<std::uint32_t> number_;
-  Found found_{};
 };
 
 }  // namespace remote_touch

@@ -1,0 +1,119 @@
+#include "tests/benchmarks/region_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/sphere_tree/tool_spheres.h"
+#include "tests/benchmarks/tool_scene.h"
+
+namespace remote_touch::benchmarks {
+
+namespace {
+
+constexpr double kTube_m = 0.007;
+constexpr int kWidth = 640, kHeight = 480;
+constexpr double kFocal_px = 525;
+
+// Where a ray of the camera meets one of the rings, as its z; beyond the wall where it meets none. Steps as
+// long as the ring is away do not jump over it.
+double depth_of_wheels(const Vec3& ray, double nearer_m) {
+  double depth = 2;
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 middle(side * kWheelAside_m, 0, kWheelAway_m - nearer_m);
+    double z = middle.z() - 0.1;
+    while (z < middle.z() + 0.1) {
+      const Vec3 p = z * ray - middle;
+      const double away = std::hypot(std::hypot(p.x(), p.y()) - kRing_m, p.z()) - kTube_m;
+      if (away < 1e-6) depth = std::min(depth, z);
+      if (away < 1e-6) break;
+      z += away / ray.norm();
+    }
+  }
+  return depth;
+}
+
+SphereTree tree_of(const std::vector<Sphere>& leaves) {
+  SphereTree tree;
+  for (std::size_t first = 0; first < leaves.size(); first += 8)
+    tree.add(std::span(leaves).subspan(first, std::min<std::size_t>(8, leaves.size() - first)));
+  tree.finish();
+  return tree;
+}
+
+double reach_of(const SphereTree& tree) {
+  double reach_m = 0;
+  for (const Sphere& leaf : tree.leaves()) reach_m = std::max(reach_m, leaf.centre.norm() + leaf.radius_m);
+  return reach_m;
+}
+
+}  // namespace
+
+PointCloud frame_of_wheels(double nearer_m) {
+  constexpr double kWall_m = 1.2;
+  PointCloud cloud;
+  cloud.image.emplace();
+  cloud.image->camera = {kWidth, kHeight, kFocal_px, kFocal_px, 0.5 * (kWidth - 1), 0.5 * (kHeight - 1)};
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const Vec3 ray((u - 0.5 * (kWidth - 1)) / kFocal_px, (v - 0.5 * (kHeight - 1)) / kFocal_px, 1);
+      const double depth = depth_of_wheels(ray, nearer_m);
+      cloud.append(std::min(depth, kWall_m) * ray);
+      cloud.fixture_radius_m.push_back(depth < kWall_m ? kRegion_m : 0);
+    }
+  return cloud;
+}
+
+SphereTool generated_sphere_tool(const std::string& name, int most_leaves) {
+  const auto body = generated_tool(name);
+  const auto leaves = std::make_shared<const SphereTree>(make_tool_spheres(*body, most_leaves).spheres);
+  return {body, leaves, reach_of(*leaves)};
+}
+
+SphereTool arm_of_leaves(int leaves) {
+  constexpr double kLength_m = 0.8, kArm_m = 0.03, kLeaf_m = 0.012;
+  constexpr int kAround = 10;
+  const double bend = 0.3;  // of the first and last link against the middle one
+  std::vector<Sphere> all;
+  for (int i = 0; i < leaves; ++i) {
+    const double along = kLength_m * ((i / kAround) / std::ceil(1.0 * leaves / kAround) - 0.5);
+    const double angle = 2 * std::numbers::pi * (i % kAround) / kAround;
+    const double aside = bend * std::max(0.0, std::abs(along) - kLength_m / 6);
+    all.push_back(
+        {{(kArm_m - kLeaf_m) * std::cos(angle), aside + (kArm_m - kLeaf_m) * std::sin(angle), along},
+         kLeaf_m});
+  }
+  auto body = std::make_shared<VoxelTool>();
+  const double across = kArm_m * kArm_m / 4 + kLength_m * kLength_m / 12;
+  body->inertia_m2 = Vec3(across, across, kArm_m * kArm_m / 2).asDiagonal();
+  const auto tree = std::make_shared<const SphereTree>(tree_of(all));
+  body->reach_m = reach_of(*tree);
+  return {body, tree, body->reach_m};
+}
+
+std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
+                                  double margin_m) {
+  const Eigen::Matrix3d R_WT = pose.q_WT.toRotationMatrix();
+  std::vector<LeafPair> pairs;
+  for (std::uint32_t i = 0; i < tool.leaves().size(); ++i) {
+    const Sphere& leaf = tool.leaves()[i];
+    const Vec3 centre_W = pose.p_W + R_WT * leaf.centre;
+    for (std::uint32_t j = 0; j < regions.leaves().size(); ++j) {
+      const Sphere& region = regions.leaves()[j];
+      const double gap_m = (centre_W - region.centre).norm() - leaf.radius_m - region.radius_m;
+      if (gap_m <= margin_m) pairs.push_back({i, j, gap_m});
+    }
+  }
+  return pairs;
+}
+
+ToolPose device_around_wheel(int tick) {
+  const double a = 2 * std::numbers::pi * tick / kRoundTicks;
+  const double pressed_m = 0.01;
+  return {{-kWheelAside_m + kRing_m * std::cos(a), kRing_m * std::sin(a),
+           kWheelAway_m - kTube_m - kRegion_m + pressed_m},
+          rotation({0.3 * std::sin(3 * a), 0.2 * std::cos(2 * a), 0.5 * std::sin(a)})};
+}
+
+}  // namespace remote_touch::benchmarks

@@ -1,0 +1,40 @@
+// Two handwheels among forbidden regions as a camera sees them, 7.5.1, and tools of spheres that meet them,
+// for the benchmarks of chapter 7. The camera is in the origin and looks along z.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/point_cloud.h"
+#include "core/sphere_tree/sphere_tree.h"
+#include "core/sphere_tree/tree_collision.h"
+#include "core/tool/tool_pose.h"
+#include "core/tool/voxel_tool.h"
+
+namespace remote_touch::benchmarks {
+
+inline constexpr double kRegion_m = 0.04;
+inline constexpr double kWheelAway_m = 0.9, kWheelAside_m = 0.09, kRing_m = 0.045;
+
+// 640 x 480 pixels, the wheels nearer_m nearer than usual; behind them a wall without regions.
+PointCloud frame_of_wheels(double nearer_m = 0);
+
+struct SphereTool {
+  std::shared_ptr<const VoxelTool> body;
+  std::shared_ptr<const SphereTree> leaves;
+  double reach_m;
+};
+SphereTool generated_sphere_tool(const std::string& name, int most_leaves);
+// Three links of 0.27 m, one after the other, of 30 mm radius, all around them leaves of 12 mm.
+SphereTool arm_of_leaves(int leaves);
+
+// Every pair of leaves with a gap of margin_m or less, by a plain loop over all.
+std::vector<LeafPair> naive_pairs(const SphereTree& tool, const ToolPose& pose, const SphereTree& regions,
+                                  double margin_m);
+
+// Of the device on its way around the first wheel at 0.1 m/s, turning as it goes, 10 mm inside the regions.
+ToolPose device_around_wheel(int tick);
+inline constexpr int kRoundTicks = 2828;
+
+}  // namespace remote_touch::benchmarks

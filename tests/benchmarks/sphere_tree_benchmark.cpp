@@ -1,0 +1,281 @@
+// Chapter 7: the regions of a frame as a tree, pairs of leaves, and whole ticks of a tool among regions.
+// Every answer is compared with a plain loop over all pairs, ticks also with those of the slowest instruction
+// set level, bit for bit, before anything is timed.
+#include <benchmark/benchmark.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/sphere_tree/region_contacts.h"
+#include "core/tool/look_ahead_motion.h"
+#include "tests/benchmarks/checked_benchmark.h"
+#include "tests/benchmarks/region_scene.h"
+
+namespace remote_touch::benchmarks {
+namespace {
+
+constexpr double kLookAhead_m = ToolParameters{}.look_ahead_m;
+constexpr double kSettled_m = 1e-4;
+constexpr int kLeaves = 112;
+
+// Made when it is first asked for: some take seconds.
+const SphereTool& tool_of(const std::string& name, int leaves) {
+  static std::map<std::pair<std::string, int>, SphereTool> made;
+  const auto [entry, is_new] = made.try_emplace({name, leaves});
+  if (is_new) entry->second = name == "arm" ? arm_of_leaves(leaves) : generated_sphere_tool(name, leaves);
+  return entry->second;
+}
+
+struct Place {
+  std::string name;
+  ToolPose pose;
+};
+
+// Out of reach of all regions, at their surface, and with the tool's middle in the tube of the wheel.
+std::vector<Place> places() {
+  ToolPose clear = device_around_wheel(0), touching = clear, deep = clear;
+  clear.p_W.z() -= 0.3, touching.p_W.z() -= 0.0225, deep.p_W.z() += 0.03;
+  return {{"clear", clear}, {"touching", touching}, {"deep", deep}};
+}
+
+double deepest_m(const std::vector<LeafPair>& pairs) {
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (const LeafPair& pair : pairs) deepest = std::max(deepest, -pair.gap_m);
+  return deepest;
+}
+
+// --- the tree of a frame ---
+
+bool tree_right(const PointCloud& cloud) {
+  RegionTree tree;
+  tree.assign(cloud);
+  std::vector<std::uint32_t> points = tree.points(), expected;
+  std::sort(points.begin(), points.end());
+  for (std::uint32_t i = 0; i < cloud.size(); ++i)
+    if (cloud.fixture_radius_m[i] > 0) expected.push_back(i);
+  bool right = points == expected && !points.empty();
+  const SphereTree& spheres = tree.spheres();
+  for (const SphereNode& node : spheres.level(0))
+    for (const Sphere& leaf : spheres.leaves().subspan(node.first, node.count))
+      right = right && (leaf.centre - node.sphere.centre).norm() + leaf.radius_m <= node.sphere.radius_m;
+  return right;
+}
+
+void add_tree(const PointCloud& cloud) {
+  add(
+      "region_tree/wheels", [&cloud] { return tree_right(cloud); },
+      [&cloud](benchmark::State& state) {
+        RegionTree tree;
+        for (auto _ : state) {
+          tree.assign(cloud);
+          benchmark::ClobberMemory();
+        }
+        state.counters["leaves"] = static_cast<double>(tree.points().size());
+        state.counters["patches"] = static_cast<double>(tree.spheres().level(0).size());
+      });
+}
+
+// --- one detection ---
+
+bool detection_right(const SphereTool& tool, const PointCloud& cloud, const ToolPose& pose,
+                     const Kernels& kernels) {
+  RegionContacts contacts(tool.leaves, kLookAhead_m, kernels);
+  contacts.on_frame(cloud);
+  const SphereTree& regions = contacts.regions().spheres();
+  const std::vector<LeafPair> expected = naive_pairs(*tool.leaves, pose, regions, kLookAhead_m);
+  TreeCollision collision(*tool.leaves, kernels);
+  collision.on_frame(regions);
+  std::vector<LeafPair> room(expected.size() + 1);
+  if (collision.near(pose, kLookAhead_m, room) != expected.size()) return false;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    if (room[i].tool != expected[i].tool || room[i].region != expected[i].region ||
+        room[i].gap_m != expected[i].gap_m)
+      return false;
+  return contacts.near(pose, 0).deepest_m == deepest_m(expected);
+}
+
+void add_detection(const std::string& name, const PointCloud& cloud, const Place& place) {
+  const ToolPose pose = place.pose;
+  for (const Kernels* kernels : levels())
+    add(
+        "region_contacts/" + place.name + "/" + kernels->isa,
+        [=, &cloud] { return detection_right(tool_of(name, kLeaves), cloud, pose, *kernels); },
+        [=, &cloud](benchmark::State& state) {
+          const SphereTool& tool = tool_of(name, kLeaves);
+          RegionContacts contacts(tool.leaves, kLookAhead_m, *kernels);
+          contacts.on_frame(cloud);
+          TreeCollision collision(*tool.leaves, *kernels);
+          collision.on_frame(contacts.regions().spheres());
+          std::size_t chosen = 0;
+          for (auto _ : state) chosen = contacts.near(pose, 0).contacts.size();
+          state.counters["pairs"] = static_cast<double>(collision.near(pose, kLookAhead_m, {}));
+          state.counters["contacts"] = static_cast<double>(chosen);
+        });
+  add(
+      "region_contacts_naive/" + place.name, [] { return true; },
+      [=, &cloud](benchmark::State& state) {
+        const SphereTool& tool = tool_of(name, kLeaves);
+        RegionTree regions;
+        regions.assign(cloud);
+        for (auto _ : state) {
+          const std::vector<LeafPair> pairs =
+              naive_pairs(*tool.leaves, pose, regions.spheres(), kLookAhead_m);
+          benchmark::DoNotOptimize(pairs.data());
+        }
+      });
+}
+
+// --- whole ticks ---
+
+// What a ride asks for: the device of a tick, and the frame that comes with it, if any.
+struct Course {
+  int ticks;
+  ToolPose (*device)(int tick);
+  const PointCloud* (*frame)(int tick);
+};
+
+const PointCloud& wheels() {
+  static const PointCloud cloud = frame_of_wheels();
+  return cloud;
+}
+// Frames whose wheels are 30 mm nearer swallow the tool; it is pushed out, and let down again by the next.
+const PointCloud& nearer_wheels() {
+  static const PointCloud cloud = frame_of_wheels(0.03);
+  return cloud;
+}
+
+constexpr int kFrameTicks = 33;
+const Course kSlide{kRoundTicks, device_around_wheel, [](int) -> const PointCloud* { return nullptr; }};
+const Course kSwallow{20 * kFrameTicks, [](int tick) { return device_around_wheel(4 * tick); },
+                      [](int tick) -> const PointCloud* {
+                        if (tick % kFrameTicks != 0) return nullptr;
+                        return tick / kFrameTicks % 2 == 0 ? &wheels() : &nearer_wheels();
+                      }};
+
+class Ride {
+ public:
+  Ride(const SphereTool& tool, const Course& course, const Kernels& kernels)
+      : tool_(tool),
+        course_(course),
+        contacts_(tool.leaves, kLookAhead_m, kernels),
+        motion_({}, *tool.body, tool.reach_m) {
+    contacts_.on_frame(wheels());
+    pose_ = course.device(0);
+    pose_.p_W.z() -= 0.3;
+    for (int i = 0; i < 20; ++i) step(course.device(0));
+  }
+  // The frame is not part of the tick.
+  void begin(int tick) {
+    const PointCloud* frame = course_.frame(tick);
+    if (frame) contacts_.on_frame(*frame);
+    updated_ = frame != nullptr;
+  }
+  ToolMotionReport step(int tick) { return step(course_.device(tick)); }
+
+  const ToolPose& pose() const { return pose_; }
+  double deepest_of_all_m() const {
+    return deepest_m(naive_pairs(*tool_.leaves, pose_, contacts_.regions().spheres(), kLookAhead_m));
+  }
+
+ private:
+  ToolMotionReport step(const ToolPose& device) {
+    return motion_.move(pose_, device, contacts_, std::exchange(updated_, false));
+  }
+
+  const SphereTool tool_;
+  const Course& course_;
+  RegionContacts contacts_;
+  LookAheadMotion motion_;
+  ToolPose pose_;
+  bool updated_ = false;
+};
+
+// Now and then also against all pairs: no leaf rests in a region.
+bool ride_right(const SphereTool& tool, const Course& course, const Kernels& kernels) {
+  constexpr int kCheckedTick = 61;
+  Ride ride(tool, course, kernels), slowest(tool, course, kernels_for(Isa::x86_64));
+  int touching = 0;
+  for (int tick = 0; tick < course.ticks; ++tick) {
+    ride.begin(tick), slowest.begin(tick);
+    const ToolMotionReport report = ride.step(tick);
+    slowest.step(tick);
+    if (!(ride.pose() == slowest.pose())) return false;
+    if (tick % kCheckedTick != 0 || !report.at_rest) continue;
+    const double deep_m = ride.deepest_of_all_m();
+    if (deep_m > kSettled_m) return false;
+    touching += deep_m > -kSettled_m ? 1 : 0;
+  }
+  return touching > 0;
+}
+
+// Of this thread, for a tick is short against the time for which others may have the machine.
+double cpu_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
+// Every ride is the same, so the least time of a tick among many rides is that of the work.
+void time_ride(benchmark::State& state, const SphereTool& tool, const Course& course,
+               const Kernels& kernels) {
+  const auto ticks = static_cast<std::size_t>(course.ticks);
+  std::vector<double> least_ns(ticks, std::numeric_limits<double>::infinity());
+  double detections = 0, most = 0, rides = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Ride ride(tool, course, kernels);
+    state.ResumeTiming();
+    for (int tick = 0; tick < course.ticks; ++tick) {
+      ride.begin(tick);
+      const double start_ns = cpu_ns();
+      const ToolMotionReport report = ride.step(tick);
+      const double ns = cpu_ns() - start_ns;
+      least_ns[static_cast<std::size_t>(tick)] = std::min(least_ns[static_cast<std::size_t>(tick)], ns);
+      detections += report.detections, most = std::max(most, double(report.detections));
+    }
+    ++rides;
+  }
+  double sum = 0;
+  for (const double ns : least_ns) sum += ns;
+  std::sort(least_ns.begin(), least_ns.end());
+  state.counters["mean_ns"] = sum / course.ticks;
+  state.counters["p99_9_ns"] = least_ns[static_cast<std::size_t>(0.999 * (least_ns.size() - 1) + 0.5)];
+  state.counters["largest_ns"] = least_ns.back();
+  state.counters["detections"] = detections / rides / course.ticks;
+  state.counters["most_detections"] = most;
+}
+
+void add_ride(const std::string& name, int leaves, const std::string& kind, const Course& course) {
+  for (const Kernels* kernels : levels())
+    add(
+        "region_tick/" + name + "_" + std::to_string(leaves) + "_" + kind + "/" + kernels->isa,
+        [=, &course] { return ride_right(tool_of(name, leaves), course, *kernels); },
+        [=, &course](benchmark::State& state) { time_ride(state, tool_of(name, leaves), course, *kernels); });
+}
+
+}  // namespace
+}  // namespace remote_touch::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace remote_touch::benchmarks;
+  add_tree(wheels());
+  for (const Place& place : places()) add_detection("key", wheels(), place);
+  for (const std::string name : {"key", "husky"}) {
+    add_ride(name, kLeaves, "slide", kSlide);
+    add_ride(name, kLeaves, "swallowed", kSwallow);
+  }
+  for (const int leaves : {28, 56, 250, 500, 1000}) add_ride("husky", leaves, "slide", kSlide);
+  add_ride("arm", 2000, "slide", kSlide);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return mismatch_seen() ? 1 : 0;
+}
