@@ -186,6 +186,27 @@ TEST(RegionContacts, ComesToRestInAnObtuseCrease) {
   }
 }
 
+// Regions all around leave a hole that is too small for the tool: no motion leads out, and it rests as well.
+TEST(RegionContacts, ComesToRestInAWedge) {
+  std::vector<Vec3> places;
+  for (int i = 0; i < 600; ++i) {
+    const double y = 1 - (2 * i + 1) / 600.0, a = 2.399963 * i, around = std::sqrt(1 - y * y);
+    places.emplace_back(0.045 * around * std::cos(a), 0.045 * y, 0.045 * around * std::sin(a));
+  }
+  for (const double turn : {0.0, 0.7, 1.4}) {
+    Held held(kBox, spheres_of_box());
+    held.frame(regions_at(places));
+    held.pose = {{0.01, 0.005, 0.002}, rotation({0.2, turn, 0.3})};
+    const ToolPose device = held.pose;
+    for (int tick = 0; tick < 50; ++tick)
+      held.motion.move(held.pose, device, held.contacts, std::exchange(held.updated, false));
+    EXPECT_GT(held.contacts.near(held.pose, 0).deepest_m, 0.005);
+    const ToolPose rest = held.pose;
+    for (int tick = 0; tick < 20; ++tick) held.motion.move(held.pose, device, held.contacts, false);
+    EXPECT_LT((held.pose.p_W - rest.p_W).norm(), 1e-5) << turn;
+  }
+}
+
 // What is chosen, against all pairs: no motion of half the look-ahead that obeys the contacts of a leaf
 // violates any of its pairs.
 TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {

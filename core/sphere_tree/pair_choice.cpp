@@ -58,14 +58,14 @@ void PairChoice::rate() {
 }
 
 void PairChoice::keep_most_urgent(std::size_t most) {
-  if (chosen_.size() <= most) return;
   rate();
   const auto is_sooner = [](const ChosenPair& a, const ChosenPair& b) {
     if (a.motion_m != b.motion_m) return a.motion_m < b.motion_m;
     return a.leaf != b.leaf ? a.leaf < b.leaf : a.gap_m < b.gap_m;
   };
   std::sort(chosen_.begin(), chosen_.end(), is_sooner);
-  chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(most), chosen_.end());
+  if (chosen_.size() > most)
+    chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(most), chosen_.end());
   rated_ = chosen_.size();
 }
 

@@ -51,7 +51,7 @@ class PairChoice {
   std::uint32_t choose(const CloseLeaf& leaf, const TreeCollision::Found& found);
 
   std::span<const ChosenPair> chosen() const { return chosen_; }
-  // No more than most of them: those that the shortest motions can violate.
+  // No more than most of them: those that the shortest motions can violate, these first.
   void keep_most_urgent(std::size_t most);
   bool is_deep(double gap_m) const { return gap_m < -motion_m_; }
 

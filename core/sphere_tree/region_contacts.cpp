@@ -22,7 +22,8 @@ RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double lo
       collision_(*tool_, kernels),
       choice_(look_ahead_m, kernels),
       deepest_(tool_->leaves().size(), kNone) {
-  contacts_.reserve(kMostToThin);
+  contacts_.reserve(ContactThinning::kMost);
+  others_.reserve(kMostToThin);
 }
 
 void RegionContacts::on_frame(const PointCloud& cloud) {
@@ -59,12 +60,22 @@ NearContacts RegionContacts::near(const ToolPose& pose, double) {
     deepest = neighbours = choice_.choose(leaf, found);
   }
   for (const ChosenPair& pair : choice_.chosen()) least_m = std::min(least_m, pair.gap_m);
-  choice_.keep_most_urgent(choice_.is_deep(least_m) ? kMostToThin : ContactThinning::kMost);
-  const Eigen::Quaterniond q_TW = pose.q_WT.conjugate();
-  contacts_.clear();
-  for (const ChosenPair& pair : choice_.chosen()) contacts_.push_back(contact(pair, q_TW));
-  thinning_.thin(contacts_);
+  if (choice_.chosen().size() > ContactThinning::kMost)
+    choice_.keep_most_urgent(choice_.is_deep(least_m) ? kMostToThin : ContactThinning::kMost);
+  take_contacts(pose.q_WT.conjugate());
   return {contacts_, -least_m};
+}
+
+// Where there are too many, half of the room is for the most urgent, which all hold a tool that is wedged.
+void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
+  constexpr std::size_t kHalf = ContactThinning::kMost / 2;
+  const std::span<const ChosenPair> chosen = choice_.chosen();
+  const std::size_t as_they_are = chosen.size() > ContactThinning::kMost ? kHalf : chosen.size();
+  contacts_.clear(), others_.clear();
+  for (const ChosenPair& pair : chosen.first(as_they_are)) contacts_.push_back(contact(pair, q_TW));
+  for (const ChosenPair& pair : chosen.subspan(as_they_are)) others_.push_back(contact(pair, q_TW));
+  thinning_.thin(others_, kHalf);
+  contacts_.insert(contacts_.end(), others_.begin(), others_.end());
 }
 
 // Once a pair that touches is known, or one that is nearly as near, those farther away say nothing.

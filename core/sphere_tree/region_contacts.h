@@ -23,9 +23,10 @@ struct RegionTouch {
 
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless others
 // stand for it: see PairChoice. Where more are left than the motion takes, and no leaf is deep, those go that
-// only the longest motions can violate; while one is deep, ContactThinning keeps the deepest of every place
-// and octant of directions, so that what is left is spread over the tool. Does not depend on the kernels'
-// level. Allocates on construction and in on_frame() only.
+// only the longest motions can violate. While one is deep, half the room is for the deepest, and for the
+// other half ContactThinning keeps the deepest of every place and octant of directions, so that what is left
+// is spread over the tool. Does not depend on the kernels' level. Allocates on construction and in on_frame()
+// only.
 class RegionContacts final : public NearContactSource {
  public:
   // Half the band of gaps in which a pair counts as touching, the less the less deep it is.
@@ -47,6 +48,7 @@ class RegionContacts final : public NearContactSource {
  private:
   static constexpr std::uint32_t kNone = ~0u;
   double bound_m(const CloseLeaf& leaf, std::uint32_t region) const;
+  void take_contacts(const Eigen::Quaterniond& q_TW);
   ToolContact contact(const ChosenPair& pair, const Eigen::Quaterniond& q_TW) const;
 
   const std::shared_ptr<const SphereTree> tool_;
@@ -56,7 +58,7 @@ class RegionContacts final : public NearContactSource {
   PairChoice choice_;
   std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region when last looked at
   ContactThinning thinning_;
-  std::vector<ToolContact> contacts_;
+  std::vector<ToolContact> contacts_, others_;
 };
 
 }  // namespace remote_touch

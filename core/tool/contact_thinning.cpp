@@ -47,12 +47,12 @@ std::size_t ContactThinning::cell(std::uint64_t cell_and_octant) {
   return slot->cell;
 }
 
-void ContactThinning::thin(std::vector<ToolContact>& contacts) {
+void ContactThinning::thin(std::vector<ToolContact>& contacts, std::size_t most) {
   constexpr double kGrowth = 1.5;
-  for (double cell_m = kCell_m; contacts.size() > kMost; cell_m *= kGrowth) thin(contacts, cell_m);
+  for (double cell_m = kCell_m; contacts.size() > most; cell_m *= kGrowth) thin_in_cells(contacts, cell_m);
 }
 
-void ContactThinning::thin(std::vector<ToolContact>& contacts, double cell_m) {
+void ContactThinning::thin_in_cells(std::vector<ToolContact>& contacts, double cell_m) {
   begin();
   std::size_t kept = 0;
   for (const ToolContact& contact : contacts) {  // no place before it is its own

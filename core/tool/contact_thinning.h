@@ -26,12 +26,12 @@ class ContactThinning {
   // Cells of kCell_m at first: a step turns the tool by so little that two points of 4 mm ask for the same
   // motion within a tenth of a millimetre, and what is left over the next detection finds. Then larger ones,
   // for contacts have to stay spread over the tool.
-  void thin(std::vector<ToolContact>& contacts);
   static constexpr double kCell_m = 4e-3;
   static constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
+  void thin(std::vector<ToolContact>& contacts, std::size_t most = kMost);
 
  private:
-  void thin(std::vector<ToolContact>& contacts, double cell_m);
+  void thin_in_cells(std::vector<ToolContact>& contacts, double cell_m);
   struct Slot {
     std::uint64_t key = 0;
     std::uint32_t cell = 0;
