@@ -135,6 +135,8 @@ Experiment Experiment::from_json(Json configuration) {
   read_parameters(configuration, parameters(experiment.settings_), "", false);
   const std::string contradiction = conflict(experiment.fixture_values(), experiment.sequence_);
   if (!contradiction.empty()) throw InputError(contradiction);
+  if (experiment.guidance_ && !experiment.has_guidance())
+    throw InputError("guidance", "allowed where a fixture has role = guidance");
   return experiment;
 }
 
@@ -188,17 +190,16 @@ std::vector<FixtureValues> Experiment::fixture_values() const {
   return values;
 }
 
-bool Experiment::is_guided() const {
+bool Experiment::has_guidance() const {
   const std::vector<FixtureValues> values = fixture_values();
-  return !sequence_.empty() || std::any_of(values.begin(), values.end(), [](const FixtureValues& v) {
-    return v.role == FixtureRole::guidance;
-  });
+  return std::any_of(values.begin(), values.end(),
+                     [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
 }
 
 std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
                                                      std::shared_ptr<FixtureSwitches> switches) const {
   auto renderer = renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
-  if (!is_guided()) return renderer;
+  if (sequence_.empty() && !has_guidance()) return renderer;
   if (!switches) switches = std::make_shared<FixtureSwitches>();
   return std::make_unique<GuidedRenderer>(std::move(renderer), guidance_.value_or(GuidanceSettings{}),
                                           fixture_values(), sequence_, std::move(switches));

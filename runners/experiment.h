@@ -63,7 +63,7 @@ class Experiment {
 
  private:
   std::vector<FixtureValues> fixture_values() const;
-  bool is_guided() const;
+  bool has_guidance() const;
 
   RunSettings settings_;
   Part<ScenarioEntry> scenario_;

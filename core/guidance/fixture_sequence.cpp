@@ -29,6 +29,10 @@ std::string conflict(const SequenceStep& s) {
   if (needs_fixture && s.fixture.empty()) return "fixture = \"\": allowed the label of a fixture";
   if (!needs_fixture && !s.fixture.empty())
     return "fixture = \"" + s.fixture + "\": allowed none for wait, unless done = reached";
+  if (s.action != FixtureAction::activate && !s.offset_m.isZero(0))
+    return "offset_m: allowed other than 0 for action = activate only";
+  if (s.done == StepEnd::at_once && s.deadline_s > 0)
+    return "deadline_s = " + std::to_string(s.deadline_s) + ": allowed 0 for done = at-once";
   const bool guided = s.action == FixtureAction::activate || s.action == FixtureAction::wait;
   if (s.done == StepEnd::reached && !guided) return "done = reached: allowed for activate and wait";
   return {};

@@ -13,6 +13,7 @@ namespace remote_touch {
 
 // Of one fixture in one frame; world frame.
 struct GuidanceTarget {
+  double strength = 1;         // of its rule when the frame was captured, 0 to 1
   std::size_t points = 0;      // that were picked; 0: the frame shows no target
   Vec3 mean_W = Vec3::Zero();  // of their places, weighted by their shares
   // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for

@@ -147,8 +147,8 @@ void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
     const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, *there, device);
     out.guidance->pulls = true;
     out.guidance->goal_W = there->p_W, out.guidance->goal_orientation_W = there->q_WT;
-    out.guidance->force_N += wrench.force_N;
-    if (out.tool) out.guidance->torque_Nm += wrench.torque_Nm;
+    out.guidance->force_N += guide.target.strength * wrench.force_N;
+    if (out.tool) out.guidance->torque_Nm += guide.target.strength * wrench.torque_Nm;
   }
   out.force_N += out.guidance->force_N;
   if (out.tool) out.tool->torque_Nm += out.guidance->torque_Nm;

@@ -29,10 +29,9 @@ Parameters parameters(MotorSettings& s) {
 }
 
 Wrench exerted(const MotorSettings& m, const Eigen::Quaterniond& handle_W, const Wrench& told) {
-  const Vec3 force_W = cut(told.force_N, m.largest_force_N);
-  const Vec3 torque_T = handle_W.conjugate() * cut(told.torque_Nm, m.largest_torque_Nm);
-  return {with_motors(force_W, m.moves_x, m.moves_y, m.moves_z),
-          handle_W * with_motors(torque_T, m.turns_x, m.turns_y, m.turns_z)};
+  const Vec3 torque_T = handle_W.conjugate() * told.torque_Nm;
+  return {cut(with_motors(told.force_N, m.moves_x, m.moves_y, m.moves_z), m.largest_force_N),
+          handle_W * cut(with_motors(torque_T, m.turns_x, m.turns_y, m.turns_z), m.largest_torque_Nm)};
 }
 
 }  // namespace remote_touch
