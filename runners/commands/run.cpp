@@ -30,8 +30,8 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
   for (std::size_t i = 0; i < steps.size(); ++i) {
     SequenceStep step = steps[i];
     const auto action = std::get<Choice>(parameters(step).front().value);
-    std::printf("  sequence.%zu %s %s: ", i, action.names[static_cast<std::size_t>(action.get())].c_str(),
-                step.fixture.c_str());
+    std::printf("  sequence.%zu %s%s%s: ", i, action.names[static_cast<std::size_t>(action.get())].c_str(),
+                step.fixture.empty() ? "" : " ", step.fixture.c_str());
     if (i >= log.size()) {
       std::puts("has not begun");
       continue;

@@ -82,7 +82,7 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   const Vec3 aside = t.proxy(last) - t.intended(last);
   figure.claims.push_back(claim_at_least(figure.name,
                                          slip.words + ": how far the tool was pushed up, past the valve", "-",
-                                         aside.y(), 0.02, "m"));
+                                         aside.y(), 0.01, "m"));
   figure.claims.push_back(claim_at_least(figure.name,
                                          slip.words + ": least distance of its mesh to the true valve", "-",
                                          least_clearance_m(slip, Valve::left), kRegion_m - 1e-3, "m"));

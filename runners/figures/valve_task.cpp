@@ -19,30 +19,40 @@ namespace {
 constexpr std::size_t kEvery = 5;            // ticks, in tables
 constexpr std::size_t kClearanceEvery = 10;  // ticks, where clearance is looked for
 constexpr double kSettled_m = 1e-4;
-constexpr std::size_t kRegionsEvery = 5;  // of the regions, in pictures
-constexpr int kPlacesOfRegion = 40;
+constexpr std::size_t kRegionsEvery = 25;  // of the regions, in pictures
+constexpr int kRaysOfRegion = 60;
 constexpr std::uint32_t kRegionColour = 0xC0392B;
 
 Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
   return t.proxy(tick) + t.tool_orientation_at(tick) * p_T;
 }
 
-// Places on the boundary of the union of the regions: those on a region that are in no other.
+// How far a ray from a place in the regions goes before it leaves them all.
+double way_out_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
+  double out = 0, before = -1;
+  while (out > before) {
+    before = out;
+    for (const Sphere& s : regions.leaves()) {
+      const Vec3 d = from - s.centre;
+      const double half = d.dot(along), root = half * half - d.squaredNorm() + s.radius_m * s.radius_m;
+      if (root >= 0 && -half - std::sqrt(root) <= out) out = std::max(out, -half + std::sqrt(root));
+    }
+  }
+  return out;
+}
+
+// Places on the boundary of the union of the regions.
 std::vector<Vec3> boundary(const SphereTree& regions) {
   std::vector<Vec3> places;
   const double golden = 2.399963229728653;
-  for (std::size_t leaf = 0; leaf < regions.leaves().size(); leaf += kRegionsEvery) {
-    const Sphere& region = regions.leaves()[leaf];
-    for (int i = 0; i < kPlacesOfRegion; ++i) {
-      const double y = 1 - (2 * i + 1.0) / kPlacesOfRegion, r = std::sqrt(1 - y * y);
-      const Vec3 place =
-          region.centre + region.radius_m * Vec3(r * std::cos(golden * i), y, r * std::sin(golden * i));
-      const bool covered = std::any_of(regions.leaves().begin(), regions.leaves().end(), [&](const auto& s) {
-        return (place - s.centre).norm() < s.radius_m * (1 - 1e-6);
-      });
-      if (!covered && place.z() > 0) places.push_back(place);
+  for (std::size_t leaf = 0; leaf < regions.leaves().size(); leaf += kRegionsEvery)
+    for (int i = 0; i < kRaysOfRegion; ++i) {
+      const double y = 1 - (2 * i + 1.0) / kRaysOfRegion, r = std::sqrt(1 - y * y);
+      const Vec3 along(r * std::cos(golden * i), y, r * std::sin(golden * i));
+      const Vec3& from = regions.leaves()[leaf].centre;
+      const Vec3 place = from + way_out_m(regions, from, along) * along;
+      if (place.z() > 0) places.push_back(place);
     }
-  }
   return places;
 }
 

@@ -13,7 +13,9 @@ class LoadedSpheres final : public Renderer {
   struct Settings {
     ToolSettings tool{.mesh = "key"};
     int leaves = 112;
-    ToolParameters motion;
+    // Regions are round: the motion nears its end by a share at a time, and a hundredth of a millimetre is
+    // less than a hand can feel.
+    ToolParameters motion{.at_rest_m = 1e-5};
   };
 
   // Throws InputError when the tool cannot be made.
