@@ -34,7 +34,9 @@ const Case kCases[] = {
     {"fig4.16", {"duration_s=0.5"}},
     {"fig6.3", {}},
     {"fig6.3", {"renderer.contact_rule=voxels"}},
-    {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}}};
+    {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}},
+    {"fig7.5", {"duration_s=2.4", "scenario.frame_rate_hz=5"}},
+    {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}}};
 
 TEST(Determinism, EveryInstructionSet) {
   for (const Case& c : kCases) {

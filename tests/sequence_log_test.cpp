@@ -1,0 +1,69 @@
+#include "analysis/sequence_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/rotation.h"
+
+namespace remote_touch {
+namespace {
+
+struct Tick {
+  int step;
+  bool running;
+  int missed;
+  bool pulls = false;
+};
+
+// A tick every millisecond; the tool 3 mm and 0.1 rad from the goal.
+Trace trace_of(const std::vector<Tick>& ticks) {
+  Trace trace;
+  for (const Tick& tick : ticks) {
+    RenderOutput out;
+    out.tool.emplace();
+    out.tool->orientation_W = rotation({0.1, 0, 0});
+    out.proxy_W = {0.003, 0, 0};
+    GuidanceOutput guidance;
+    guidance.pulls = tick.pulls;
+    if (tick.pulls) guidance.goal_W.setZero(), guidance.goal_orientation_W.setIdentity();
+    guidance.sequence_step = tick.step, guidance.sequence_running = tick.running;
+    guidance.sequence_missed = tick.missed;
+    out.guidance = guidance;
+    trace.append(0.001 * static_cast<double>(trace.length()), {}, out, {});
+  }
+  return trace;
+}
+
+TEST(SequenceLog, IsEmptyWithoutATask) {
+  Trace trace;
+  trace.append(0, {}, {}, {});
+  EXPECT_TRUE(sequence_log(trace).empty());
+  EXPECT_TRUE(sequence_log(trace_of({{0, false, 0}, {0, false, 0}})).empty());
+}
+
+TEST(SequenceLog, TellsWhenAStepBeganAndEnded) {
+  const auto log = sequence_log(trace_of({{0, false, 0}, {0, true, 0}, {0, true, 0}, {1, false, 0, true}}));
+  ASSERT_EQ(log.size(), 1u);
+  EXPECT_EQ(log[0].began_s, 0.001);
+  EXPECT_EQ(log[0].ended_s, 0.003);
+  EXPECT_FALSE(log[0].missed);
+  EXPECT_NEAR(log[0].distance_m, 0.003, 1e-15);
+  EXPECT_NEAR(log[0].angle_rad, 0.1, 1e-12);
+}
+
+// In one tick the first step comes to its deadline, the second is done at once and the third begins.
+TEST(SequenceLog, OfSeveralInATickOnlyTheOneThatRanIsMissed) {
+  const auto log = sequence_log(trace_of({{0, true, 0}, {2, true, 1}, {2, true, 1}}));
+  ASSERT_EQ(log.size(), 3u);
+  EXPECT_TRUE(log[0].missed);
+  EXPECT_FALSE(log[1].missed);
+  EXPECT_EQ(log[1].began_s, 0.001);
+  EXPECT_EQ(log[1].ended_s, 0.001);
+  EXPECT_EQ(log[2].step, 2);
+  EXPECT_TRUE(std::isnan(log[2].ended_s));
+  EXPECT_TRUE(std::isnan(log[0].distance_m)) << "nothing pulls";
+}
+
+}  // namespace
+}  // namespace remote_touch
