@@ -144,6 +144,11 @@ struct NearRegions {
   std::uint32_t* number;
 };
 
+// What is left of them in the columns, and the deepest of it: the first with the least gap, or count.
+struct LeftRegions {
+  std::size_t deepest, count;
+};
+
 // Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
 inline constexpr double kRoundsToWhole = 0x1.8p52;
 // Taken away before, it makes that rounding down; what is less than a hair below a whole number counts as it.
@@ -205,11 +210,12 @@ struct Kernels {
                                      const NearRegions&, std::size_t count);
   // The first with the least gap; count where there is none. Writes infinity behind the last gap.
   std::size_t (*deepest_region)(const NearRegions&, std::size_t count);
-  // Makes the gaps infinite of the one that is kept and of those that it stands for: the cosine between both
-  // lines is alike or more, and no motion of the leaf of this length or less that obeys the one kept violates
-  // them. Returns the deepest of the others, as above; after deepest_region().
-  std::size_t (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept, double motion,
-                                     double alike);
+  // Sorts out the one that is kept, those that it stands for - the cosine between both lines is alike or
+  // more, and no motion of the leaf of this length or less that obeys the one kept violates them - and those
+  // with gaps above most. They get infinite gaps, and once they are many the others close up, in the same
+  // order; their numbers stay behind. After deepest_region().
+  LeftRegions (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept, double motion,
+                                     double alike, double most);
   // The points of one row in the camera frame, their z times scale.
   void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
   // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of

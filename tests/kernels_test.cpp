@@ -377,38 +377,89 @@ TEST(NearRegions, OfNoNumberThereAreNone) {
   }
 }
 
-// From the deepest to the shallowest, and of each what it stands for goes; bit for bit alike.
+// A choice among the regions near a leaf, by plain loops over all of them, none of which moves.
+struct PlainChoice {
+  struct Region {
+    double gap;
+    Vec3 n;
+    bool gone = false;
+  };
+  std::vector<Region> regions;
+  std::size_t count = 0;  // of those that are not gone
+
+  PlainChoice(const Patch& patch, std::size_t found) : count(found) {
+    for (std::size_t i = 0; i < found; ++i)
+      regions.push_back({patch.gap[i], {patch.nx[i], patch.ny[i], patch.nz[i]}});
+  }
+  const Region* deepest() const {
+    const Region* least = nullptr;
+    for (const Region& region : regions)
+      if (!region.gone && (!least || region.gap < least->gap)) least = &region;
+    return least;
+  }
+  void keep(const Region& kept, double motion, double alike, double most) {
+    for (Region& other : regions) {
+      if (other.gone) continue;
+      const double cosine = other.n.x() * kept.n.x() + (other.n.y() * kept.n.y() + other.n.z() * kept.n.z());
+      const double rise = other.gap - kept.gap;
+      const bool stands = rise * rise >= motion * motion * (2 - 2 * cosine) && cosine >= alike;
+      other.gone = &other == &kept || stands || other.gap > most;
+      count -= other.gone ? 1 : 0;
+    }
+  }
+};
+
+// From the deepest to the shallowest, and of each what it stands for goes: the same bits on every level, from
+// columns that close up, for all lengths around the lanes.
 TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
   const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
-  for (const double alike : {-2.0, 0.9})
-    for (const double motion : {0.001, 0.01}) {
-      std::vector<std::size_t> kept_before;
-      for (const Kernels* kernels : every_level()) {
-        Patch patch(400);
-        const std::size_t count = kernels->append_near_regions(patch.run(), leaf, 0.04, patch.near(), 0);
-        const std::vector<double> gap = patch.gap;
-        std::vector<char> gone(count, 0);
-        std::vector<std::size_t> kept;
-        for (std::size_t at = kernels->deepest_region(patch.near(), count); at < count;
-             at = kernels->next_deepest_region(patch.near(), count, at, motion, alike)) {
-          for (std::size_t i = 0; i < count; ++i)
-            ASSERT_TRUE(gone[i] || gap[at] < gap[i] || (gap[at] == gap[i] && at <= i));
-          ASSERT_FALSE(gone[at]);
-          kept.push_back(at);
-          for (std::size_t i = 0; i < count; ++i) {
-            const double cosine =
-                patch.nx[i] * patch.nx[at] + patch.ny[i] * patch.ny[at] + patch.nz[i] * patch.nz[at];
-            const double rise = gap[i] - gap[at];
-            const double slack = rise * rise - motion * motion * (2 - 2 * cosine);
-            if (i == at || (slack > 1e-15 && cosine > alike)) gone[i] = 1;
+  std::size_t closed_up = 0;
+  for (const Kernels* kernels : every_level())
+    for (const int regions : {1, 7, 8, 9, 15, 16, 17, 40, 41, 65, 400})
+      for (const double alike : {-2.0, 0.9})
+        for (const double motion : {0.0, 0.001, 0.01})
+          for (const double most : {-0.004, 0.01, 0.04}) {
+            Patch patch(regions);
+            const NearRegions near = patch.near();
+            std::size_t found = kernels->append_near_regions(patch.run(), leaf, 0.04, near, 0);
+            PlainChoice plain(patch, found);
+            LeftRegions left{kernels->deepest_region(near, found), found};
+            const PlainChoice::Region* kept = plain.deepest();
+            while (kept) {
+              const std::size_t at = left.deepest;
+              ASSERT_LT(at, left.count) << kernels->isa << ' ' << regions;
+              ASSERT_EQ(patch.gap[at], kept->gap) << kernels->isa << ' ' << regions;
+              ASSERT_EQ(Vec3(patch.nx[at], patch.ny[at], patch.nz[at]), kept->n);
+              plain.keep(*kept, motion, alike, most);
+              left = kernels->next_deepest_region(near, left.count, at, motion, alike, most);
+              ASSERT_GE(left.count, plain.count);
+              closed_up += left.count < found ? 1 : 0;
+              found = left.count;
+              kept = plain.deepest();
+            }
+            EXPECT_EQ(left.deepest, left.count);
+            EXPECT_EQ(plain.count, 0u);
           }
-        }
-        EXPECT_GE(kept.size(), alike > 0 || motion > 0.005 ? 5u : 1u);
-        EXPECT_LT(kept.size(), count);
-        EXPECT_TRUE(std::count(gone.begin(), gone.end(), 0) == 0);
-        if (kept_before.empty()) kept_before = kept;
-        EXPECT_EQ(kept, kept_before) << kernels->isa;
+  EXPECT_GT(closed_up, 100u);
+}
+
+// Equally deep regions around a leaf in the order in which they were found, and as many as stand for nothing.
+TEST(NearRegions, OfEquallyDeepOnesTheFirstIsNext) {
+  for (const Kernels* kernels : every_level())
+    for (const std::size_t count : {1, 8, 13, 64, 99}) {
+      Patch patch(120);
+      for (std::size_t i = 0; i < count; ++i) {
+        const double a = 0.05 * static_cast<double>(i);
+        patch.gap[i] = -0.001, patch.nx[i] = std::cos(a), patch.ny[i] = std::sin(a), patch.nz[i] = 0;
       }
+      LeftRegions left{kernels->deepest_region(patch.near(), count), count};
+      for (std::size_t i = 0; i < count; ++i) {
+        const double a = 0.05 * static_cast<double>(i);
+        ASSERT_LT(left.deepest, left.count) << kernels->isa;
+        EXPECT_EQ(patch.nx[left.deepest], std::cos(a)) << kernels->isa << ' ' << i;
+        left = kernels->next_deepest_region(patch.near(), left.count, left.deepest, 0.01, -2, 0);
+      }
+      EXPECT_EQ(left.deepest, left.count);
     }
 }
 

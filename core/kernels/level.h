@@ -29,8 +29,8 @@
   std::size_t append_near_regions(const SphereRun& run, const double leaf[4], double margin,                 \
                                   const NearRegions& near, std::size_t count);                               \
   std::size_t deepest_region(const NearRegions& near, std::size_t count);                                    \
-  std::size_t next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,              \
-                                  double motion, double alike);                                              \
+  LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,              \
+                                  double motion, double alike, double most);                                 \
   void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out);                           \
   void filter_depth(const RowBand& band, const PointPlanes& in, float* change);                              \
   void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2], \

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kRounding = 1 + 1e-12;  // no pair within the margin is sorted out by the rounding of squares
 
+// One in so many has to be gone before the others close up: that takes time, later passes take less.
+constexpr std::size_t kCloseUp = 8;
+
 inline std::size_t in_whole_groups(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
@@ -19,6 +22,11 @@ inline std::size_t in_whole_groups(std::size_t count) {
 // Leaves numbers of the regions that may be near, the ways from their centres in the columns of the normal,
 // and their radii in that of the gap.
 #if defined(__AVX512F__)
+
+constexpr std::size_t kWidth = 8;
+inline unsigned equal(const double* p, double value) {
+  return _mm512_cmp_pd_mask(_mm512_loadu_pd(p), _mm512_set1_pd(value), _CMP_EQ_OQ);
+}
 
 std::size_t sort_out(const SphereRun& run, const double leaf[4], double margin, const NearRegions& to,
                      std::size_t n) {
@@ -70,6 +78,10 @@ inline unsigned bits(Mask mask) {
 }
 #endif
 
+inline unsigned equal(const double* p, double value) {
+  return bits(load(p) == Lanes{} + value);
+}
+
 std::size_t sort_out(const SphereRun& run, const double leaf[4], double margin, const NearRegions& to,
                      std::size_t n) {
   const Lanes zero = {}, cx = zero + leaf[0], cy = zero + leaf[1], cz = zero + leaf[2],
@@ -107,7 +119,39 @@ void measure(double leaf_radius, const NearRegions& near, std::size_t from, std:
     }
 }
 
-// Those whose gap turned out to be above the margin go; most often there are none.
+// Those with gaps above the margin go, and the others close up, with or without their numbers; of those whose
+// gaps turned out to be so most often there are none. What is written lies never behind what was read.
+#if defined(__AVX512F__)
+
+template <bool kNumbers>
+std::size_t within_margin(const NearRegions& near, double margin, std::size_t from, std::size_t to) {
+  const __m512d most = _mm512_set1_pd(margin);
+  std::size_t n = from;
+  for (std::size_t i = from; i < to; i += kLanes) {
+    const __m512d gap = _mm512_loadu_pd(near.gap + i);
+    const auto valid = static_cast<__mmask8>(to - i < kLanes ? (1u << (to - i)) - 1 : 0xffu);
+    const __mmask8 in = _mm512_mask_cmp_pd_mask(valid, gap, most, _CMP_LE_OQ);
+    const auto left = static_cast<std::size_t>(__builtin_popcount(in));
+    if (n == i && in == valid) {
+      n += left;
+      continue;
+    }
+    _mm512_storeu_pd(near.gap + n, _mm512_maskz_compress_pd(in, gap));
+    double* const columns[] = {near.nx, near.ny, near.nz};
+    for (double* column : columns)
+      _mm512_storeu_pd(column + n, _mm512_maskz_compress_pd(in, _mm512_loadu_pd(column + i)));
+    if (kNumbers) {
+      const auto at = [&](std::size_t j) { return reinterpret_cast<__m256i*>(near.number + j); };
+      _mm256_storeu_si256(at(n), _mm256_maskz_compress_epi32(in, _mm256_loadu_si256(at(i))));
+    }
+    n += left;
+  }
+  return n;
+}
+
+#else
+
+template <bool kNumbers>
 std::size_t within_margin(const NearRegions& near, double margin, std::size_t from, std::size_t to) {
   std::size_t n = from;
   for (std::size_t i = from; i < to; ++i) {
@@ -115,19 +159,22 @@ std::size_t within_margin(const NearRegions& near, double margin, std::size_t fr
     if (i != n) {
       near.gap[n] = near.gap[i];
       near.nx[n] = near.nx[i], near.ny[n] = near.ny[i], near.nz[n] = near.nz[i];
-      near.number[n] = near.number[i];
+      if (kNumbers) near.number[n] = near.number[i];
     }
     ++n;
   }
   return n;
 }
 
+#endif
+
 // The first of those with the least gap. Past the last one the column is infinite.
 std::size_t deepest(const double* gap, std::size_t count, double least) {
   if (!(least < __builtin_inf())) return count;
   std::size_t at = 0;
-  while (gap[at] != least) ++at;
-  return at;
+  unsigned same = equal(gap, least);
+  while (same == 0) same = equal(gap += kWidth, least), at += kWidth;
+  return at + static_cast<std::size_t>(__builtin_ctz(same));
 }
 
 }  // namespace
@@ -137,7 +184,7 @@ std::size_t append_near_regions(const SphereRun& run, const double leaf[4], doub
   const std::size_t end = sort_out(run, leaf, margin, near, count);
   if (end == count) return count;
   measure(leaf[3], near, count, end);
-  return within_margin(near, margin, count, end);
+  return within_margin<true>(near, margin, count, end);
 }
 
 std::size_t deepest_region(const NearRegions& near, std::size_t count) {
@@ -150,24 +197,30 @@ std::size_t deepest_region(const NearRegions& near, std::size_t count) {
   return deepest(gap, count, least);
 }
 
-std::size_t next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept, double motion,
-                                double alike) {
+LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept, double motion,
+                                double alike, double most) {
   const double g = near.gap[kept], kx = near.nx[kept], ky = near.ny[kept], kz = near.nz[kept];
   near.gap[kept] = __builtin_inf();
-  const double squared = motion * motion;
+  const double twice_squared = 2 * (motion * motion);
   const std::size_t end = in_whole_groups(count);
   double* gap = near.gap;
   const double *nx = near.nx, *ny = near.ny, *nz = near.nz;
   double least = __builtin_inf();
-#pragma omp simd reduction(min : least)
+  std::size_t left = 0;
+#pragma omp simd reduction(min : least) reduction(+ : left)
   for (std::size_t i = 0; i < end; ++i) {
     const double cosine = nx[i] * kx + (ny[i] * ky + nz[i] * kz);
     const double rise = gap[i] - g;
-    const bool goes = (rise * rise >= squared * (2 - 2 * cosine)) & (cosine >= alike);
+    const bool goes = ((rise * rise >= twice_squared * (1 - cosine)) & (cosine >= alike)) | !(gap[i] <= most);
     gap[i] = goes ? __builtin_inf() : gap[i];
     least = gap[i] < least ? gap[i] : least;
+    left += goes ? 0 : 1;
   }
-  return deepest(gap, count, least);
+  if (kCloseUp * left <= (kCloseUp - 1) * count) {
+    count = within_margin<false>(near, most, 0, count);
+    for (std::size_t i = count; i < in_whole_groups(count); ++i) gap[i] = __builtin_inf();
+  }
+  return {deepest(gap, count, least), count};
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

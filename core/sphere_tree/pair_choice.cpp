@@ -26,16 +26,16 @@ double PairChoice::within_m(double gap_m) const {
 std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {
   if (chosen_.size() + kMostOfLeaf > kRoom) keep_most_urgent(kRoom / 2);
   const NearRegions& near = found.regions;
-  std::size_t at = kernels_.deepest_region(near, found.count);
-  const std::uint32_t deepest = near.number[at];
-  const double least_m = near.gap[at], most_m = within_m(least_m);
+  LeftRegions left{kernels_.deepest_region(near, found.count), found.count};
+  const std::uint32_t deepest = near.number[left.deepest];
+  const double least_m = near.gap[left.deepest], most_m = within_m(least_m);
   const bool deep = is_deep(least_m);
   constexpr double kAny = -2;  // below every cosine
   const double motion_m = deep ? 2 * look_ahead_m_ : motion_m_, alike = deep ? kAlike : kAny;
-  for (std::size_t kept = 0; kept < kMostOfLeaf && at < found.count; ++kept) {
-    if (near.gap[at] > most_m) break;
+  for (std::size_t kept = 0; kept < kMostOfLeaf && left.deepest < left.count; ++kept) {
+    const std::size_t at = left.deepest;
     chosen_.push_back({leaf.number, near.gap[at], {near.nx[at], near.ny[at], near.nz[at]}, near.gap[at]});
-    at = kernels_.next_deepest_region(near, found.count, at, motion_m, alike);
+    left = kernels_.next_deepest_region(near, left.count, at, motion_m, alike, most_m);
   }
   return deepest;
 }
