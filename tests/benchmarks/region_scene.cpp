@@ -12,20 +12,38 @@ namespace remote_touch::benchmarks {
 
 namespace {
 
-constexpr double kTube_m = 0.007;
+constexpr double kTube_m = 0.007, kSpoke_m = 0.006;
+constexpr double kHub_m = 0.013, kHubHalfLength_m = 0.004;
 constexpr int kWidth = 640, kHeight = 480;
 constexpr double kFocal_px = 525;
 
-// Where a ray of the camera meets one of the rings, as its z; beyond the wall where it meets none. Steps as
-// long as the ring is away do not jump over it.
+double away_from_capsule(const Vec3& p, const Vec3& from, const Vec3& to, double radius_m) {
+  const Vec3 along = to - from;
+  const double share = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - from - share * along).norm() - radius_m;
+}
+
+// Of a place, in the wheel's frame: the ring, three spokes and a hub along its axis.
+double away_from_wheel(const Vec3& p) {
+  double away = std::hypot(std::hypot(p.x(), p.y()) - kRing_m, p.z()) - kTube_m;
+  for (const double turn : {0.25, 0.25 + 1.0 / 3, 0.25 + 2.0 / 3}) {
+    const double a = 2 * std::numbers::pi * turn;
+    const Vec3 rim(kRing_m * std::cos(a), kRing_m * std::sin(a), 0);
+    away = std::min(away, away_from_capsule(p, Vec3::Zero(), rim, kSpoke_m));
+  }
+  const Vec3 hub(0, 0, kHubHalfLength_m);
+  return std::min(away, away_from_capsule(p, -hub, hub, kHub_m));
+}
+
+// Where a ray of the camera meets one of the wheels, as its z; beyond the wall where it meets none. Steps as
+// long as the wheel is away do not jump over it.
 double depth_of_wheels(const Vec3& ray, double nearer_m) {
   double depth = 2;
   for (const double side : {-1.0, 1.0}) {
     const Vec3 middle(side * kWheelAside_m, 0, kWheelAway_m - nearer_m);
     double z = middle.z() - 0.1;
     while (z < middle.z() + 0.1) {
-      const Vec3 p = z * ray - middle;
-      const double away = std::hypot(std::hypot(p.x(), p.y()) - kRing_m, p.z()) - kTube_m;
+      const double away = away_from_wheel(z * ray - middle);
       if (away < 1e-6) depth = std::min(depth, z);
       if (away < 1e-6) break;
       z += away / ray.norm();

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kLookAhead_m = ToolParameters{}.look_ahead_m;
 constexpr double kSettled_m = 1e-4;
+constexpr double kAtRest_m = 1e-5;  // of the renderer sphere-tree by default
 constexpr int kLeaves = 112;
 
 // Made when it is first asked for: some take seconds.
@@ -165,7 +166,7 @@ class Ride {
       : tool_(tool),
         course_(course),
         contacts_(tool.leaves, kLookAhead_m, kernels),
-        motion_({}, *tool.body, tool.reach_m) {
+        motion_({.at_rest_m = kAtRest_m}, *tool.body, tool.reach_m) {
     contacts_.on_frame(wheels());
     pose_ = course.device(0);
     pose_.p_W.z() -= 0.3;
