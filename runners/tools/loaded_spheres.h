@@ -14,8 +14,9 @@ class LoadedSpheres final : public Renderer {
     ToolSettings tool{.mesh = "key"};
     int leaves = 112;
     // Regions are round: the motion nears its end by a share at a time, and a hundredth of a millimetre is
-    // less than a hand can feel.
-    ToolParameters motion{.at_rest_m = 1e-5};
+    // less than a hand can feel. Out of a frame that swallowed the tool about ten detections lead; the ticks
+    // that want many more slide along creases, and can go on in the next one.
+    ToolParameters motion{.detections_per_tick = 30, .at_rest_m = 1e-5};
   };
 
   // Throws InputError when the tool cannot be made.

@@ -23,7 +23,8 @@ namespace {
 
 constexpr double kLookAhead_m = ToolParameters{}.look_ahead_m;
 constexpr double kSettled_m = 1e-4;
-constexpr double kAtRest_m = 1e-5;  // of the renderer sphere-tree by default
+constexpr double kAtRest_m = 1e-5;  // these two as the renderer sphere-tree has them by default
+constexpr int kDetections = 30;
 constexpr int kLeaves = 112;
 
 // Made when it is first asked for: some take seconds.
@@ -117,6 +118,7 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Place
           std::size_t chosen = 0;
           for (auto _ : state) chosen = contacts.near(pose, 0).contacts.size();
           state.counters["pairs"] = static_cast<double>(collision.near(pose, kLookAhead_m, {}));
+          state.counters["leaves"] = static_cast<double>(contacts.regions().points().size());
           state.counters["contacts"] = static_cast<double>(chosen);
         });
   add(
@@ -166,7 +168,7 @@ class Ride {
       : tool_(tool),
         course_(course),
         contacts_(tool.leaves, kLookAhead_m, kernels),
-        motion_({.at_rest_m = kAtRest_m}, *tool.body, tool.reach_m) {
+        motion_({.detections_per_tick = kDetections, .at_rest_m = kAtRest_m}, *tool.body, tool.reach_m) {
     contacts_.on_frame(wheels());
     pose_ = course.device(0);
     pose_.p_W.z() -= 0.3;
