@@ -116,7 +116,12 @@ double unconverged_share(const Trace& trace) {
 
 double non_finite_share(const Trace& trace) {
   return share(trace, [&](std::size_t i) {
-    return !trace.proxy(i).allFinite() || !trace.force(i).allFinite() || !trace.normal_at(i).allFinite();
+    const bool tool = !trace.has_tool() ||
+                      (trace.torque(i).allFinite() && trace.tool_orientation_at(i).coeffs().allFinite());
+    const bool hand =
+        !trace.has_hand() || (trace.device_force(i).allFinite() && trace.device_torque(i).allFinite());
+    return !trace.proxy(i).allFinite() || !trace.force(i).allFinite() || !trace.normal_at(i).allFinite() ||
+           !tool || !hand;
   });
 }
 

@@ -32,7 +32,8 @@ double mean_steps(const Trace& trace);
 double largest_steps(const Trace& trace);
 // Share of the ticks that ended without convergence (4.8).
 double unconverged_share(const Trace& trace);
-// Share of ticks with a number that is not finite in position, force or normal.
+// Share of ticks with a number that is not finite in position, force or normal; and, where there is one, of a
+// tool in torque or orientation, of a simulated hand in what the device exerts.
 double non_finite_share(const Trace& trace);
 double largest_force_N(const Trace& trace);
 

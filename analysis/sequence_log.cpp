@@ -1,7 +1,5 @@
 #include "analysis/sequence_log.h"
 
-#include "core/rotation.h"
-
 namespace remote_touch {
 
 namespace {
@@ -9,11 +7,7 @@ namespace {
 void end(SequenceEntry& entry, const Trace& t, std::size_t tick, bool missed) {
   entry.ended_s = t.time_s[tick];
   entry.missed = missed;
-  if (!t.guidance_pulls[tick]) return;
-  entry.distance_m = (t.proxy(tick) - t.goal(tick)).norm();
-  if (t.has_tool())
-    entry.angle_rad =
-        rotation_vector(t.tool_orientation_at(tick) * t.goal_orientation_at(tick).conjugate()).norm();
+  entry.distance_m = t.ended_m[tick], entry.angle_rad = t.ended_rad[tick];
 }
 
 }  // namespace

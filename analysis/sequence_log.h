@@ -14,7 +14,8 @@ struct SequenceEntry {
   double began_s = 0;
   double ended_s = std::numeric_limits<double>::quiet_NaN();
   bool missed = false;  // ended by its deadline
-  // From the tool to the goal of guidance when it ended; NaN where nothing pulled, or it has not ended.
+  // From the tool to its goal when it ended; NaN for a step without one. Of steps that ended in one tick all
+  // have that of the first with a goal.
   double distance_m = std::numeric_limits<double>::quiet_NaN();
   double angle_rad = std::numeric_limits<double>::quiet_NaN();
 };

@@ -52,6 +52,7 @@ void Trace::append_guidance(const GuidanceOutput& guidance) {
   sequence_step.push_back(guidance.sequence_step);
   sequence_running.push_back(guidance.sequence_running ? 1 : 0);
   sequence_missed.push_back(guidance.sequence_missed);
+  ended_m.push_back(guidance.ended_m), ended_rad.push_back(guidance.ended_rad);
 }
 
 void Trace::append_hand(const DeviceState& device, const HandState& hand) {
@@ -167,6 +168,13 @@ std::vector<Column> Trace::guidance_columns() const {
       {"sequence_step", "1", "current step of the task, from 0", sequence_step, 1, {}},
       {"sequence_running", "1", "the step has begun", sequence_running, 1, {"no", "yes"}},
       {"sequence_missed", "1", "steps that ended by their deadline so far", sequence_missed, 1, {}},
+      {"sequence_distance",
+       "m",
+       "from the tool to the goal of the step that ended, else NaN",
+       ended_m,
+       1,
+       {}},
+      {"sequence_angle", "rad", "between the tool and the goal of the step that ended", ended_rad, 1, {}},
   };
 }
 

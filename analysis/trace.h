@@ -28,7 +28,7 @@ struct Trace {
   std::vector<std::int32_t> active_constraints, contact_clusters, detections, budget_exhausted,
       disabled_points;
   // With guidance or a sequence; else empty.
-  std::vector<double> guidance_force_N, guidance_torque_Nm, goal_m, goal_orientation;
+  std::vector<double> guidance_force_N, guidance_torque_Nm, goal_m, goal_orientation, ended_m, ended_rad;
   std::vector<std::int32_t> guidance_pulls, sequence_step, sequence_running, sequence_missed;
   // With a simulated operator or device; else empty.
   std::vector<double> intended_m, intended_orientation, device_force_N, device_torque_Nm;

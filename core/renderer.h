@@ -45,6 +45,9 @@ struct GuidanceOutput {
   int sequence_step = 0;          // the task's current step; as many as it has after the last
   bool sequence_running = false;  // the step has begun
   int sequence_missed = 0;        // steps that ended by their deadline so far
+  // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
+  double ended_m = std::numeric_limits<double>::quiet_NaN();
+  double ended_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Metres, newtons, world frame. force_N acts on the hand that holds the device.

@@ -137,6 +137,12 @@ Experiment Experiment::from_json(Json configuration) {
   if (!contradiction.empty()) throw InputError(contradiction);
   if (experiment.guidance_ && !experiment.has_guidance())
     throw InputError("guidance", "allowed where a fixture has role = guidance");
+  if (experiment.has_guidance() && !experiment.guidance_) experiment.guidance_.emplace();
+  for (std::size_t i = 0; i < experiment.sequence_.size(); ++i)
+    if (!experiment.can_be_pressed(experiment.sequence_[i]))
+      throw InputError(
+          "sequence." + std::to_string(i) + ".button = " + std::to_string(experiment.sequence_[i].button),
+          "allowed a button that operator.presses presses");
   return experiment;
 }
 
@@ -196,13 +202,22 @@ bool Experiment::has_guidance() const {
                      [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
 }
 
+// A simulated device has no other buttons than those that the operator's settings press.
+bool Experiment::can_be_pressed(const SequenceStep& step) const {
+  if (step.start != StepStart::button && step.done != StepEnd::button) return true;
+  const std::vector<double> presses = operator_ ? operator_->presses : std::vector<double>{};
+  for (std::size_t i = 1; i < presses.size(); i += 3)
+    if (presses[i] == step.button) return true;
+  return false;
+}
+
 std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
                                                      std::shared_ptr<FixtureSwitches> switches) const {
   auto renderer = renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
   if (sequence_.empty() && !has_guidance()) return renderer;
   if (!switches) switches = std::make_shared<FixtureSwitches>();
-  return std::make_unique<GuidedRenderer>(std::move(renderer), guidance_.value_or(GuidanceSettings{}),
-                                          fixture_values(), sequence_, std::move(switches));
+  return std::make_unique<GuidedRenderer>(std::move(renderer), *guidance_, fixture_values(), sequence_,
+                                          std::move(switches));
 }
 
 FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {

@@ -64,6 +64,7 @@ class Experiment {
  private:
   std::vector<FixtureValues> fixture_values() const;
   bool has_guidance() const;
+  bool can_be_pressed(const SequenceStep& step) const;
 
   RunSettings settings_;
   Part<ScenarioEntry> scenario_;

@@ -55,8 +55,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto switches = std::make_shared<FixtureSwitches>();
   const auto renderer = experiment.build_renderer(kernels, switches);
-  FrameStream frames(*scenario, experiment.build_processing(kernels, switches), experiment.settings().delivery,
-                     experiment.settings().key, options.hash_frames);
+  FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
+                     experiment.settings().delivery, experiment.settings().key, options.hash_frames);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
 

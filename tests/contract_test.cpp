@@ -114,8 +114,8 @@ TEST(RendererContract, AGuidedStepAllocatesNothing) {
   for (const RendererEntry& entry : renderers()) {
     GuidedRenderer renderer(build(entry), {}, fixtures, {lock, activate},
                             std::make_shared<FixtureSwitches>());
-    Frame frame = scenes::frame(scenes::flat_grid(100));
-    frame.guidance = {{1, 100, Vec3(0.2, 0, 0), Vec3::UnitY()}};
+    Frame frame = scenes::frame(grid_for(entry, 100));
+    frame.guidance = {{100, Vec3(0.2, 0, 0), Vec3::UnitY()}};
     renderer.on_frame(frame);
     RenderOutput out;
     for (int tick = 0; tick < 300; ++tick) {

@@ -69,7 +69,7 @@ GuidedRenderer guided(Inner kind, const std::vector<FixtureValues>& fixtures,
 }
 
 GuidanceTarget target(const Vec3& mean_W) {
-  return {1, 100, mean_W, Vec3::Zero()};
+  return {100, mean_W, Vec3::Zero()};
 }
 
 Frame frame(std::vector<GuidanceTarget> targets, int index = 0) {
@@ -319,7 +319,7 @@ TEST_P(EveryRenderer, AStepAllocatesNothing) {
              {timed, step(lock, "table", button), until_reached(step(activate, "right", button)),
               step(unlock, "table"), step(release, "right", button)},
              s);
-  r.on_frame(frame({target(kLeft), {1, 100, kRight, Vec3::UnitX()}}));
+  r.on_frame(frame({target(kLeft), {100, kRight, Vec3::UnitX()}}));
   RenderOutput out;
   for (int i = 0; i < 400; ++i) {
     const DeviceState d = device({0, 0.08 - 3e-4 * i, 0}, {0, 0.01 * i, 0}, i % 40 == 20 ? 1 : 0);

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "core/rotation.h"
-
 namespace remote_touch {
 namespace {
 
@@ -13,20 +11,16 @@ struct Tick {
   int step;
   bool running;
   int missed;
-  bool pulls = false;
+  double ended_m = std::nan("");
 };
 
-// A tick every millisecond; the tool 3 mm and 0.1 rad from the goal.
+// A tick every millisecond.
 Trace trace_of(const std::vector<Tick>& ticks) {
   Trace trace;
   for (const Tick& tick : ticks) {
     RenderOutput out;
-    out.tool.emplace();
-    out.tool->orientation_W = rotation({0.1, 0, 0});
-    out.proxy_W = {0.003, 0, 0};
     GuidanceOutput guidance;
-    guidance.pulls = tick.pulls;
-    if (tick.pulls) guidance.goal_W.setZero(), guidance.goal_orientation_W.setIdentity();
+    guidance.ended_m = tick.ended_m, guidance.ended_rad = 30 * tick.ended_m;
     guidance.sequence_step = tick.step, guidance.sequence_running = tick.running;
     guidance.sequence_missed = tick.missed;
     out.guidance = guidance;
@@ -43,13 +37,13 @@ TEST(SequenceLog, IsEmptyWithoutATask) {
 }
 
 TEST(SequenceLog, TellsWhenAStepBeganAndEnded) {
-  const auto log = sequence_log(trace_of({{0, false, 0}, {0, true, 0}, {0, true, 0}, {1, false, 0, true}}));
+  const auto log = sequence_log(trace_of({{0, false, 0}, {0, true, 0}, {0, true, 0}, {1, false, 0, 0.003}}));
   ASSERT_EQ(log.size(), 1u);
   EXPECT_EQ(log[0].began_s, 0.001);
   EXPECT_EQ(log[0].ended_s, 0.003);
   EXPECT_FALSE(log[0].missed);
-  EXPECT_NEAR(log[0].distance_m, 0.003, 1e-15);
-  EXPECT_NEAR(log[0].angle_rad, 0.1, 1e-12);
+  EXPECT_EQ(log[0].distance_m, 0.003);
+  EXPECT_EQ(log[0].angle_rad, 30 * 0.003);
 }
 
 // In one tick the first step comes to its deadline, the second is done at once and the third begins.
@@ -62,7 +56,7 @@ TEST(SequenceLog, OfSeveralInATickOnlyTheOneThatRanIsMissed) {
   EXPECT_EQ(log[1].ended_s, 0.001);
   EXPECT_EQ(log[2].step, 2);
   EXPECT_TRUE(std::isnan(log[2].ended_s));
-  EXPECT_TRUE(std::isnan(log[0].distance_m)) << "nothing pulls";
+  EXPECT_TRUE(std::isnan(log[0].distance_m)) << "has no goal";
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 #include "core/rotation.h"
 #include "tests/box_tool.h"
@@ -137,11 +139,14 @@ TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndToldOfOnce) {
 
 TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
   ToolParameters p;
-  for (const Parameter& parameter : region_parameters(p)) {
-    EXPECT_NE(parameter.name, "contact_rule");
-    EXPECT_NE(parameter.name, "disk_share");
+  std::set<std::string> all, kept;
+  for (const Parameter& parameter : parameters(p)) all.insert(parameter.name);
+  for (const Parameter& parameter : region_parameters(p)) kept.insert(parameter.name);
+  for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_share",
+                            "velocity_estimate", "longest_prediction_s"}) {
+    EXPECT_TRUE(all.erase(other)) << other;
   }
-  EXPECT_EQ(region_parameters(p).size() + 6, parameters(p).size());
+  EXPECT_EQ(kept, all);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "runners/tools/cache_file.h"
 #include "runners/tools/tool_loading.h"
 #include "tests/test_files.h"
 
@@ -63,7 +64,7 @@ TEST_F(SpheresCacheTest, EveryNumberOfLeavesHasItsOwn) {
   EXPECT_GT(load_tool_of_spheres(slab_, 40).spheres->spheres.leaves().size(), 8u);
 }
 
-// Cut, changed, or with counts that are not those of its leaves: it is made anew.
+// Cut or changed: it is made anew.
 TEST_F(SpheresCacheTest, ADamagedFileIsMadeAnew) {
   const ToolOfSpheres fresh = load_tool_of_spheres(slab_, 20);
   const fs::path file = spheres_file();
@@ -78,6 +79,19 @@ TEST_F(SpheresCacheTest, ADamagedFileIsMadeAnew) {
   }
   expect_equal(*load_tool_of_spheres(slab_, 20).spheres, *fresh.spheres);
   EXPECT_EQ(bytes_of(file), good);
+}
+
+// A whole file of this kind whose counts are not those of its leaves, which no honest writer makes.
+TEST_F(SpheresCacheTest, CountsThatDoNotFitAreRefused) {
+  const std::vector<double> leaves(8, 0.01);
+  for (const std::vector<std::uint32_t>& counts : {std::vector<std::uint32_t>{1}, {2, 1}, {1, 2}, {3}, {}}) {
+    const auto put = [&](Packing& pack) {
+      pack.list(leaves), pack.list(counts);
+      for (int i = 0; i < 3; ++i) pack.value(0.0);
+    };
+    ASSERT_TRUE(write_cache_file(folder_ / "cache", {"spheres", kSpheresFormat}, "key", put));
+    EXPECT_FALSE(read_spheres(folder_ / "cache", "key"));
+  }
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace remote_touch {
 
 // Of one fixture in one frame; world frame.
 struct GuidanceTarget {
-  double strength = 1;         // of its rule when the frame was captured, 0 to 1
   std::size_t points = 0;      // that were picked; 0: the frame shows no target
   Vec3 mean_W = Vec3::Zero();  // of their places, weighted by their shares
   // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for
   // fewer than three points, or where they do not lie in a plane: spread along it at most kFlat times as far
   // as in the plane's shorter direction, and in that more than kLine times as far as in the longer.
   Vec3 normal_W = Vec3::Zero();
+  double strength = 1;  // of its rule when the frame was captured, 0 to 1
   static constexpr double kFlat = 0.25, kLine = 1e-3;
 
   bool is_seen() const { return points > 0; }

@@ -27,11 +27,19 @@ std::string labels_of(const std::vector<FixtureValues>& fixtures) {
   return text.empty() ? ", and none has one" : text;
 }
 
-bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& label, FixtureAction action) {
-  const auto names = [&](const SequenceStep& s) {
+// The first step that does something with a fixture.
+auto first_naming(const std::vector<SequenceStep>& steps, const std::string& label) {
+  return std::find_if(steps.begin(), steps.end(), [&](const SequenceStep& s) {
     return s.action != FixtureAction::wait && !label.empty() && s.fixture == label;
-  };
-  const auto first = std::find_if(steps.begin(), steps.end(), names);
+  });
+}
+
+bool is_named(const std::vector<SequenceStep>& steps, const std::string& label) {
+  return first_naming(steps, label) != steps.end();
+}
+
+bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& label, FixtureAction action) {
+  const auto first = first_naming(steps, label);
   return first != steps.end() && first->action == action;
 }
 
@@ -46,6 +54,13 @@ std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vect
       if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
         return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label +
                "\": allowed a label of its own, fixtures." + std::to_string(j) + " has this one";
+  std::size_t unnamed = 0;
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    if (fixtures[i].role != FixtureRole::guidance || is_named(steps, fixtures[i].label)) continue;
+    if (++unnamed > 1)
+      return "fixtures." + std::to_string(i) +
+             ".role = guidance: allowed once where no step of a sequence activates or releases it";
+  }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].fixture.empty()) continue;
     const std::string at = "sequence." + std::to_string(i);
@@ -125,19 +140,36 @@ void GuidedRenderer::act(const SequenceStep& step) {
   if (activates) guide->offset_m = step.offset_m;
 }
 
-// Of the tool, not of the device: it is the tool that the robot follows.
-bool GuidedRenderer::reached(const SequenceStep& step, const RenderOutput& out) const {
-  if (step.done != StepEnd::reached) return false;
+// Whose goal the step waits for.
+const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) const {
+  if (step.done != StepEnd::reached) return nullptr;
   const std::size_t fixture = number_of(step.fixture);
-  for (const Guide& guide : guides_) {
-    if (guide.fixture != fixture) continue;
-    const std::optional<ToolPose> there = goal(guide);
-    if (!there || !((out.proxy_W - there->p_W).norm() <= guide.reached_m)) return false;
-    if (!out.tool) return true;
-    const Vec3 turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate());
-    return turn.norm() <= settings_.reached_deg * kRadiansPerDegree;
+  const auto found = std::find_if(guides_.begin(), guides_.end(),
+                                  [&](const Guide& guide) { return guide.fixture == fixture; });
+  return found == guides_.end() ? nullptr : &*found;
+}
+
+// From the tool, not from the device: it is the tool that the robot follows. A proxy has no orientation.
+std::optional<GuidedRenderer::Left> GuidedRenderer::left(const Guide& guide, const RenderOutput& out) const {
+  const std::optional<ToolPose> there = goal(guide);
+  if (!there || !out.proxy_W.allFinite()) return {};
+  double turn = 0;
+  if (out.tool) turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate()).norm();
+  return Left{(out.proxy_W - there->p_W).norm(), turn};
+}
+
+void GuidedRenderer::advance(double time_s, RenderOutput& out) {
+  while (true) {
+    if (sequence_.begins(time_s)) act(sequence_.step());
+    if (sequence_.is_over()) return;
+    const Guide* const guide = goal_of(sequence_.step());
+    const std::optional<Left> way = guide ? left(*guide, out) : std::nullopt;
+    const bool reached =
+        way && way->m <= guide->reached_m && way->rad <= settings_.reached_deg * kRadiansPerDegree;
+    if (!sequence_.ends(time_s, reached)) return;
+    if (way && std::isnan(out.guidance->ended_m))
+      out.guidance->ended_m = way->m, out.guidance->ended_rad = way->rad;
   }
-  return false;
 }
 
 void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
@@ -158,10 +190,7 @@ RenderOutput GuidedRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out = inner_->step(device, time_s);
   out.guidance.emplace();
   sequence_.look_at(device.buttons);
-  while (true) {
-    if (sequence_.begins(time_s)) act(sequence_.step());
-    if (sequence_.is_over() || !sequence_.ends(time_s, reached(sequence_.step(), out))) break;
-  }
+  advance(time_s, out);
   if (const std::optional<ToolPose> held = held_by(device)) pull(*held, out);
   out.guidance->sequence_step = sequence_.current();
   out.guidance->sequence_running = sequence_.is_running();

@@ -16,7 +16,8 @@
 namespace remote_touch {
 
 // What is wrong about a task with these fixtures, as one line; empty when they fit together: labels are
-// unique and known, forbidden fixtures are locked and guidance is activated.
+// unique and known, forbidden fixtures are locked and guidance is activated; of guidance that no step names
+// there is one at most.
 std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
 
 class GuidedRenderer final : public Renderer {
@@ -42,7 +43,12 @@ class GuidedRenderer final : public Renderer {
   };
   void begin_with(const std::vector<FixtureValues>& fixtures);
   void act(const SequenceStep& step);
-  bool reached(const SequenceStep& step, const RenderOutput& out) const;
+  struct Left {
+    double m, rad;
+  };
+  std::optional<Left> left(const Guide& guide, const RenderOutput& out) const;
+  const Guide* goal_of(const SequenceStep& step) const;
+  void advance(double time_s, RenderOutput& out);
   void pull(const ToolPose& device, RenderOutput& out) const;
   std::size_t number_of(const std::string& label) const;
   Guide* guide_of(std::size_t fixture);

@@ -42,8 +42,9 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
       std::printf(", has not ended");
     else
       std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
-    if (!std::isnan(entry.distance_m)) std::printf(", %.2g m from the goal", entry.distance_m);
-    if (!std::isnan(entry.angle_rad)) std::printf(" and %.2g deg", entry.angle_rad / kRadiansPerDegree);
+    if (step.done == StepEnd::reached && !std::isnan(entry.distance_m))
+      std::printf(", %.2g m and %.2g deg from the goal", entry.distance_m,
+                  entry.angle_rad / kRadiansPerDegree);
     std::puts("");
   }
 }

@@ -148,6 +148,11 @@ Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
 
 void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& numbers, double wander) {
   const std::string object = kNames[k];
+  const auto empty = [](const MaskNumbers& m) { return !(m.picked > 0); };
+  if (std::any_of(numbers.begin(), numbers.end(), empty)) {
+    figure.claims.push_back(claim_not_run(figure.name, object, "a frame in which nothing is picked"));
+    return;
+  }
   const auto least = [&](auto&& of) {
     double value = std::numeric_limits<double>::infinity();
     for (const MaskNumbers& n : numbers) value = std::min(value, of(n));

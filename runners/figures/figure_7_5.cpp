@@ -91,7 +91,6 @@ void add_panels(Figure& figure, const ValveTask& task, int column) {
   for (const Panel& panel : {force, torque, axes}) figure.panels.push_back(panel);
 }
 
-// Where guidance leads against where the wheel is: the mean of the points that the camera sees lies in front.
 Table target_table(const ValveTask& task) {
   const Trace& t = task.trace;
   std::vector<std::vector<double>> rows;

@@ -75,8 +75,10 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   const std::string name = figure.name;
   claim(claim_at_least(name, "force of the organ's region, pushed towards it", "-",
                        t.force(tick_of(t, kPushed_s)).norm(), 1, "N"));
-  claim(claim_at_least(name, "least distance of the tool's mesh to a point of the organ, regions of 20 mm",
-                       "-", least_point_distance_m(task, kernels), kRegion_m - 1e-3, "m"));
+  claim(claim_at_least(
+      name,
+      "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
+      "-", least_point_distance_m(task, kernels), kRegion_m - 1e-3, "m"));
   claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
                       "m"));
   const std::vector<SequenceEntry> log = sequence_log(t);

@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// The tool that an experiment's renderer, which is "tool", moves.
+// The tool that an experiment's 6-DOF renderer moves.
 std::shared_ptr<const VoxelTool> tool_of(const Experiment& experiment);
 
 // What the renderer gets of a frame: filtered and with normals, where the experiment asks for it.

@@ -48,7 +48,8 @@ std::vector<Vec3> boundary(const SphereTree& regions) {
   for (std::size_t leaf = 0; leaf < regions.leaves().size(); leaf += kRegionsEvery)
     for (int i = 0; i < kRaysOfRegion; ++i) {
       const double y = 1 - (2 * i + 1.0) / kRaysOfRegion, r = std::sqrt(1 - y * y);
-      const Vec3 along(r * std::cos(golden * i), y, r * std::sin(golden * i));
+      const auto [sine, cosine] = sin_cos(golden * i);
+      const Vec3 along(r * cosine, y, r * sine);
       const Vec3& from = regions.leaves()[leaf].centre;
       const Vec3 place = from + way_out_m(regions, from, along) * along;
       if (place.z() > 0) places.push_back(place);

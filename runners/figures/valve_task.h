@@ -24,11 +24,12 @@ struct NamedTask {
   std::vector<std::string> overrides = {};
 };
 
-// Side by side. pre: their scenario is valve-tank.
+// Side by side. Without a tank where the scenario is another.
 std::vector<ValveTask> run_tasks(const Laboratory& laboratory, const std::vector<NamedTask>& tasks);
 
 // Distance from the tool's mesh to the true surface of a valve: at the vertices and the middles of the
-// triangles, so that it can be larger than the true one by a few hundredths of a millimetre.
+// triangles, so that it can be larger than the true one by a few hundredths of a millimetre. pre: there is a
+// tank; also for what follows.
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick);
 // The least of it over the ticks, of which every tenth is looked at.
 double least_clearance_m(const ValveTask& task, Valve valve);

@@ -11,8 +11,12 @@ Parameters parameters(LoadedSpheres::Settings& s) {
 }
 
 std::string conflict(const LoadedSpheres::Settings& s) {
-  const std::string tool = conflict(s.tool);
-  return tool.empty() ? conflict(s.motion) : tool;
+  if (const std::string tool = conflict(s.tool); !tool.empty()) return tool;
+  // PairChoice lets go what no motion of half the look-ahead can run into.
+  if (2 * s.motion.longest_step_m > s.motion.look_ahead_m)
+    return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) +
+           ": allowed twice longest_step_m or more";
+  return conflict(s.motion);
 }
 
 std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s) {
