@@ -168,9 +168,9 @@ std::size_t within_margin(const NearRegions& near, double margin, std::size_t fr
 
 #endif
 
-// The first of those with the least gap. Past the last one the column is infinite.
-std::size_t deepest(const double* gap, std::size_t count, double least) {
-  if (!(least < __builtin_inf())) return count;
+// The first of those with the least gap; pre: there is one. Whether there is must not be asked of the least
+// gap: of no numbers an OpenMP minimum may be the largest finite one, as clang++ has it, instead of infinite.
+std::size_t deepest(const double* gap, double least) {
   std::size_t at = 0;
   unsigned same = equal(gap, least);
   while (same == 0) same = equal(gap += kWidth, least), at += kWidth;
@@ -188,13 +188,14 @@ std::size_t append_near_regions(const SphereRun& run, const double leaf[4], doub
 }
 
 std::size_t deepest_region(const NearRegions& near, std::size_t count) {
+  if (count == 0) return 0;
   const std::size_t end = in_whole_groups(count);
   for (std::size_t i = count; i < end; ++i) near.gap[i] = __builtin_inf();
   const double* gap = near.gap;
   double least = __builtin_inf();
 #pragma omp simd reduction(min : least)
   for (std::size_t i = 0; i < end; ++i) least = gap[i] < least ? gap[i] : least;
-  return deepest(gap, count, least);
+  return deepest(gap, least);
 }
 
 LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept, double motion,
@@ -220,7 +221,7 @@ LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std:
     count = within_margin<false>(near, most, 0, count);
     for (std::size_t i = count; i < in_whole_groups(count); ++i) gap[i] = __builtin_inf();
   }
-  return {deepest(gap, count, least), count};
+  return {left > 0 ? deepest(gap, least) : count, count};
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL
