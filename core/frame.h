@@ -20,7 +20,8 @@ struct Frame {
   std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
 };
 
-// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit each.
+// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit
+// each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();

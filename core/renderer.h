@@ -68,7 +68,7 @@ struct RenderOutput {
   int contact_count = 0;                // points within r2
   int frame_index = -1;                 // newest frame in use, -1 before the first
   RenderStatus status = RenderStatus::ok;
-  std::optional<ToolOutput> tool;  // a 3-DOF renderer has none
+  std::optional<ToolOutput> tool;          // a 3-DOF renderer has none
   std::optional<GuidanceOutput> guidance;  // of experiments with guidance or a sequence
 };
 

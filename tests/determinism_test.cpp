@@ -26,17 +26,16 @@ struct Case {
   std::vector<std::string> overrides;
 };
 
-const Case kCases[] = {
-    {"fig4.11", {"duration_s=2"}},
-    {"fig4.12", {}},
-    {"fig4.12", {"scenario.noise_sigma_m=0.01", "seed=11"}},
-    {"fig4.14", {"duration_s=1"}},
-    {"fig4.16", {"duration_s=0.5"}},
-    {"fig6.3", {}},
-    {"fig6.3", {"renderer.contact_rule=voxels"}},
-    {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}},
-    {"fig7.5", {"duration_s=2.4", "scenario.frame_rate_hz=5"}},
-    {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}}};
+const Case kCases[] = {{"fig4.11", {"duration_s=2"}},
+                       {"fig4.12", {}},
+                       {"fig4.12", {"scenario.noise_sigma_m=0.01", "seed=11"}},
+                       {"fig4.14", {"duration_s=1"}},
+                       {"fig4.16", {"duration_s=0.5"}},
+                       {"fig6.3", {}},
+                       {"fig6.3", {"renderer.contact_rule=voxels"}},
+                       {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}},
+                       {"fig7.5", {"duration_s=2.4", "scenario.frame_rate_hz=5"}},
+                       {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}}};
 
 TEST(Determinism, EveryInstructionSet) {
   for (const Case& c : kCases) {

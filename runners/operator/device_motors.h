@@ -22,8 +22,8 @@ inline std::string conflict(const MotorSettings&) {
 }
 
 // What the device exerts on the hand of a wrench that it is told to: forces along the base axes and torques
-// about the axes of the handle, which are those of the tool, as far as there are motors; the rest is cut to its
-// largest length.
+// about the axes of the handle, which are those of the tool, as far as there are motors; the rest is cut to
+// its largest length.
 Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& told);
 
 }  // namespace remote_touch
