@@ -20,7 +20,7 @@ constexpr const char* kTask = R"({"scenario": {"name": "flat-grid"},
     "sequence": [{"action": "lock", "fixture": "table", "not_before_s": 0.1},
                  {"action": "activate", "fixture": "valve", "start": "button", "button": 2, "done": "reached",
                   "deadline_s": 4, "offset_m": [0, 0.1, 0]},
-                 {"action": "wait", "done": "button"}],
+                 {"action": "wait", "done": "button", "button": 2}],
     "renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"},
     "operator": {"mass_kg": 0.7, "grip": [[0, 1], [2, 0]], "presses": [[1, 2, 0.1]]},
     "device": {"turns_x": false, "largest_force_N": 8}})";
@@ -93,8 +93,15 @@ TEST(ExperimentSections, OnlyAnExperimentWithATaskOrGuidanceIsGuided) {
   };
   EXPECT_TRUE(guided({}));
   EXPECT_TRUE(guided({"sequence=[]"}));
-  EXPECT_TRUE(guided({"fixtures=[]", R"(sequence=[{"action": "wait"}])"}));
-  EXPECT_FALSE(guided({"sequence=[]", "fixtures=[]"}));
+  EXPECT_TRUE(guided({"fixtures=[]", "guidance=null", R"(sequence=[{"action": "wait"}])"}));
+  EXPECT_FALSE(guided({"sequence=[]", "fixtures=[]", "guidance=null"}));
+}
+
+// What a run was made with must be told by its result, also where it was left out.
+TEST(ExperimentSections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
+  const Json json = resolved({"guidance=null"});
+  expect_complete(json["guidance"], defaults<GuidanceSettings>());
+  EXPECT_EQ(json["guidance"]["standoff_m"], GuidanceSettings{}.standoff_m);
 }
 
 // --- refused ---
@@ -148,6 +155,17 @@ TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
             "sequence.1.action = \"release\": allowed lock, unlock for a fixture with role = forbidden");
   EXPECT_EQ(why(R"(sequence.2={"action": "wait", "done": "reached", "fixture": "table"})"),
             "sequence.2.action = \"wait\": allowed lock, unlock for a fixture with role = forbidden");
+  EXPECT_EQ(why("sequence.2.button=3"),
+            "sequence.2.button = 3: allowed a button that operator.presses presses");
+  EXPECT_EQ(why("operator=null"), "sequence.1.button = 2: allowed a button that operator.presses presses");
+  EXPECT_EQ(resolved({R"(sequence=[{"action": "wait"}])"})["sequence"].size(), 1u);  // one needs no step
+  EXPECT_EQ(refusal([] {
+              task({"sequence=[]", R"(fixtures.0={"name": "everywhere", "role": "guidance"})"});
+            }),
+            "fixtures.1.role = guidance: allowed once where no step of a sequence activates or releases it");
+  EXPECT_EQ(why("sequence.0.offset_m=[0,0,1]"),
+            "sequence.0.offset_m: allowed other than 0 for action = activate only");
+  EXPECT_EQ(why("sequence.0.deadline_s=1"), "sequence.0.deadline_s = 1.000000: allowed 0 for done = at-once");
   // Fixtures without a label are not mixed up.
   EXPECT_EQ(resolved({"fixtures.0.label=", "fixtures.1.label=", "sequence=[]"})["fixtures"].size(), 2u);
 }
