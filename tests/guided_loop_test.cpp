@@ -157,7 +157,7 @@ TEST(GuidedLoop, TheTraceHasGuidanceAndHandWhereThereAreSuch) {
     return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
   };
   const Trace all = beside_a_goal({}, 0.01), scripted = beside_a_goal({"operator=null"}, 0.01),
-              unguided = beside_a_goal({"fixtures=[]", "operator=null", "device={}"}, 0.01);
+              unguided = beside_a_goal({"fixtures=[]", "guidance=null", "operator=null", "device={}"}, 0.01);
   EXPECT_TRUE(has(all, "guidance_force") && has(all, "sequence_step"));
   EXPECT_TRUE(has(all, "intended_position") && has(all, "buttons"));
   EXPECT_TRUE(has(scripted, "guidance_force") && !has(scripted, "intended_position"));

@@ -124,6 +124,7 @@ bool carries_unit(const std::string& name) {
                                               "colour_noise",
                                               "dropout",
                                               "approach_axis",
+                                              "tool_leaves",
                                               "fewest_points",
                                               "button",
                                               "share"};
