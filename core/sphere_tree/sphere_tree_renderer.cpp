@@ -11,7 +11,6 @@ namespace remote_touch {
 namespace {
 
 constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
-constexpr double kTouch_m = 1e-4;      // as the look-ahead rule has it
 
 double reach_m(const SphereTree& spheres) {
   double reach = 0;
@@ -20,8 +19,8 @@ double reach_m(const SphereTree& spheres) {
 }
 
 ContactState state_of(double gap_m) {
-  if (gap_m < -kTouch_m) return ContactState::entrenched;
-  return gap_m < kTouch_m ? ContactState::contact : ContactState::free;
+  if (gap_m < -RegionContacts::kTouch_m) return ContactState::entrenched;
+  return gap_m < RegionContacts::kTouch_m ? ContactState::contact : ContactState::free;
 }
 
 }  // namespace

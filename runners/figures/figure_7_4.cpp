@@ -14,7 +14,7 @@ constexpr double kRegion_m = 0.04;
 constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // in the middle of the two pushes
 constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
 
-// The same push, beside the left valve's middle and 45 mm deeper.
+// A push beside the left valve's middle, 6 cm deeper than the first.
 const char* const kOffCentre =
     "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
     "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
