@@ -124,13 +124,18 @@ struct PosedField {
 };
 
 // Spheres with consecutive numbers, first of all the one that is named; padded with far-away ones of radius 0
-// to a multiple of kLanes.
+// to a multiple of kLanes. Of each group, kLanes group .. kLanes group + kLanes - 1, the box around the
+// centres and the largest radius, without the padding; these columns end with groups that are far away, to a
+// multiple of kLanes too.
 struct SphereRun {
   const double* x;
   const double* y;
   const double* z;
   const double* radius;
-  std::size_t padded_count;
+  const double* low[3];
+  const double* high[3];
+  const double* most_radius;
+  std::size_t padded_groups;
   std::uint32_t first;
 };
 

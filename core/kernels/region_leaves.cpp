@@ -1,6 +1,6 @@
-// One leaf of a tool against a patch of forbidden regions, 7.4.1, and which of the pairs found matter. Pairs
-// that are far apart are sorted out without a root; what is left is written close together, so that roots and
-// divisions are taken for it alone.
+// One leaf of a tool against a patch of forbidden regions, 7.4.1, and which of the pairs found matter. Groups
+// of regions whose boxes are too far away are passed over, and pairs that are far apart sorted out without a
+// root; what is left is written close together, so that roots and divisions are taken for it alone.
 #include <immintrin.h>
 #include <math.h>
 
@@ -19,8 +19,10 @@ inline std::size_t in_whole_groups(std::size_t count) {
   return (count + kLanes - 1) / kLanes * kLanes;
 }
 
-// Leaves numbers of the regions that may be near, the ways from their centres in the columns of the normal,
-// and their radii in that of the gap.
+// boxes_near() tells of kWidth groups which can hold a region that sort_group() would leave: each of its
+// terms is rounded from one that is no larger, and its reach is no smaller. sort_group() leaves numbers of
+// the regions of a group that may be near, the ways from their centres in the columns of the normal, and
+// their radii in that of the gap.
 #if defined(__AVX512F__)
 
 constexpr std::size_t kWidth = 8;
@@ -28,30 +30,50 @@ inline unsigned equal(const double* p, double value) {
   return _mm512_cmp_pd_mask(_mm512_loadu_pd(p), _mm512_set1_pd(value), _CMP_EQ_OQ);
 }
 
-std::size_t sort_out(const SphereRun& run, const double leaf[4], double margin, const NearRegions& to,
-                     std::size_t n) {
-  const __m512d cx = _mm512_set1_pd(leaf[0]), cy = _mm512_set1_pd(leaf[1]), cz = _mm512_set1_pd(leaf[2]),
-                own = _mm512_set1_pd(leaf[3] + margin), wider = _mm512_set1_pd(kRounding);
-  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-  for (std::size_t i = 0; i < run.padded_count; i += kLanes) {
-    const __m512d x = _mm512_sub_pd(cx, _mm512_loadu_pd(run.x + i)),
-                  y = _mm512_sub_pd(cy, _mm512_loadu_pd(run.y + i)),
-                  z = _mm512_sub_pd(cz, _mm512_loadu_pd(run.z + i)), radius = _mm512_loadu_pd(run.radius + i);
-    const __m512d squared =
-        _mm512_add_pd(_mm512_mul_pd(x, x), _mm512_add_pd(_mm512_mul_pd(y, y), _mm512_mul_pd(z, z)));
-    const __m512d reach = _mm512_mul_pd(_mm512_add_pd(own, radius), wider);
-    __mmask8 in = _mm512_cmp_pd_mask(squared, _mm512_mul_pd(reach, reach), _CMP_LE_OQ);
-    in = _mm512_mask_cmp_pd_mask(in, reach, _mm512_setzero_pd(), _CMP_GE_OQ);
-    if (in == 0) continue;
-    _mm512_storeu_pd(to.nx + n, _mm512_maskz_compress_pd(in, x));
-    _mm512_storeu_pd(to.ny + n, _mm512_maskz_compress_pd(in, y));
-    _mm512_storeu_pd(to.nz + n, _mm512_maskz_compress_pd(in, z));
-    _mm512_storeu_pd(to.gap + n, _mm512_maskz_compress_pd(in, radius));
-    const __m256i number = _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(run.first + i)));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.number + n), _mm256_maskz_compress_epi32(in, number));
-    n += static_cast<std::size_t>(__builtin_popcount(in));
-  }
-  return n;
+struct Leaf {
+  __m512d x, y, z, own;  // own: its radius and the margin
+
+  Leaf(const double leaf[4], double margin)
+      : x(_mm512_set1_pd(leaf[0])),
+        y(_mm512_set1_pd(leaf[1])),
+        z(_mm512_set1_pd(leaf[2])),
+        own(_mm512_set1_pd(leaf[3] + margin)) {}
+};
+
+inline __mmask8 within_reach(__m512d x, __m512d y, __m512d z, __m512d own, __m512d radius) {
+  const __m512d squared =
+      _mm512_add_pd(_mm512_mul_pd(x, x), _mm512_add_pd(_mm512_mul_pd(y, y), _mm512_mul_pd(z, z)));
+  const __m512d reach = _mm512_mul_pd(_mm512_add_pd(own, radius), _mm512_set1_pd(kRounding));
+  const __mmask8 in = _mm512_cmp_pd_mask(squared, _mm512_mul_pd(reach, reach), _CMP_LE_OQ);
+  return _mm512_mask_cmp_pd_mask(in, reach, _mm512_setzero_pd(), _CMP_GE_OQ);
+}
+
+inline unsigned boxes_near(const Leaf& leaf, const SphereRun& run, std::size_t g) {
+  const auto beyond = [g](__m512d c, const double* low, const double* high) {
+    const __m512d below = _mm512_sub_pd(_mm512_loadu_pd(low + g), c),
+                  above = _mm512_sub_pd(c, _mm512_loadu_pd(high + g));
+    return _mm512_max_pd(_mm512_max_pd(below, above), _mm512_setzero_pd());
+  };
+  return within_reach(beyond(leaf.x, run.low[0], run.high[0]), beyond(leaf.y, run.low[1], run.high[1]),
+                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own,
+                      _mm512_loadu_pd(run.most_radius + g));
+}
+
+inline std::size_t sort_group(const Leaf& leaf, const SphereRun& run, std::size_t i, const NearRegions& to,
+                              std::size_t n) {
+  const __m512d x = _mm512_sub_pd(leaf.x, _mm512_loadu_pd(run.x + i)),
+                y = _mm512_sub_pd(leaf.y, _mm512_loadu_pd(run.y + i)),
+                z = _mm512_sub_pd(leaf.z, _mm512_loadu_pd(run.z + i)),
+                radius = _mm512_loadu_pd(run.radius + i);
+  const __mmask8 in = within_reach(x, y, z, leaf.own, radius);
+  _mm512_storeu_pd(to.nx + n, _mm512_maskz_compress_pd(in, x));
+  _mm512_storeu_pd(to.ny + n, _mm512_maskz_compress_pd(in, y));
+  _mm512_storeu_pd(to.nz + n, _mm512_maskz_compress_pd(in, z));
+  _mm512_storeu_pd(to.gap + n, _mm512_maskz_compress_pd(in, radius));
+  const __m256i number = _mm256_add_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+                                          _mm256_set1_epi32(static_cast<int>(run.first + i)));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.number + n), _mm256_maskz_compress_epi32(in, number));
+  return n + static_cast<std::size_t>(__builtin_popcount(in));
 }
 
 #else
@@ -61,6 +83,9 @@ constexpr std::size_t kWidth = 4;
 using Lanes = __m256d;
 inline Lanes load(const double* p) {
   return _mm256_loadu_pd(p);
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return _mm256_max_pd(a, b);
 }
 template <class Mask>
 inline unsigned bits(Mask mask) {
@@ -72,6 +97,9 @@ using Lanes = __m128d;
 inline Lanes load(const double* p) {
   return _mm_loadu_pd(p);
 }
+inline Lanes larger(Lanes a, Lanes b) {
+  return _mm_max_pd(a, b);
+}
 template <class Mask>
 inline unsigned bits(Mask mask) {
   return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
@@ -82,15 +110,31 @@ inline unsigned equal(const double* p, double value) {
   return bits(load(p) == Lanes{} + value);
 }
 
-std::size_t sort_out(const SphereRun& run, const double leaf[4], double margin, const NearRegions& to,
-                     std::size_t n) {
-  const Lanes zero = {}, cx = zero + leaf[0], cy = zero + leaf[1], cz = zero + leaf[2],
-              own = zero + (leaf[3] + margin);
-  for (std::size_t i = 0; i < run.padded_count; i += kWidth) {
-    const Lanes x = cx - load(run.x + i), y = cy - load(run.y + i), z = cz - load(run.z + i);
-    const Lanes reach = (own + load(run.radius + i)) * kRounding;
-    for (unsigned in = bits((x * x + (y * y + z * z) <= reach * reach) & (reach >= zero)); in != 0;
-         in &= in - 1) {
+struct Leaf {
+  Lanes x, y, z, own;  // own: its radius and the margin
+
+  Leaf(const double leaf[4], double margin)
+      : x(Lanes{} + leaf[0]), y(Lanes{} + leaf[1]), z(Lanes{} + leaf[2]), own(Lanes{} + (leaf[3] + margin)) {}
+};
+
+inline unsigned within_reach(Lanes x, Lanes y, Lanes z, Lanes own, Lanes radius) {
+  const Lanes reach = (own + radius) * kRounding;
+  return bits((x * x + (y * y + z * z) <= reach * reach) & (reach >= Lanes{}));
+}
+
+inline unsigned boxes_near(const Leaf& leaf, const SphereRun& run, std::size_t g) {
+  const auto beyond = [g](Lanes c, const double* low, const double* high) {
+    return larger(larger(load(low + g) - c, c - load(high + g)), Lanes{});
+  };
+  return within_reach(beyond(leaf.x, run.low[0], run.high[0]), beyond(leaf.y, run.low[1], run.high[1]),
+                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own, load(run.most_radius + g));
+}
+
+inline std::size_t sort_group(const Leaf& leaf, const SphereRun& run, std::size_t group,
+                              const NearRegions& to, std::size_t n) {
+  for (std::size_t i = group; i < group + kLanes; i += kWidth) {
+    const Lanes x = leaf.x - load(run.x + i), y = leaf.y - load(run.y + i), z = leaf.z - load(run.z + i);
+    for (unsigned in = within_reach(x, y, z, leaf.own, load(run.radius + i)); in != 0; in &= in - 1) {
       const std::size_t lane = static_cast<std::size_t>(__builtin_ctz(in)), at = i + lane;
       to.nx[n] = x[lane], to.ny[n] = y[lane], to.nz[n] = z[lane];
       to.gap[n] = run.radius[at];
@@ -101,6 +145,17 @@ std::size_t sort_out(const SphereRun& run, const double leaf[4], double margin, 
 }
 
 #endif
+
+std::size_t sort_out(const SphereRun& run, const double columns[4], double margin, const NearRegions& to,
+                     std::size_t n) {
+  const Leaf leaf(columns, margin);
+  for (std::size_t first = 0; first < run.padded_groups; first += kWidth)
+    for (unsigned near = boxes_near(leaf, run, first); near != 0; near &= near - 1) {
+      const std::size_t group = first + static_cast<std::size_t>(__builtin_ctz(near));
+      n = sort_group(leaf, run, kLanes * group, to, n);
+    }
+  return n;
+}
 
 // From ways and radii to unit normals and gaps, in whole groups: what lies beyond the last is not read.
 void measure(double leaf_radius, const NearRegions& near, std::size_t from, std::size_t to) {
@@ -177,6 +232,64 @@ std::size_t deepest(const double* gap, double least) {
   return at + static_cast<std::size_t>(__builtin_ctz(same));
 }
 
+struct Kept {
+  double nx, ny, nz, gap, twice_motion_squared, alike;
+};
+struct Left {
+  double least;  // gap
+  std::size_t count;
+};
+
+// Those that one stands for and those above most get infinite gaps.
+#if defined(__AVX512F__)
+
+Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double most) {
+  const __m512d kx = _mm512_set1_pd(by.nx), ky = _mm512_set1_pd(by.ny), kz = _mm512_set1_pd(by.nz),
+                g = _mm512_set1_pd(by.gap), twice = _mm512_set1_pd(by.twice_motion_squared),
+                alike = _mm512_set1_pd(by.alike), one = _mm512_set1_pd(1), limit = _mm512_set1_pd(most),
+                infinite = _mm512_set1_pd(__builtin_inf());
+  __m512d least = infinite;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < end; i += kLanes) {
+    const __m512d gap = _mm512_loadu_pd(near.gap + i);
+    const __m512d cosine = _mm512_add_pd(_mm512_mul_pd(_mm512_loadu_pd(near.nx + i), kx),
+                                         _mm512_add_pd(_mm512_mul_pd(_mm512_loadu_pd(near.ny + i), ky),
+                                                       _mm512_mul_pd(_mm512_loadu_pd(near.nz + i), kz)));
+    const __m512d rise = _mm512_sub_pd(gap, g);
+    __mmask8 stands = _mm512_cmp_pd_mask(_mm512_mul_pd(rise, rise),
+                                         _mm512_mul_pd(twice, _mm512_sub_pd(one, cosine)), _CMP_GE_OQ);
+    stands = _mm512_mask_cmp_pd_mask(stands, cosine, alike, _CMP_GE_OQ);
+    const __mmask8 stays = _mm512_mask_cmp_pd_mask(_mm512_knot(stands), gap, limit, _CMP_LE_OQ);
+    const __m512d left = _mm512_mask_blend_pd(stays, infinite, gap);
+    _mm512_storeu_pd(near.gap + i, left);
+    least = _mm512_min_pd(left, least);
+    count += static_cast<std::size_t>(__builtin_popcount(stays));
+  }
+  return {_mm512_reduce_min_pd(least), count};
+}
+
+#else
+
+Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double most) {
+  double* gap = near.gap;
+  const double *nx = near.nx, *ny = near.ny, *nz = near.nz;
+  double least = __builtin_inf();
+  std::size_t count = 0;
+#pragma omp simd reduction(min : least) reduction(+ : count)
+  for (std::size_t i = 0; i < end; ++i) {
+    const double cosine = nx[i] * by.nx + (ny[i] * by.ny + nz[i] * by.nz);
+    const double rise = gap[i] - by.gap;
+    const bool goes =
+        ((rise * rise >= by.twice_motion_squared * (1 - cosine)) & (cosine >= by.alike)) | !(gap[i] <= most);
+    gap[i] = goes ? __builtin_inf() : gap[i];
+    least = gap[i] < least ? gap[i] : least;
+    count += goes ? 0 : 1;
+  }
+  return {least, count};
+}
+
+#endif
+
 }  // namespace
 
 std::size_t append_near_regions(const SphereRun& run, const double leaf[4], double margin,
@@ -200,28 +313,14 @@ std::size_t deepest_region(const NearRegions& near, std::size_t count) {
 
 LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept, double motion,
                                 double alike, double most) {
-  const double g = near.gap[kept], kx = near.nx[kept], ky = near.ny[kept], kz = near.nz[kept];
+  const Kept by{near.nx[kept], near.ny[kept], near.nz[kept], near.gap[kept], 2 * (motion * motion), alike};
   near.gap[kept] = __builtin_inf();
-  const double twice_squared = 2 * (motion * motion);
-  const std::size_t end = in_whole_groups(count);
-  double* gap = near.gap;
-  const double *nx = near.nx, *ny = near.ny, *nz = near.nz;
-  double least = __builtin_inf();
-  std::size_t left = 0;
-#pragma omp simd reduction(min : least) reduction(+ : left)
-  for (std::size_t i = 0; i < end; ++i) {
-    const double cosine = nx[i] * kx + (ny[i] * ky + nz[i] * kz);
-    const double rise = gap[i] - g;
-    const bool goes = ((rise * rise >= twice_squared * (1 - cosine)) & (cosine >= alike)) | !(gap[i] <= most);
-    gap[i] = goes ? __builtin_inf() : gap[i];
-    least = gap[i] < least ? gap[i] : least;
-    left += goes ? 0 : 1;
-  }
-  if (kCloseUp * left <= (kCloseUp - 1) * count) {
+  const Left left = drop_what_it_stands_for(near, in_whole_groups(count), by, most);
+  if (kCloseUp * left.count <= (kCloseUp - 1) * count) {
     count = within_margin<false>(near, most, 0, count);
-    for (std::size_t i = count; i < in_whole_groups(count); ++i) gap[i] = __builtin_inf();
+    for (std::size_t i = count; i < in_whole_groups(count); ++i) near.gap[i] = __builtin_inf();
   }
-  return {left > 0 ? deepest(gap, least) : count, count};
+  return {left.count > 0 ? deepest(near.gap, left.least) : count, count};
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

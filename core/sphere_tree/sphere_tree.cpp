@@ -20,6 +20,10 @@ Sphere around(std::size_t count, const Item& item) {
   return all;
 }
 
+std::size_t in_whole_groups(std::size_t count) {
+  return (count + kLanes - 1) / kLanes * kLanes;
+}
+
 }  // namespace
 
 Sphere bounding_sphere(std::span<const Sphere> spheres) {
@@ -29,7 +33,8 @@ Sphere bounding_sphere(std::span<const Sphere> spheres) {
 void SphereTree::clear() {
   leaves_.clear();
   level_count_ = 0;
-  x_.clear(), y_.clear(), z_.clear(), radius_.clear();
+  for (std::vector<double>* column : {&x_, &y_, &z_, &radius_, &most_radius_}) column->clear();
+  for (std::size_t axis = 0; axis < 3; ++axis) low_[axis].clear(), high_[axis].clear();
   run_starts_.clear();
 }
 
@@ -41,14 +46,37 @@ std::vector<SphereNode>& SphereTree::new_level() {
 }
 
 void SphereTree::append_run(std::span<const Sphere> leaves) {
-  run_starts_.push_back(x_.size());
+  run_starts_.push_back({x_.size(), most_radius_.size()});
+  for (std::size_t first = 0; first < leaves.size(); first += kLanes)
+    append_group(leaves.subspan(first, std::min(kLanes, leaves.size() - first)));
+  const std::size_t padded = in_whole_groups(x_.size());
+  for (std::vector<double>* column : {&x_, &y_, &z_}) column->resize(padded, kFarAway);
+  radius_.resize(padded, 0);
+  const std::size_t groups = most_radius_.size() - run_starts_.back().group;
+  pad_groups(in_whole_groups(groups) - groups);
+}
+
+void SphereTree::append_group(std::span<const Sphere> leaves) {
+  Vec3 low = leaves.front().centre, high = low;
+  double most_radius = leaves.front().radius_m;
   for (const Sphere& leaf : leaves) {
     x_.push_back(leaf.centre.x()), y_.push_back(leaf.centre.y()), z_.push_back(leaf.centre.z());
     radius_.push_back(leaf.radius_m);
+    low = low.cwiseMin(leaf.centre), high = high.cwiseMax(leaf.centre);
+    most_radius = std::max(most_radius, leaf.radius_m);
   }
-  const std::size_t padded = (x_.size() + kLanes - 1) / kLanes * kLanes;
-  for (std::vector<double>* column : {&x_, &y_, &z_}) column->resize(padded, kFarAway);
-  radius_.resize(padded, 0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    low_[axis].push_back(low[i]), high_[axis].push_back(high[i]);
+  }
+  most_radius_.push_back(most_radius);
+}
+
+void SphereTree::pad_groups(std::size_t padding) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::vector<double>* column : {&low_[axis], &high_[axis]})
+      column->insert(column->end(), padding, kFarAway);
+  most_radius_.insert(most_radius_.end(), padding, 0);
 }
 
 void SphereTree::add(std::span<const Sphere> leaves) {
@@ -61,10 +89,20 @@ void SphereTree::add(std::span<const Sphere> leaves) {
 }
 
 SphereRun SphereTree::run(std::size_t node) const {
-  const std::size_t start = run_starts_[node],
-                    end = node + 1 < run_starts_.size() ? run_starts_[node + 1] : x_.size();
-  return {x_.data() + start,      y_.data() + start, z_.data() + start,
-          radius_.data() + start, end - start,       levels_.front()[node].first};
+  const auto [leaf, group] = run_starts_[node];
+  const std::size_t end = node + 1 < run_starts_.size() ? run_starts_[node + 1].group : most_radius_.size();
+  const auto from = [](const std::vector<double>& column, std::size_t start) {
+    return column.data() + start;
+  };
+  return {from(x_, leaf),
+          from(y_, leaf),
+          from(z_, leaf),
+          from(radius_, leaf),
+          {from(low_[0], group), from(low_[1], group), from(low_[2], group)},
+          {from(high_[0], group), from(high_[1], group), from(high_[2], group)},
+          from(most_radius_, group),
+          end - group,
+          levels_.front()[node].first};
 }
 
 void SphereTree::finish() {

@@ -48,12 +48,19 @@ class SphereTree {
  private:
   std::vector<SphereNode>& new_level();
   void append_run(std::span<const Sphere> leaves);
+  void append_group(std::span<const Sphere> leaves);
+  void pad_groups(std::size_t padding);
 
   std::vector<Sphere> leaves_;
   std::vector<std::vector<SphereNode>> levels_;  // those that are used come first
   std::size_t level_count_ = 0;
-  std::vector<double> x_, y_, z_, radius_;  // the leaves once more, those of each node padded to kLanes
-  std::vector<std::size_t> run_starts_;     // of each node, in these columns
+  // The leaves once more, as SphereRun has them: those of each node, and boxes around kLanes of them.
+  struct RunStart {
+    std::size_t leaf, group;
+  };
+  std::vector<double> x_, y_, z_, radius_;
+  std::vector<double> low_[3], high_[3], most_radius_;
+  std::vector<RunStart> run_starts_;  // of each node, in these columns
 };
 
 }  // namespace remote_touch
