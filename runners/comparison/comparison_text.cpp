@@ -140,7 +140,7 @@ void print_sweep(const SweepComparison& sweep) {
   print_regions(sweep);
   std::string cell;
   for (const std::size_t place : sweep.first->place)
-    cell += (cell.empty() ? "" : ",") + std::to_string(place);
+    cell.append(cell.empty() ? "" : ",").append(std::to_string(place));
   std::printf("  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
   if (!sweep.first->measure.empty())
     std::printf(", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,
