@@ -11,6 +11,12 @@
 
 namespace remote_touch {
 
+// What a renderer makes of a frame beforehand, see Renderer::prepare().
+class FramePreparation {
+ public:
+  virtual ~FramePreparation() = default;
+};
+
 // One point cloud of the stream. Latency is data: the renderer sees the frame at arrives_s.
 struct Frame {
   int index = 0;
@@ -18,6 +24,7 @@ struct Frame {
   double arrives_s = 0;
   std::shared_ptr<const NeighbourSearch> points;
   std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
+  std::shared_ptr<const FramePreparation> prepared = nullptr;
 };
 
 // The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit

@@ -23,11 +23,13 @@ Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
 
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);
-  const auto reserve = [this](GatheredPoints& columns) {
-    columns.reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
-  };
-  for (Kept& kept : kept_) reserve(kept.points), kept.valid = false;
-  reserve(tube_);
+  reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
+  for (Kept& kept : kept_) kept.valid = false;
+}
+
+void Neighbourhood::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
+  for (Kept& kept : kept_) kept.points.reserve(points, with_radius, with_stiffness);
+  tube_.reserve(points, with_radius, with_stiffness);
 }
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {

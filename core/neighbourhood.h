@@ -17,6 +17,8 @@ class Neighbourhood {
   // reach: every point with r_n <= reach of the position asked about is in the list (and some beyond).
   Neighbourhood(double reach, const Kernels& kernels);
 
+  // For clouds of so many points.
+  void reserve(std::size_t points, bool with_radius, bool with_stiffness);
   // A new cloud. Allocates when it is the largest so far.
   void set_points(std::shared_ptr<const NeighbourSearch> points);
   // The points around p. Valid until the next call.

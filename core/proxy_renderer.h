@@ -15,6 +15,7 @@ class ProxyRenderer final : public Renderer {
   // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
   ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
 
+  void reserve(std::size_t points) override { near_.reserve(points, true, true); }
   void on_frame(const Frame& frame) override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 

@@ -1,6 +1,7 @@
 // The seam of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 
@@ -75,8 +76,15 @@ struct RenderOutput {
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  // A new cloud. May allocate. A frame captured no later than the newest one is dropped, and the next output
-  // says so.
+  // What takes long of taking a frame, so that on_frame() is short: sets frame.prepared, for renderers of the
+  // same kind and settings. May run beside on_frame() and step(). The answers are the same without.
+  virtual void prepare(Frame& /*frame*/) const {}
+  // Room for frames of so many points, or of images of so many pixels, both sides rounded up to multiples of
+  // 16; with it on_frame() of a prepared frame allocates nothing. It lets the one before go: see that it is
+  // held elsewhere when memory must not be given back either.
+  virtual void reserve(std::size_t /*points*/) {}
+  // A new cloud, prepared or not. A frame captured no later than the newest one is dropped, and the next
+  // output says so.
   virtual void on_frame(const Frame& frame) = 0;
   // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: trouble is a
   // status.

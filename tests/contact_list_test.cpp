@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/box_tool.h"
+#include "tests/formed.h"
 #include "tests/scenes.h"
 
 namespace remote_touch {
@@ -39,7 +40,7 @@ struct Found {
 // Every disk within the look-ahead as a contact, one after the other.
 std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p) {
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(cloud);
+  finder.on_frame(formed<TiledCloud>(cloud));
   std::vector<Found> all;
   const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
   for (std::uint32_t i = 0; i < finder.cloud().room(); ++i) {
@@ -64,7 +65,7 @@ TEST(ContactList, FewContactsAreAllThere) {
   const PointCloud cloud = cloud_of(800);
   const std::vector<Found> all = all_contacts(cloud, {});
   ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(cloud);
+  list.on_frame(formed<TiledCloud>(cloud));
   const NearContacts near = list.near(kPose, 0);
   ASSERT_GT(all.size(), 20u);
   ASSERT_LT(all.size(), 256u);
@@ -91,7 +92,7 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
     std::vector<double> expected_m, kept_m;
     for (const auto& cell : deepest) expected_m.push_back(cell.second);
     ContactList list(kTool, {}, scenes::kernels());
-    list.on_frame(cloud);
+    list.on_frame(formed<TiledCloud>(cloud));
     const NearContacts near = list.near(kPose, 0);
     for (const ToolContact& contact : near.contacts) kept_m.push_back(contact.depth_m);
     std::sort(kept_m.begin(), kept_m.end()), std::sort(expected_m.begin(), expected_m.end());

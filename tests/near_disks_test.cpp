@@ -7,6 +7,7 @@
 
 #include "core/tool/contact_list.h"
 #include "tests/box_tool.h"
+#include "tests/formed.h"
 #include "tests/scenes.h"
 
 namespace remote_touch {
@@ -32,7 +33,7 @@ struct Look {
   NearDisks disks{kShare, kCell_m};
 
   Look(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
-    finder.on_frame(cloud);
+    finder.on_frame(formed<TiledCloud>(cloud));
     disks.on_frame(finder.cloud());
     disks.look(finder, kernels, kPose, kReach_m);
   }
@@ -76,7 +77,7 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   for (int i = 0; i < 5; ++i)
     cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(cloud);
+  finder.on_frame(formed<TiledCloud>(cloud));
   NearDisks disks(kShare, kCell_m);
   disks.on_frame(finder.cloud());
   disks.look(finder, scenes::kernels(), {}, kFieldMargin_m + grid.size_m);
@@ -102,7 +103,7 @@ TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   PointCloud fewer = cloud;
   fewer.x.resize(5000), fewer.y.resize(5000), fewer.z.resize(5000);
   fewer.nx.resize(5000), fewer.ny.resize(5000), fewer.nz.resize(5000);
-  look.finder.on_frame(fewer);
+  look.finder.on_frame(formed<TiledCloud>(fewer));
   look.disks.on_frame(look.finder.cloud());
   look.disks.look(look.finder, kernels, kPose, kReach_m);
   EXPECT_LT(look.disks.size(), all);
@@ -113,7 +114,7 @@ TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
 TEST(NearDisks, WhatIsTouchedIsTheSameAfterADetection) {
   const PointCloud cloud = cloud_with_normals();
   ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());
-  looked.on_frame(cloud), fresh.on_frame(cloud);
+  looked.on_frame(formed<TiledCloud>(cloud)), fresh.on_frame(formed<TiledCloud>(cloud));
   looked.near(kPose, 0);
   const Touched a = looked.touched(kPose), b = fresh.touched(kPose);
   EXPECT_EQ(a.points, b.points);

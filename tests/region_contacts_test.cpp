@@ -12,6 +12,7 @@
 #include "core/tool/look_ahead_motion.h"
 #include "tests/allocation_counter.h"
 #include "tests/box_tool.h"
+#include "tests/formed.h"
 #include "tests/scenes.h"
 
 namespace remote_touch {
@@ -73,7 +74,7 @@ struct Held {
         leaves(leaves_),
         contacts(leaves, ToolParameters{}.look_ahead_m, scenes::kernels()),
         motion({}, *tool, 0.05) {}
-  void frame(const PointCloud& cloud) { contacts.on_frame(cloud), updated = true; }
+  void frame(const PointCloud& cloud) { contacts.on_frame(formed<RegionTree>(cloud)), updated = true; }
   // Ticks until the tool rests.
   void move_to(const ToolPose& device) {
     for (int tick = 0; tick < 200; ++tick)
@@ -213,7 +214,7 @@ TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
   const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts contacts(one_leaf(0.006), look_ahead_m, scenes::kernels());
-  contacts.on_frame(cloud);
+  contacts.on_frame(formed<RegionTree>(cloud));
   int pairs = 0, kept = 0;
   for (int i = 0; i < 100; ++i) {
     const double a = 0.0628 * i, out_m = 0.0505 - 1e-5 * i;
@@ -242,14 +243,14 @@ TEST(RegionContacts, DoNotDependOnTheLevelOrTheLookBefore) {
   const PointCloud cloud = wheel(), ways = scenes::random_cloud(60, 0.05, 4);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));
-  slowest.on_frame(cloud);
+  slowest.on_frame(formed<RegionTree>(cloud));
   std::size_t found = 0;
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const ToolPose pose{ways.point(i), rotation(20 * ways.point(i))};
       RegionContacts fresh(spheres_of_box(), look_ahead_m, kernels_for(isa));
-      fresh.on_frame(cloud);
+      fresh.on_frame(formed<RegionTree>(cloud));
       const NearContacts a = fresh.near(pose, 0), b = slowest.near(pose, 0);
       EXPECT_EQ(a.deepest_m, b.deepest_m);
       ASSERT_EQ(a.contacts.size(), b.contacts.size());
@@ -290,7 +291,7 @@ TEST(RegionTouch, IsThatOfAllPairs) {
   const double look_ahead_m = ToolParameters{}.look_ahead_m, own = 600;
   const auto leaves = spheres_of_box();
   RegionContacts contacts(leaves, look_ahead_m, scenes::kernels());
-  contacts.on_frame(cloud);
+  contacts.on_frame(formed<RegionTree>(cloud));
   int touching = 0, clear = 0;
   for (int i = 0; i < 60; ++i) {
     const ToolPose pose{{0.04, 0.0555 - 2e-4 * i + (i % 4 == 0 ? 0.02 : 0), 0.01},

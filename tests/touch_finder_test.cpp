@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/box_tool.h"
+#include "tests/formed.h"
 #include "tests/scenes.h"
 
 namespace remote_touch {
@@ -49,7 +50,7 @@ TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     TouchFinder finder(tool, kernels_for(isa));
-    finder.on_frame(cloud);
+    finder.on_frame(formed<TiledCloud>(cloud));
     int most = 0;
     for (const ToolPose& pose : poses()) {
       const Places expected =
@@ -66,7 +67,7 @@ TEST(TouchFinder, MissesNothingWithinADistanceAndAddsLittle) {
   const auto tool = scenes::box_tool(kHalf_m);
   const double slack_m = 2 * tool->grid.size_m;
   TouchFinder finder(tool, scenes::kernels());
-  finder.on_frame(cloud);
+  finder.on_frame(formed<TiledCloud>(cloud));
   for (const ToolPose& pose : poses())
     for (const double distance : {-0.002, 0.0, 0.001, 0.0055}) {
       const Places found = places(finder, finder.within(pose, distance));
@@ -87,7 +88,7 @@ TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     TouchFinder finder(tool, kernels_for(isa));
-    finder.on_frame(cloud);
+    finder.on_frame(formed<TiledCloud>(cloud));
     const auto list = finder.within(poses()[1], 0.003);
     lists.emplace_back(list.begin(), list.end());
     EXPECT_GT(list.size(), 100u);
@@ -98,13 +99,13 @@ TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
 TEST(TouchFinder, NothingIsFoundInAnEmptyCloudOrFarAway) {
   TouchFinder finder(scenes::box_tool(kHalf_m), scenes::kernels());
   EXPECT_TRUE(finder.in_tool({}).empty());  // before the first frame
-  finder.on_frame({});
+  finder.on_frame(formed<TiledCloud>({}));
   EXPECT_TRUE(finder.in_tool({}).empty());
   PointCloud unmeasured;
   for (int i = 0; i < 100; ++i) unmeasured.append(Vec3::Constant(std::nan("")));
-  finder.on_frame(unmeasured);
+  finder.on_frame(formed<TiledCloud>(unmeasured));
   EXPECT_TRUE(finder.within({}, 0.005).empty());
-  finder.on_frame(scenes::random_cloud(1000, 0.01, 1));
+  finder.on_frame(formed<TiledCloud>(scenes::random_cloud(1000, 0.01, 1)));
   EXPECT_TRUE(finder.within({{1e6, -1e6, 1e6}, Eigen::Quaterniond::Identity()}, 0.005).empty());
 }
 

@@ -29,6 +29,8 @@ class GuidedRenderer final : public Renderer {
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);
 
+  void prepare(Frame& frame) const override { inner_->prepare(frame); }
+  void reserve(std::size_t points) override { inner_->reserve(points); }
   void on_frame(const Frame& frame) override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 

@@ -26,16 +26,20 @@ RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double lo
   others_.reserve(kMostToThin);
 }
 
-void RegionContacts::on_frame(const PointCloud& cloud) {
-  regions_.assign(cloud);
-  collision_.on_frame(regions_.spheres());
+void RegionContacts::on_frame(std::shared_ptr<const RegionTree> regions) {
+  regions_ = std::move(regions);
+  collision_.on_frame(regions_->spheres());
   std::fill(deepest_.begin(), deepest_.end(), kNone);
+}
+
+void RegionContacts::reserve(std::size_t points) {
+  collision_.reserve(points, points / RegionTree::kPatchPoints + 1);
 }
 
 // Of the smallest gap of a leaf: that to one region.
 double RegionContacts::bound_m(const CloseLeaf& leaf, std::uint32_t region) const {
   if (region == kNone) return kInfinite;
-  const Sphere& other = regions_.spheres().leaves()[region];
+  const Sphere& other = regions_->spheres().leaves()[region];
   return (leaf.sphere_W.centre - other.centre).norm() - leaf.sphere_W.radius_m - other.radius_m;
 }
 
@@ -92,7 +96,7 @@ RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N
       if (gap_m > kTouch_m) continue;
       ++touch.leaf_pairs;
       const double weight = std::min((kTouch_m - gap_m) / (2 * kTouch_m), 1.0);
-      const double stiffness = regions_.stiffness_N_per_m(found.regions.number[i]);
+      const double stiffness = regions_->stiffness_N_per_m(found.regions.number[i]);
       weights += weight;
       weighted += weight * (std::isnan(stiffness) ? own_stiffness_N_per_m : stiffness);
     }

@@ -25,8 +25,8 @@ struct RegionTouch {
 // stand for it: see PairChoice. Where more are left than the motion takes, and no leaf is deep, those go that
 // only the longest motions can violate. While one is deep, half the room is for the deepest, and for the
 // other half ContactThinning keeps the deepest of every place and octant of directions, so that what is left
-// is spread over the tool. Does not depend on the kernels' level. Allocates on construction and in on_frame()
-// only.
+// is spread over the tool. Does not depend on the kernels' level. Allocates on construction and in
+// on_frame() only.
 class RegionContacts final : public NearContactSource {
  public:
   // Half the band of gaps in which a pair counts as touching, the less the less deep it is.
@@ -35,8 +35,9 @@ class RegionContacts final : public NearContactSource {
   // tool: in the tool frame.
   RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m, const Kernels& kernels);
 
-  void on_frame(const PointCloud& cloud);
-  const RegionTree& regions() const { return regions_; }
+  void on_frame(std::shared_ptr<const RegionTree> regions);  // allocates where room was not reserved
+  void reserve(std::size_t points);                          // for clouds of so many
+  const RegionTree& regions() const { return *regions_; }
 
   // A region has one outside, so the side says nothing. The deepest gap is that of all pairs, not only of the
   // contacts.
@@ -53,7 +54,7 @@ class RegionContacts final : public NearContactSource {
 
   const std::shared_ptr<const SphereTree> tool_;
   const double look_ahead_m_;
-  RegionTree regions_;
+  std::shared_ptr<const RegionTree> regions_ = std::make_shared<RegionTree>();
   TreeCollision collision_;
   PairChoice choice_;
   std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region when last looked at

@@ -17,7 +17,6 @@ class RegionTree {
   static constexpr int kPatchSide_px = 16;
   static constexpr std::size_t kPatchPoints = 256;
 
-  // Keeps its memory from frame to frame, but for the curve.
   void assign(const PointCloud& cloud);
 
   const SphereTree& spheres() const { return spheres_; }

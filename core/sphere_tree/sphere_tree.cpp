@@ -57,19 +57,17 @@ void SphereTree::append_run(std::span<const Sphere> leaves) {
 }
 
 void SphereTree::append_group(std::span<const Sphere> leaves) {
-  Vec3 low = leaves.front().centre, high = low;
-  double most_radius = leaves.front().radius_m;
+  SphereBox box = SphereBox::around(leaves.front());
   for (const Sphere& leaf : leaves) {
     x_.push_back(leaf.centre.x()), y_.push_back(leaf.centre.y()), z_.push_back(leaf.centre.z());
     radius_.push_back(leaf.radius_m);
-    low = low.cwiseMin(leaf.centre), high = high.cwiseMax(leaf.centre);
-    most_radius = std::max(most_radius, leaf.radius_m);
+    box.add(SphereBox::around(leaf));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
-    low_[axis].push_back(low[i]), high_[axis].push_back(high[i]);
+    low_[axis].push_back(box.low[i]), high_[axis].push_back(box.high[i]);
   }
-  most_radius_.push_back(most_radius);
+  most_radius_.push_back(box.most_radius_m);
 }
 
 void SphereTree::pad_groups(std::size_t padding) {
@@ -82,7 +80,9 @@ void SphereTree::pad_groups(std::size_t padding) {
 void SphereTree::add(std::span<const Sphere> leaves) {
   if (leaves.empty()) return;
   if (level_count_ == 0) new_level();
-  levels_.front().push_back({bounding_sphere(leaves), static_cast<std::uint32_t>(leaves_.size()),
+  SphereBox box = SphereBox::around(leaves.front());
+  for (const Sphere& leaf : leaves) box.add(SphereBox::around(leaf));
+  levels_.front().push_back({bounding_sphere(leaves), box, static_cast<std::uint32_t>(leaves_.size()),
                              static_cast<std::uint32_t>(leaves.size())});
   leaves_.insert(leaves_.end(), leaves.begin(), leaves.end());
   append_run(leaves);
@@ -113,7 +113,9 @@ void SphereTree::finish() {
       const std::size_t count = std::min(kBranching, below.size() - first);
       const Sphere sphere =
           around(count, [&](std::size_t i) -> const Sphere& { return below[first + i].sphere; });
-      level.push_back({sphere, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
+      SphereBox box = below[first].box;
+      for (std::size_t i = 1; i < count; ++i) box.add(below[first + i].box);
+      level.push_back({sphere, box, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
     }
   }
 }

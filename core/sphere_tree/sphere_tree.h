@@ -1,6 +1,7 @@
 // Spheres under bounding spheres, 7.3.2 and 7.4: what is far away is passed over in one test.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,9 +19,23 @@ struct Sphere {
 // Around the mean of the centres, (7.3): quick to make rather than the smallest. pre: not empty.
 Sphere bounding_sphere(std::span<const Sphere> spheres);
 
+// Around the middles of spheres, and the largest radius of one: tighter than a bounding sphere where many
+// large spheres lie close together, as regions do.
+struct SphereBox {
+  Vec3 low, high;
+  double most_radius_m;
+
+  static SphereBox around(const Sphere& one) { return {one.centre, one.centre, one.radius_m}; }
+  void add(const SphereBox& other) {
+    low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
+    most_radius_m = std::max(most_radius_m, other.most_radius_m);
+  }
+};
+
 // first .. first + count - 1: its children, of the level below; on the lowest level leaves.
 struct SphereNode {
   Sphere sphere;
+  SphereBox box;  // of all leaves below
   std::uint32_t first = 0, count = 0;
 };
 

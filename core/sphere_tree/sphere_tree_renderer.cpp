@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/frame_preparation.h"
 #include "core/tool/wrench_coupling.h"
 
 namespace remote_touch {
@@ -45,10 +46,17 @@ SphereTreeRenderer::SphereTreeRenderer(const ToolParameters& parameters,
       contacts_(spheres, parameters.look_ahead_m, kernels),
       motion_(parameters, *tool_, reach_m(*spheres)) {}
 
+void SphereTreeRenderer::prepare(Frame& frame) const {
+  frame.prepared = prepared_form<RegionTree>(*frame.points, kernels_);
+}
+
+void SphereTreeRenderer::reserve(std::size_t points) {
+  contacts_.reserve(points);
+}
+
 void SphereTreeRenderer::on_frame(const Frame& frame) {
   if (!order_.take(frame)) return;
-  PointCloud room;
-  contacts_.on_frame(frame.points->every_point(kernels_, room));
+  contacts_.on_frame(form_of<RegionTree>(frame, kernels_));
   updated_ = true;
 }
 

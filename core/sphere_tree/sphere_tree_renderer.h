@@ -26,6 +26,8 @@ class SphereTreeRenderer final : public Renderer {
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                      std::shared_ptr<const SphereTree> spheres, const Kernels& kernels);
 
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 

@@ -9,10 +9,15 @@ namespace {
 
 static_assert(SphereTree::kBranching <= 32, "the topmost nodes are the bits of a word");
 
-// Without a root, and without a branch more for what is no number: such spheres are never near.
-bool is_near(const Sphere& a, const Sphere& b, double margin_m) {
-  const double reach_m = a.radius_m + b.radius_m + margin_m;
-  return reach_m >= 0 && (a.centre - b.centre).squaredNorm() <= reach_m * reach_m;
+constexpr double kRounding = 1 + 1e-12;  // of the sums: no region within the margin is passed over
+
+// Whether some region below a node may be. Without a root, and without a branch more for what is no number:
+// such spheres are never near.
+bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
+  const SphereBox& box = node.box;
+  const double reach_m = (a.radius_m + box.most_radius_m + margin_m) * kRounding;
+  const Vec3 beyond = (box.low - a.centre).cwiseMax(a.centre - box.high).cwiseMax(0);
+  return reach_m >= 0 && beyond.squaredNorm() <= reach_m * reach_m;
 }
 
 bool by_number(const LeafPair& a, const LeafPair& b) {
@@ -31,9 +36,12 @@ TreeCollision::TreeCollision(const SphereTree& tool, const Kernels& kernels)
 
 void TreeCollision::on_frame(const SphereTree& regions) {
   regions_ = &regions;
-  if (!tool_.empty())
-    patches_.reserve(tool_.level(0).size() * (regions.empty() ? 0 : regions.level(0).size()));
-  const std::size_t room = regions.leaves().size() + 2 * kLanes;
+  reserve(regions.leaves().size(), regions.empty() ? 0 : regions.level(0).size());
+}
+
+void TreeCollision::reserve(std::size_t leaves, std::size_t patches) {
+  if (!tool_.empty()) patches_.reserve(tool_.level(0).size() * patches);
+  const std::size_t room = leaves + 2 * kLanes;
   if (number_.size() >= room) return;
   for (std::vector<double>* column : {&gap_, &nx_, &ny_, &nz_}) column->resize(room);
   number_.resize(room);
@@ -47,8 +55,7 @@ std::uint32_t TreeCollision::tops_near(const Sphere& sphere_W, std::uint32_t amo
   std::uint32_t near = 0;
   for (; among != 0; among &= among - 1) {
     const int top = std::countr_zero(among);
-    if (is_near(sphere_W, regions_->top()[static_cast<std::size_t>(top)].sphere, margin_m_))
-      near |= 1u << top;
+    if (is_near(sphere_W, regions_->top()[static_cast<std::size_t>(top)], margin_m_)) near |= 1u << top;
   }
   return near;
 }
@@ -84,7 +91,7 @@ void TreeCollision::meet_tool(std::size_t level, std::uint32_t number, std::uint
 
 void TreeCollision::meet_regions(std::size_t level, std::uint32_t number, const Sphere& node_W) {
   const SphereNode& node = regions_->level(level)[number];
-  if (!is_near(node_W, node.sphere, margin_m_)) return;
+  if (!is_near(node_W, node, margin_m_)) return;
   if (level == 0) return patches_.push_back(number);
   for (std::uint32_t child = node.first; child < node.first + node.count; ++child)
     meet_regions(level - 1, child, node_W);
@@ -95,7 +102,7 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
   const Vec3& middle = leaf.sphere_W.centre;
   const double columns[4] = {middle.x(), middle.y(), middle.z(), leaf.sphere_W.radius_m};
   for (std::uint32_t i = leaf.first_patch; i < leaf.first_patch + leaf.patch_count; ++i)
-    if (is_near(leaf.sphere_W, regions_->level(0)[patches_[i]].sphere, margin_m))
+    if (is_near(leaf.sphere_W, regions_->level(0)[patches_[i]], margin_m))
       found.count = kernels_.append_near_regions(regions_->run(patches_[i]), columns, margin_m, found.regions,
                                                  found.count);
   return found;

@@ -23,12 +23,13 @@ struct CloseLeaf {
   Sphere sphere_W;
 };
 
-// Allocates in the constructor and in on_frame() only.
+// Allocates in the constructor and in reserve(), and in on_frame() where that was not called.
 class TreeCollision {
  public:
   // tool: in the tool frame; stays in use, and so do regions.
   TreeCollision(const SphereTree& tool, const Kernels& kernels);
   void on_frame(const SphereTree& regions);
+  void reserve(std::size_t leaves, std::size_t patches);  // of the regions
 
   // The tool's tree is gone down depth first against the topmost regions, then the regions' tree against
   // every node of the tool's lowest level: what its leaves have in common is looked for once. Every leaf with

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace remote_touch {
 
@@ -22,16 +23,19 @@ ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParame
       finder_(std::move(tool), kernels),
       disks_(parameters.disk_share, ContactThinning::kCell_m) {}
 
-void ContactList::on_frame(const PointCloud& cloud) {
-  finder_.on_frame(cloud);
+void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
+  finder_.on_frame(std::move(cloud));
   const TiledCloud& points = finder_.cloud();
-  widest_disk_m_ = 0;
-  for (std::uint32_t i = 0; i < points.room(); ++i)
-    widest_disk_m_ = std::max(widest_disk_m_, p_.disk_share * points.spacing_m(i));
-  contacts_.reserve(points.room()), collisions_.reserve(points.room());
-  near_.reserve(points.room()), nearest_.reserve(points.room());
-  clusters_.reserve(points.room());
+  widest_disk_m_ = p_.disk_share * points.widest_spacing_m();
+  reserve(points.room());
   disks_.on_frame(points);
+}
+
+void ContactList::reserve(std::size_t room) {
+  finder_.reserve(room), disks_.reserve(room);
+  contacts_.reserve(room), collisions_.reserve(room);
+  near_.reserve(room), nearest_.reserve(room);
+  clusters_.reserve(room);
 }
 
 std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {

@@ -37,7 +37,8 @@ class ContactList final : public NearContactSource {
   ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
               const Kernels& kernels);
 
-  void on_frame(const PointCloud& cloud);  // allocates
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
+  void reserve(std::size_t room);                          // for clouds of that room
   const TouchFinder& finder() const { return finder_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for

@@ -7,10 +7,14 @@
 namespace remote_touch {
 
 void NearDisks::on_frame(const TiledCloud& cloud) {
+  reserve(cloud.room());
+}
+
+void NearDisks::reserve(std::size_t room) {
   for (Columns* columns : {&p_T_, &n_T_, &gradient_T_})
-    for (auto* column : {&columns->x, &columns->y, &columns->z}) column->resize(cloud.room());
-  for (auto* column : {&radius_, &distance_, &slope_, &lower_}) column->resize(cloud.room());
-  cell_.resize(cloud.room());
+    for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(room);
+  for (auto* column : {&radius_, &distance_, &slope_, &lower_}) column->grow(room);
+  cell_.grow(room);
   count_ = 0, is_known_ = false;
 }
 

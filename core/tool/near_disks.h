@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "core/gathered_points.h"
 #include "core/tool/disk_contact.h"
 #include "core/tool/touch_finder.h"
 
@@ -14,7 +14,8 @@ class NearDisks {
  public:
   NearDisks(double disk_share, double cell_m) : share_(disk_share), cells_per_m_(1 / cell_m) {}
 
-  void on_frame(const TiledCloud& cloud);  // allocates
+  void on_frame(const TiledCloud& cloud);  // allocates where room was not reserved
+  void reserve(std::size_t room);          // for clouds of that room
   // All disks whose middle is within reach_m, and some farther ones; in the order of the cloud's tiles.
   void look(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
@@ -32,7 +33,7 @@ class NearDisks {
 
  private:
   struct Columns {
-    std::vector<double> x, y, z;
+    Room<double> x, y, z;
 
     Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
   };
@@ -40,8 +41,8 @@ class NearDisks {
 
   const double share_, cells_per_m_;
   Columns p_T_, n_T_, gradient_T_;
-  std::vector<double> radius_, distance_, slope_, lower_;
-  std::vector<std::uint64_t> cell_;
+  Room<double> radius_, distance_, slope_, lower_;
+  Room<std::uint64_t> cell_;
   std::size_t count_ = 0;
   bool is_known_ = false;  // for:
   ToolPose pose_;

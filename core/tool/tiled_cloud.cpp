@@ -121,6 +121,8 @@ void TiledCloud::assign(const PointCloud& cloud) {
   gather_tile_spheres();
   gather_blocks();
   measure_spacing(cloud);
+  widest_spacing_m_ = 0;
+  for (const double spacing_m : spacing_m_) widest_spacing_m_ = std::max(widest_spacing_m_, spacing_m);
 }
 
 void TiledCloud::measure_spacing(const PointCloud& cloud) {

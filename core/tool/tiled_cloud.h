@@ -58,6 +58,7 @@ class TiledCloud {
   // Distance to the points around it: a pixel of the image at the point's depth; in other clouds the side of
   // the square that a point of its tile has for itself.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
+  double widest_spacing_m() const { return widest_spacing_m_; }
   int without_normal() const { return without_normal_; }
 
  private:
@@ -80,6 +81,7 @@ class TiledCloud {
     SphereColumns columns() const { return {x.data(), y.data(), z.data(), radius_m.data()}; }
   };
   Spheres tile_spheres_, group_spheres_;
+  double widest_spacing_m_ = 0;
   int without_normal_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/frame_preparation.h"
 #include "core/tool/wrench_coupling.h"
 
 namespace remote_touch {
@@ -23,10 +24,17 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       motion_(make_tool_motion(parameters, *tool_)),
       velocity_(parameters.longest_prediction_s) {}
 
+void ToolRenderer::prepare(Frame& frame) const {
+  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
+}
+
+void ToolRenderer::reserve(std::size_t points) {
+  contacts_.reserve(points);
+}
+
 void ToolRenderer::on_frame(const Frame& frame) {
   if (!order_.take(frame)) return;
-  PointCloud room;
-  contacts_.on_frame(frame.points->every_point(kernels_, room));
+  contacts_.on_frame(form_of<TiledCloud>(frame, kernels_));
   is_measured_ = false;
   updated_ = true;
   if (!p_.velocity_estimate) return;

@@ -20,6 +20,8 @@ class ToolRenderer final : public Renderer {
   ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                const Kernels& kernels);
 
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 

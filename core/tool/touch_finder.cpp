@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace remote_touch {
 
@@ -48,10 +49,13 @@ TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& k
   voxels_.resize(tool_->voxels.size() + 3, 0);
 }
 
-void TouchFinder::on_frame(const PointCloud& cloud) {
-  cloud_.assign(cloud);
-  const std::size_t room = cloud_.room() + kTilePoints * kBlockTiles;
-  for (auto* list : {&found_, &groups_, &tiles_, &rows_}) list->grow(room);
+void TouchFinder::on_frame(std::shared_ptr<const TiledCloud> cloud) {
+  cloud_ = std::move(cloud);
+  reserve(cloud_->room());
+}
+
+void TouchFinder::reserve(std::size_t room) {
+  for (auto* list : {&found_, &groups_, &tiles_, &rows_}) list->grow(room + kTilePoints * kBlockTiles);
 }
 
 std::span<const std::uint32_t> TouchFinder::in_tool(const ToolPose& pose) const {
@@ -77,7 +81,7 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
     return (sphere.centre_W - pose.p_W).squaredNorm() > reach * reach;
   };
   std::size_t rows = 0;
-  for (const TileBlock& block : cloud_.blocks()) {
+  for (const TileBlock& block : cloud_->blocks()) {
     if (beyond(block.sphere)) continue;
     for (std::uint32_t tile = 0; tile < block.count; tile += kLanes)
       rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
@@ -89,11 +93,11 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
   const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
   const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
                           distance_m / grid.size_m + 2, 1 / grid.size_m};
-  const std::size_t tiles = kernels_.spheres_near(cloud_.tile_spheres(), rows_.data(), rows, to_cells,
+  const std::size_t tiles = kernels_.spheres_near(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
                                                   nearness, code, tiles_.data());
-  const std::size_t groups = kernels_.spheres_near(cloud_.group_spheres(), tiles_.data(), tiles, to_cells,
+  const std::size_t groups = kernels_.spheres_near(cloud_->group_spheres(), tiles_.data(), tiles, to_cells,
                                                    nearness, code, groups_.data());
-  const std::size_t count = kernels_.points_in_cells(cloud_.x(), cloud_.y(), cloud_.z(), groups_.data(),
+  const std::size_t count = kernels_.points_in_cells(cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(),
                                                      groups, to_cells, cells, least, found_.data());
   return {found_.data(), count};
 }

@@ -18,8 +18,9 @@ class TouchFinder {
  public:
   TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
 
-  void on_frame(const PointCloud& cloud);  // allocates
-  const TiledCloud& cloud() const { return cloud_; }
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
+  void reserve(std::size_t room);                          // for clouds of that room
+  const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
 
   // The points in shell or interior voxels.
@@ -37,7 +38,7 @@ class TouchFinder {
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   std::vector<std::int8_t> voxels_, nearness_;  // of every cell, with room to read three bytes more
-  TiledCloud cloud_;
+  std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Room<std::uint32_t> rows_, tiles_, groups_, found_;
 };
 

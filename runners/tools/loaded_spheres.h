@@ -21,6 +21,8 @@ class LoadedSpheres final : public Renderer {
 
   // Throws InputError when the tool cannot be made.
   LoadedSpheres(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
+  void prepare(Frame& frame) const override { renderer_.prepare(frame); }
+  void reserve(std::size_t points) override { renderer_.reserve(points); }
   void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
   RenderOutput step(const DeviceState& device, double time_s) override {
     return renderer_.step(device, time_s);

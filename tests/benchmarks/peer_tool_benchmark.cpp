@@ -22,6 +22,7 @@
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_tool.h"
 #include "tests/benchmarks/tool_scene.h"
+#include "tests/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -135,7 +136,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
 void add_ours(const Surface& surface, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : levels()) {
     const auto finder = std::make_shared<TouchFinder>(surface.scene().tool, *kernels);
-    finder->on_frame(surface.scene().cloud);
+    finder->on_frame(formed<TiledCloud>(surface.scene().cloud));
     add(
         "list/" + where + "/ours/" + kernels->isa, [=, &surface] { return ours_right(*finder, surface); },
         [=](benchmark::State& state) {

@@ -17,6 +17,7 @@
 #include "core/tool/look_ahead_motion.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
+#include "tests/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -89,7 +90,7 @@ void add_tree(const PointCloud& cloud) {
 bool detection_right(const SphereTool& tool, const PointCloud& cloud, const ToolPose& pose,
                      const Kernels& kernels) {
   RegionContacts contacts(tool.leaves, kLookAhead_m, kernels);
-  contacts.on_frame(cloud);
+  contacts.on_frame(formed<RegionTree>(cloud));
   const SphereTree& regions = contacts.regions().spheres();
   const std::vector<LeafPair> expected = naive_pairs(*tool.leaves, pose, regions, kLookAhead_m);
   TreeCollision collision(*tool.leaves, kernels);
@@ -112,7 +113,7 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Place
         [=, &cloud](benchmark::State& state) {
           const SphereTool& tool = tool_of(name, kLeaves);
           RegionContacts contacts(tool.leaves, kLookAhead_m, *kernels);
-          contacts.on_frame(cloud);
+          contacts.on_frame(formed<RegionTree>(cloud));
           TreeCollision collision(*tool.leaves, *kernels);
           collision.on_frame(contacts.regions().spheres());
           std::size_t chosen = 0;
@@ -169,7 +170,7 @@ class Ride {
         course_(course),
         contacts_(tool.leaves, kLookAhead_m, kernels),
         motion_({.detections_per_tick = kDetections, .at_rest_m = kAtRest_m}, *tool.body, tool.reach_m) {
-    contacts_.on_frame(wheels());
+    contacts_.on_frame(formed<RegionTree>(wheels()));
     pose_ = course.device(0);
     pose_.p_W.z() -= 0.3;
     for (int i = 0; i < 20; ++i) step(course.device(0));
@@ -177,7 +178,7 @@ class Ride {
   // The frame is not part of the tick.
   void begin(int tick) {
     const PointCloud* frame = course_.frame(tick);
-    if (frame) contacts_.on_frame(*frame);
+    if (frame) contacts_.on_frame(formed<RegionTree>(*frame));
     updated_ = frame != nullptr;
   }
   ToolMotionReport step(int tick) { return step(course_.device(tick)); }

@@ -15,6 +15,7 @@
 #include "core/tool/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"
+#include "tests/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -35,7 +36,7 @@ const char* name_of(TouchRule rule) {
 void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : levels()) {
     const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
-    finder->on_frame(scene.cloud);
+    finder->on_frame(formed<TiledCloud>(scene.cloud));
     add(
         "tool_list/" + scene.name + "_" + where + "/" + kernels->isa,
         [=, &scene] {
@@ -77,7 +78,7 @@ struct Stepper {
         program(*scene.tool),
         rule(rule_),
         reach_m(scene.tool->reach_m) {
-    contacts.on_frame(scene.cloud);
+    contacts.on_frame(formed<TiledCloud>(scene.cloud));
   }
 
   // A millimetre down and along at most, as far as the points allow.
