@@ -1,0 +1,14 @@
+// What `remote-touch devices` tells about an adapter.
+#pragma once
+
+#include <string>
+
+namespace remote_touch {
+
+struct Availability {
+  bool compiled_in = true;
+  bool found = false;  // something to open is there now
+  std::string detail;  // what was found, or why nothing is and what would help; one line
+};
+
+}  // namespace remote_touch

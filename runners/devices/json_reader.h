@@ -1,0 +1,55 @@
+// Reads JSON text once, front to back, without a copy or an allocation: for messages in a haptic tick. Every
+// function tells whether the text was what it asks for; after a false the rest of the text is not to be read.
+// Strings and keys are given as they stand in the text, with their escapes.
+#pragma once
+
+#include <string_view>
+
+namespace remote_touch {
+
+class JsonReader {
+ public:
+  explicit JsonReader(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+
+  // member: bool(std::string_view key), which reads the value or skips it.
+  template <class Member>
+  bool object(Member member) {
+    return items('{', '}', [&] {
+      std::string_view key;
+      return string(key) && take(':') && member(key);
+    });
+  }
+  // element: bool(), which reads one or skips it.
+  template <class Element>
+  bool array(Element element) {
+    return items('[', ']', element);
+  }
+
+  // Finite; what JSON does not know, such as NaN, is no number.
+  bool number(double& value);
+  bool boolean(bool& value);
+  bool string(std::string_view& value);
+  bool skip() { return skip(0); }
+  bool at_end();
+
+ private:
+  template <class Item>
+  bool items(char open, char close, Item item) {
+    if (!take(open)) return false;
+    if (take(close)) return true;
+    for (;;) {
+      if (!item()) return false;
+      if (take(close)) return true;
+      if (!take(',')) return false;
+    }
+  }
+  bool skip(int depth);
+  bool word(std::string_view text);
+  char next();        // after white space; 0 at the end
+  bool take(char c);  // when it is the next
+
+  const char* at_;
+  const char* end_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,126 @@
+// What the test doubles of vendors' libraries share: the device behind the library, as a test sets it and
+// sees it. Each double exports it under the name device_double.
+//
+// They are test doubles: they have the vendors' signatures and none of their behaviour. What passes with them
+// shows what an adapter calls, not what a device does.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "runners/live/steady_clock.h"
+
+namespace remote_touch {
+
+class DeviceDouble {
+ public:
+  // All in the vendor's units and axes.
+  struct State {
+    std::array<double, 3> position{}, velocity{}, turning{};
+    std::array<double, 9> turn{1, 0, 0, 0, 1, 0, 0, 0, 1};  // by rows
+    unsigned buttons = 0;
+
+    int devices = 1;
+    int sensed_axes = 6, actuated_axes = 6;
+    double largest_force = 0, continuous_force = 0, largest_torque = 0, largest_stiffness = 0;
+    bool is_unplugged = false;
+    int reading_error = 0, writing_error = 0, switching_error = 0;  // the vendor's code, until it is 0 again
+    // Of those that have such things.
+    bool is_homed = true;
+    int failing_homings = 0;
+    int scheduler_error = 0;
+    bool is_scheduler_silent = false;  // from now on it calls nobody
+  };
+
+  struct Event {
+    double at_s;
+    std::array<double, 6> told;  // the last force and torque that the library was told
+    bool has_motors_on;
+
+    // At the device's side.
+    double force() const { return has_motors_on ? std::hypot(told[0], told[1], told[2]) : 0; }
+  };
+
+  // --- for tests ---
+  void reset() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    state_ = {}, told_ = {}, events_ = {};
+    has_motors_on_ = is_open_ = false;
+    count_ = 0;
+    hang_next_ = none, hangs_ = false;
+  }
+  template <class Change>
+  void set(Change change) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    change(state_);
+  }
+  // The next such call hangs until release(), and then does what it was called for.
+  enum Call { none, tells_force, switches_on };
+  void hang_next(Call call) { hangs_ = true, hang_next_ = call; }
+  void release() { hangs_ = false; }
+  bool is_hanging() const { return hangs_ && hang_next_ == none; }
+
+  // Those remembered, in order; the oldest go first.
+  std::vector<Event> events() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<Event> events;
+    for (std::uint64_t i = count_ - std::min<std::uint64_t>(count_, events_.size()); i < count_; ++i)
+      events.push_back(events_[i % events_.size()]);
+    return events;
+  }
+  Event now() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return {steady_s(), told_, has_motors_on_};
+  }
+  bool is_open() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return is_open_;
+  }
+
+  // --- for the library ---
+  State state() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return state_;
+  }
+  void open(bool is_open) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_open_ = is_open;
+  }
+  void tell(const std::array<double, 6>& told) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    told_ = told;
+    remember();
+  }
+  void switch_motors(bool on) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    has_motors_on_ = on;
+    remember();
+  }
+  void enter(Call call) {
+    if (!hang_next_.compare_exchange_strong(call, none)) return;
+    while (hangs_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+ private:
+  void remember() { events_[count_++ % events_.size()] = {steady_s(), told_, has_motors_on_}; }
+
+  mutable std::mutex mutex_;
+  State state_;
+  std::array<double, 6> told_{};
+  bool has_motors_on_ = false, is_open_ = false;
+  std::array<Event, 4096> events_{};
+  std::uint64_t count_ = 0;
+  std::atomic<Call> hang_next_{none};
+  std::atomic<bool> hangs_{false};
+};
+
+}  // namespace remote_touch
+
+extern "C" remote_touch::DeviceDouble* device_double();

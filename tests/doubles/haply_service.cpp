@@ -1,0 +1,270 @@
+// As in runners/devices/haply_link.cpp.
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK
+#include "tests/doubles/haply_service.h"
+
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <condition_variable>
+#include <csignal>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "runners/live/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+using nlohmann::json;
+namespace beast = boost::beast;
+using Web = beast::websocket::stream<tcp::socket, false>;
+
+json vector_of(const Vec3& v) {
+  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
+}
+
+json orientation_of(const Eigen::Quaterniond& q) {
+  return {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}};
+}
+
+json device_of(const HaplyWorld& world, const std::string& id, const Vec3& given_N, bool with_config) {
+  const json zeros = {{"a0", 0.0}, {"a1", 0.0}, {"a2", 0.0}};
+  // The cursor is the first device's; another stands elsewhere.
+  const Vec3 at = id == world.devices.front() ? world.position_m : Vec3(9, 9, 9);
+  json device = {{"device_id", id},
+                 {"state",
+                  {{"angular_position", zeros},
+                   {"angular_velocity", zeros},
+                   {"body_orientation", orientation_of(Eigen::Quaterniond::Identity())},
+                   {"control_domain", "cartesian"},
+                   {"control_mode", "force"},
+                   {"current_cursor_position", vector_of(Vec3(7, 7, 7))},
+                   {"cursor_position", vector_of(at)},
+                   {"cursor_velocity", vector_of(world.velocity_m_per_s)}}},
+                 {"status", {{"calibrated", true}, {"in_use", true}, {"ready", true}}}};
+  if (world.reports_force) device["state"]["current_cursor_force"] = vector_of(given_N);
+  if (with_config)
+    device["config"] = {{"type", "inverse3"},
+                        {"basis", {{"permutation", world.basis}}},
+                        {"handedness", "right"},
+                        {"filters", {{"force_gate", {{"gain", 0.3}}}}}};
+  return device;
+}
+
+std::string message_of(const HaplyWorld& world, const Vec3& given_N, bool is_inventory) {
+  json message = {{"inverse3", json::array()}};
+  if (is_inventory) message["session_id"] = 7;
+  for (const std::string& id : world.devices)
+    message["inverse3"].push_back(device_of(world, id, given_N, is_inventory));
+  if (world.has_handle) {
+    json state = {{"orientation", orientation_of(world.orientation)}, {"hall", 0}};
+    if (world.is_handle_wired)
+      state["button"] = world.a;
+    else
+      state["buttons"] = {{"a", world.a}, {"b", world.b}, {"c", world.c}};
+    message[world.is_handle_wired ? "verse_grip" : "wireless_verse_grip"] = {
+        {{"device_id", "61548"}, {"state", state}, {"status", {{"error", 0}}}}};
+  }
+  return message.dump();
+}
+
+}  // namespace
+
+struct HaplyService::Inside {
+  boost::asio::io_context context;
+  tcp::acceptor acceptor{context, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0)};
+  // Kept beside the objects of Boost, which are the thread's alone.
+  const int listener = acceptor.native_handle();
+  const int port = acceptor.local_endpoint().port();
+
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  HaplyWorld world;
+  std::vector<Command> commands;
+  Vec3 given_N = Vec3::Zero();
+  int connection = -1, connections = 0;
+  enum class Mood { answers, hangs, hangs_in_the_middle, pings, is_dead } mood = Mood::answers;
+  std::thread thread;
+
+  void serve();
+  void talk(Web& web);
+  void note(const std::string& text);
+  void set_mood(Mood next);
+  bool is(Mood asked);
+  std::string answer(bool is_inventory);
+};
+
+void HaplyService::Inside::serve() {
+  for (;;) {
+    error_code ec;
+    tcp::socket socket(context);
+    acceptor.accept(socket, ec);
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (mood == Mood::is_dead || ec) return;
+      connection = socket.native_handle();
+      ++connections;
+    }
+    Web web(std::move(socket));
+    web.next_layer().set_option(tcp::no_delay(true));
+    talk(web);
+    const std::lock_guard<std::mutex> lock(mutex);
+    connection = -1;
+  }
+}
+
+void HaplyService::Inside::talk(Web& web) {
+  error_code ec;
+  web.accept(ec);
+  web.text(true);
+  for (bool is_inventory = true; !ec; is_inventory = false) {
+    beast::flat_buffer command;
+    if (!is_inventory) {
+      web.read(command, ec);
+      if (ec) return;
+      note(beast::buffers_to_string(command.data()));
+    }
+    const std::string text = answer(is_inventory);
+    while (!ec && is(Mood::pings)) web.ping({}, ec);
+    std::unique_lock<std::mutex> lock(mutex);
+    if (mood == Mood::hangs_in_the_middle) {
+      // A text frame of 100 bytes, of which five come.
+      const unsigned char half[] = {0x81, 100, '{', '"', 'i', 'n', 'v'};
+      boost::asio::write(web.next_layer(), boost::asio::buffer(half), ec);
+    }
+    const bool had_to_wait = mood == Mood::hangs_in_the_middle;
+    changed.wait(lock, [&] { return mood == Mood::answers || mood == Mood::is_dead; });
+    if (mood == Mood::is_dead || had_to_wait) return;
+    lock.unlock();
+    web.write(boost::asio::buffer(text), ec);
+  }
+}
+
+void HaplyService::Inside::note(const std::string& text) {
+  const double now_s = steady_s();
+  const json message = json::parse(text);
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (const json& device : message.at("inverse3"))
+    for (const auto& [key, force] : device.at("commands").at("set_cursor_force").items()) {
+      const Vec3 force_N(force.at("x"), force.at("y"), force.at("z"));
+      commands.push_back({now_s, device.at("device_id"), key, force_N});
+      given_N = (key == world.force_key ? world.gate : 0) * force_N + world.other_N;
+    }
+}
+
+std::string HaplyService::Inside::answer(bool is_inventory) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  const std::string& instead = is_inventory ? world.inventory : world.answer;
+  return instead.empty() ? message_of(world, given_N, is_inventory) : instead;
+}
+
+bool HaplyService::Inside::is(Mood asked) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  return mood == asked;
+}
+
+void HaplyService::Inside::set_mood(Mood next) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  mood = next;
+  changed.notify_all();
+  if (mood != Mood::is_dead) return;
+  ::shutdown(listener, SHUT_RDWR);
+  if (connection >= 0) ::shutdown(connection, SHUT_RDWR);
+}
+
+HaplyService::HaplyService(const HaplyWorld& world) : inside_(std::make_unique<Inside>()) {
+  inside_->world = world;
+  inside_->thread = std::thread([this] { inside_->serve(); });
+}
+
+HaplyService::~HaplyService() {
+  die();
+  inside_->thread.join();
+}
+
+int HaplyService::port() const {
+  return inside_->port;
+}
+
+std::string HaplyService::address(const std::string& settings) const {
+  return "ws://127.0.0.1:" + std::to_string(port()) + settings;
+}
+
+void HaplyService::set(const HaplyWorld& world) {
+  const std::lock_guard<std::mutex> lock(inside_->mutex);
+  inside_->world = world;
+}
+
+void HaplyService::hang() {
+  inside_->set_mood(Inside::Mood::hangs);
+}
+
+void HaplyService::hang_in_the_middle() {
+  inside_->set_mood(Inside::Mood::hangs_in_the_middle);
+}
+
+void HaplyService::ping_without_end() {
+  inside_->set_mood(Inside::Mood::pings);
+}
+
+void HaplyService::resume() {
+  inside_->set_mood(Inside::Mood::answers);
+}
+
+void HaplyService::die() {
+  inside_->set_mood(Inside::Mood::is_dead);
+}
+
+std::vector<HaplyService::Command> HaplyService::commands() const {
+  const std::lock_guard<std::mutex> lock(inside_->mutex);
+  return inside_->commands;
+}
+
+int HaplyService::connections() const {
+  const std::lock_guard<std::mutex> lock(inside_->mutex);
+  return inside_->connections;
+}
+
+HaplyServiceProcess::HaplyServiceProcess() {
+  int ends[2];
+  if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+  child_ = ::fork();
+  if (child_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::close(ends[0]);
+    const HaplyService service;
+    const int port = service.port();
+    if (::write(ends[1], &port, sizeof port) == sizeof port)
+      for (;;) ::pause();
+    ::_exit(1);
+  }
+  ::close(ends[1]);
+  if (::read(ends[0], &port_, sizeof port_) != sizeof port_) port_ = 0;
+  ::close(ends[0]);
+}
+
+std::string HaplyServiceProcess::address(const std::string& settings) const {
+  return "ws://127.0.0.1:" + std::to_string(port_) + settings;
+}
+
+void HaplyServiceProcess::kill() {
+  if (child_ <= 0) return;
+  ::kill(child_, SIGKILL);
+  ::waitpid(child_, nullptr, 0);
+  child_ = -1;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,54 @@
+// The stock daemon spacenavd with a mouse: a pseudo-terminal that answers as a serial Magellan SpaceMouse
+// does.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+namespace remote_touch {
+
+// Its frame is x to the right, y up, z towards the user: the axes of its packets.
+class SerialMouse {
+ public:
+  SerialMouse();
+  ~SerialMouse();
+
+  const std::string& terminal() const { return terminal_; }  // what the daemon opens
+  bool is_detected() const { return is_detected_; }          // it was told to report motion
+  // Along and about x, y and z, in counts.
+  void deflect(const std::array<int, 6>& counts);
+  void press(unsigned buttons);  // those that are down, a bit each
+
+ private:
+  void answer();
+  void send(const std::string& packet);
+
+  int handle_ = -1;
+  std::string terminal_;
+  std::atomic<bool> is_detected_{false}, is_over_{false};
+  std::thread thread_;
+};
+
+// Where the daemon is installed; empty: it is not.
+std::string spacenav_daemon_program();
+
+// Runs in a folder of its own, where it makes its socket.
+class SpacenavDaemon {
+ public:
+  SpacenavDaemon(const std::filesystem::path& folder, const std::string& terminal);
+  ~SpacenavDaemon() { kill(); }
+
+  std::string socket() const { return (folder_ / "run/spnav.sock").string(); }
+  void kill();
+
+ private:
+  std::filesystem::path folder_;
+  pid_t child_ = -1;
+};
+
+}  // namespace remote_touch
