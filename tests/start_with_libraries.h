@@ -1,0 +1,24 @@
+// For tests that take another library of the same name than the system's.
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace remote_touch {
+
+// Starts the program again with this folder before the others, once: the loader reads LD_LIBRARY_PATH only
+// when a program starts. Works from ctest and by hand alike.
+inline void start_with_libraries(const std::string& folder, char** argv) {
+  const char* variable = std::getenv("LD_LIBRARY_PATH");
+  const std::string others = variable ? variable : "";
+  if (others.rfind(folder, 0) == 0) return;
+  setenv("LD_LIBRARY_PATH", (others.empty() ? folder : folder + ":" + others).c_str(), 1);
+  execv("/proc/self/exe", argv);
+  std::perror("cannot start again");
+  std::exit(1);
+}
+
+}  // namespace remote_touch
