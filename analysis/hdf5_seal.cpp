@@ -4,15 +4,14 @@
 #include <string>
 
 #include "analysis/sha256.h"
+#include "core/input_error.h"
 
 namespace remote_touch {
 
 namespace {
 
-const std::string kOpening = "Remote Touch result. HDF5 begins at byte 512; SHA-256 from there on:\n";
-
 std::string block(const std::string& sum) {
-  std::string text = kOpening + sum + "\n";
+  std::string text = std::string(kResultOpening) + sum + "\n";
   text.resize(kSealSize, '\0');
   return text;
 }
@@ -30,10 +29,17 @@ std::vector<char> seal(const std::vector<char>& image) {
   return sealed;
 }
 
+void seal_file(const std::filesystem::path& file) {
+  const std::string text = block(sha256_of_file(file, kSealSize));
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size())).flush();
+  if (!stream) throw InputError(file.string(), "cannot be sealed; allowed a writable place");
+}
+
 Seal seal_of(const std::filesystem::path& file) {
   std::string found(kSealSize, '\0');
   std::ifstream(file, std::ios::binary).read(found.data(), kSealSize);
-  if (!found.starts_with(kOpening)) return Seal::absent;
+  if (!found.starts_with(kResultOpening)) return Seal::absent;
   return found == block(sha256_of_file(file, kSealSize)) ? Seal::intact : Seal::broken;
 }
 

@@ -5,15 +5,22 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace remote_touch {
 
+inline constexpr std::string_view kResultOpening =
+    "Remote Touch result. HDF5 begins at byte 512; SHA-256 from there on:\n";
 inline constexpr std::size_t kSealSize = 512;  // the smallest user block there is
 
 // The image of an HDF5 file with the seal before it, as h5jam puts a user block before a file: the library
 // finds its beginning and counts from there.
 std::vector<char> seal(const std::vector<char>& image);
+
+// Seals a finished file in place; it was made with a user block of kSealSize. Throws InputError when it
+// cannot be read or written.
+void seal_file(const std::filesystem::path& file);
 
 enum class Seal { intact, absent, broken };
 // Throws InputError when the file cannot be read.

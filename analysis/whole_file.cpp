@@ -84,8 +84,7 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
     if (error != 0) give_up(error);
     return;
   }
-  const std::filesystem::path place = linked(target);
-  const std::filesystem::path temporary = place.string() + kTemporary + std::to_string(::getpid());
+  const std::filesystem::path place = linked(target), temporary = temporary_of(target);
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) give_up(errno);
   int error = write_and_flush(file, static_cast<const char*>(data), size);
@@ -94,6 +93,24 @@ void write_whole_file(const std::filesystem::path& target, const void* data, std
   if (error != 0) {
     ::unlink(temporary.c_str());
     give_up(error);
+  }
+  flush_folder(place);
+}
+
+std::filesystem::path temporary_of(const std::filesystem::path& target) {
+  return linked(target).string() + kTemporary + std::to_string(::getpid());
+}
+
+void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const std::filesystem::path place = linked(target);
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+  int error = file < 0 ? errno : 0;
+  if (error == 0 && ::fsync(file) != 0) error = errno;
+  if (file >= 0) ::close(file);
+  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    refuse(target, error, "a writable place with room for the file");
   }
   flush_folder(place);
 }

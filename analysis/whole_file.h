@@ -18,6 +18,11 @@ void require_writable(const std::filesystem::path& target);
 // Throws InputError, naming the target, when it is the file that is read.
 void require_other(const std::filesystem::path& target, const std::filesystem::path& input);
 
+// The temporary name in the target's folder under which this process writes it.
+std::filesystem::path temporary_of(const std::filesystem::path& target);
+// Renames that over the target, flushed to the disk. On failure as write_whole_file.
+void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
+
 // What a name that is a link leads to, if that is there; any other name as it is.
 std::filesystem::path linked(const std::filesystem::path& target);
 

@@ -5,6 +5,7 @@
 #include "core/fixtures/hue_range.h"
 #include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
+#include "runners/live/session_scene.h"
 #include "runners/tools/loaded_spheres.h"
 #include "runners/tools/loaded_tool.h"
 #include "runners/trajectories/follow_surface.h"
@@ -76,6 +77,8 @@ const ScenarioEntry kScenarios[] = {
     scenario<MovingPlane>("moving-plane", "a flat cloud with normals that rests, then lifts a tool"),
     scenario<Sheet>("sheet", "one flat panel with normals, to be touched from the back too"),
     scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
+    scenario<SessionScene>("live-session",
+                           "the frames of a recorded live session, when the live renderer got them"),
 };
 
 const FixtureEntry kFixtures[] = {
@@ -89,6 +92,7 @@ const FixtureEntry kFixtures[] = {
 const TrajectoryEntry kTrajectories[] = {
     trajectory<Waypoints>("waypoints", "listed points, each with its speed"),
     trajectory<Poses>("poses", "listed poses of six degrees of freedom, each with the time of the way there"),
+    trajectory<SessionHand>("live-session", "the hand of a recorded live session, tick for tick"),
     trajectory<RandomWalk>("random-walk", "a smooth random motion of six degrees of freedom"),
     trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
     trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),

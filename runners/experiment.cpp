@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runners/json_parameters.h"
+#include "runners/live/session_scene.h"
 
 namespace remote_touch {
 
@@ -132,6 +133,8 @@ Experiment Experiment::from_json(Json configuration) {
   experiment.trajectory_ = read_part(taken(configuration, "trajectory"), trajectories(), "trajectory");
   experiment.operator_ = read_section<OperatorSettings>(configuration, "operator");
   experiment.device_ = read_section<MotorSettings>(configuration, "device");
+  experiment.live_ = read_section<LiveSettings>(configuration, "live");
+  experiment.safety_ = read_section<SafetyLimits>(configuration, "safety");
   read_parameters(configuration, parameters(experiment.settings_), "", false);
   const std::string contradiction = conflict(experiment.fixture_values(), experiment.sequence_);
   if (!contradiction.empty()) throw InputError(contradiction);
@@ -142,13 +145,15 @@ Experiment Experiment::from_json(Json configuration) {
     if (!experiment.can_be_pressed(experiment.sequence_[i]))
       throw InputError(
           "sequence." + std::to_string(i) + ".button = " + std::to_string(experiment.sequence_[i].button),
-          "allowed a button that operator.presses presses");
+          "allowed a button that operator.presses presses, or any with a section live");
   return experiment;
 }
 
 Experiment Experiment::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
-  return from_json(stored_or_file(stored_experiments(), name_or_file, "an experiment's"), name_or_file,
-                   overrides);
+  const std::string text = looks_like_session(name_or_file)
+                               ? session_experiment(name_or_file)
+                               : stored_or_file(stored_experiments(), name_or_file, "an experiment's");
+  return from_json(text, name_or_file, overrides);
 }
 
 std::string Experiment::to_json() const {
@@ -169,6 +174,8 @@ std::string Experiment::to_json() const {
   json["trajectory"] = part_json(trajectory_);
   write_section(operator_, "operator", json);
   write_section(device_, "device", json);
+  write_section(live_, "live", json);
+  write_section(safety_, "safety", json);
   return json.dump();
 }
 
@@ -205,6 +212,7 @@ bool Experiment::has_guidance() const {
 // A simulated device has no other buttons than those that the operator's settings press.
 bool Experiment::can_be_pressed(const SequenceStep& step) const {
   if (step.start != StepStart::button && step.done != StepEnd::button) return true;
+  if (live_ || trajectory_.name == "live-session") return true;  // the device has its own
   const std::vector<double> presses = operator_ ? operator_->presses : std::vector<double>{};
   for (std::size_t i = 1; i < presses.size(); i += 3)
     if (presses[i] == step.button) return true;

@@ -1,5 +1,5 @@
 // One resolved configuration: scenario, depth pipeline, fixtures, guidance, task, renderer, trajectory,
-// operator, device, durations, seed.
+// operator, device, live loop, durations, seed.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,9 @@
 
 #include "core/guidance/guided_renderer.h"
 #include "runners/catalog.h"
+#include "runners/devices/safety_gate.h"
 #include "runners/frame_stream.h"
+#include "runners/live/live_settings.h"
 #include "runners/operator/simulated_hand.h"
 #include "runners/stored.h"
 
@@ -41,7 +43,7 @@ class Experiment {
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
   static Experiment from_json(nlohmann::ordered_json configuration);
-  // A name of data/experiments, or a JSON file.
+  // A name of data/experiments, a JSON file, or a live session, which runs again.
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const RunSettings& settings() const { return settings_; }
@@ -60,6 +62,9 @@ class Experiment {
   FrameProcessing build_processing(const Kernels& kernels,
                                    std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
   SimulatedHand build_hand() const;
+  // For the live loop; offline runs take no notice of them.
+  LiveSettings live() const { return live_.value_or(LiveSettings{}); }
+  SafetyLimits safety() const { return safety_.value_or(SafetyLimits{}); }
 
  private:
   std::vector<FixtureValues> fixture_values() const;
@@ -74,6 +79,8 @@ class Experiment {
   std::vector<SequenceStep> sequence_;
   std::optional<OperatorSettings> operator_;
   std::optional<MotorSettings> device_;
+  std::optional<LiveSettings> live_;
+  std::optional<SafetyLimits> safety_;
   Part<RendererEntry> renderer_;
   Part<TrajectoryEntry> trajectory_;
 };

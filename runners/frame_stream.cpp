@@ -9,6 +9,22 @@
 
 namespace remote_touch {
 
+// Points that come with another time stamp are another frame.
+std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
+  return mixed(fingerprint(cloud), std::bit_cast<std::uint64_t>(captured_s));
+}
+
+void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) const {
+  if (depth) {
+    if (!cloud.image)
+      throw InputError("depth_pipeline", "this scenario's frames are no depth images; allowed none");
+    depth->process(cloud);
+  }
+  frame.guidance = fixtures.targets(cloud, frame.captured_s);
+  fixtures.assign(cloud, frame.captured_s, off);
+  frame.points = make_search(std::move(cloud));
+}
+
 FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
                          const NoiseKey& key, bool hash_frames)
     : scenario_(scenario),
@@ -18,8 +34,9 @@ FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, c
       hash_frames_(hash_frames) {}
 
 bool FrameStream::exists(int frame) const {
-  return frame < scenario_.frame_count() || processing_.fixtures.changes_with_time() ||
-         delivery_.drop_probability > 0;
+  if (frame < scenario_.frame_count()) return true;
+  const bool goes_on = processing_.fixtures.changes_with_time() || delivery_.drop_probability > 0;
+  return goes_on && !scenario_.arrives_s(0);
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.
@@ -34,7 +51,8 @@ double FrameStream::captured_s(int frame) const {
 void FrameStream::send(int frame) {
   const auto chance = uniforms(noise_stream(key_, NoiseUse::delivery, static_cast<std::uint32_t>(frame)), 0);
   if (chance[0] < delivery_.drop_probability) return;
-  const OnTheWay sent{captured_s(frame) + delivery_.latency_s + chance[1] * delivery_.jitter_s, frame};
+  const double there_s = scenario_.arrives_s(seen(frame)).value_or(captured_s(frame));
+  const OnTheWay sent{there_s + delivery_.latency_s + chance[1] * delivery_.jitter_s, frame};
   const auto after = [](const OnTheWay& a, const OnTheWay& b) { return a.arrives_s < b.arrives_s; };
   on_the_way_.insert(std::upper_bound(on_the_way_.begin(), on_the_way_.end(), sent, after), sent);
 }
@@ -53,26 +71,16 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
 }
 
 void FrameStream::fill(Frame& frame) const {
-  if (!processing_.changes_points()) {
+  if (processing_.changes_points())
+    processing_.fill(frame, scenario_.cloud(seen(frame.index)),
+                     scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
+  else
     frame.points = scenario_.points(seen(frame.index));
-    return;
-  }
-  PointCloud cloud = scenario_.cloud(seen(frame.index));
-  if (processing_.depth) {
-    if (!cloud.image)
-      throw InputError("depth_pipeline", "this scenario's frames are no depth images; allowed none");
-    processing_.depth->process(cloud);
-  }
-  frame.guidance = processing_.fixtures.targets(cloud, frame.captured_s);
-  processing_.fixtures.assign(cloud, frame.captured_s);
-  frame.points = make_search(std::move(cloud));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
   const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are made when asked for
-  const std::uint64_t hash = fingerprint(stored ? stored->cloud() : scenario_.cloud(seen(frame)));
-  // Points that come with another time stamp are another frame.
-  return mixed(hash, std::bit_cast<std::uint64_t>(captured_s(frame)));
+  return frame_hash(stored ? stored->cloud() : scenario_.cloud(seen(frame)), captured_s(frame));
 }
 
 }  // namespace remote_touch

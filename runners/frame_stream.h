@@ -26,7 +26,13 @@ struct FrameProcessing {
   FixtureAssignment fixtures;
 
   bool changes_points() const { return depth || !fixtures.empty(); }
+  // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is no
+  // depth image to be processed, or a fixture rule cannot be applied to it.
+  void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
 };
+
+// Fingerprint of a frame's points and its time of capture.
+std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
 
 class FrameStream {
  public:

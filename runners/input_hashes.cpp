@@ -41,8 +41,9 @@ std::string InputHashes::text() const {
     std::sort(lines.begin(), lines.end());
     Sha256 hash;
     for (const std::string& line : lines) hash.add((line + "\n").data(), line.size() + 1);
-    text += (text.empty() ? "" : "\n") + in_one_line(path) + ": " + std::to_string(files.size()) +
-            " file(s), " + std::to_string(bytes) + " bytes, sha256 " + hash.hex();
+    if (!text.empty()) text += '\n';
+    text += in_one_line(path) + ": " + std::to_string(files.size()) + " file(s), " + std::to_string(bytes) +
+            " bytes, sha256 " + hash.hex();
   }
   return text;
 }

@@ -15,10 +15,18 @@ namespace {
 
 using namespace remote_touch;
 
-std::atomic<bool> stop_requested{false};
+std::atomic<bool> stop_requested{false}, report_requested{false}, rearm_requested{false};
 
 void request_stop(int) {
   stop_requested = true;
+}
+
+void request_report(int) {
+  report_requested = true;
+}
+
+void request_rearm(int) {
+  rearm_requested = true;
 }
 
 // REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
@@ -46,9 +54,13 @@ int main(int argc, char** argv) {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  std::signal(SIGUSR1, request_report);
+  std::signal(SIGUSR2, request_rearm);
   try {
     CommandLine line;
     line.stop = &stop_requested;
+    line.report = &report_requested;
+    line.rearm = &rearm_requested;
     const int code = run_command_line(argc, argv, line, chosen_kernels);
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       throw InputError("standard output", "cannot be written; allowed a place with room");

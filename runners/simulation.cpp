@@ -67,6 +67,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.stop && *options.stop) throw Interrupted{};
     // Time is made from the tick's number, never added up.
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
+    if (trajectory->is_missed(time_s)) continue;
     frames.deliver_until(time_s, *renderer);
     const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();

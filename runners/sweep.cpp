@@ -180,7 +180,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
   if (first_wrong == cells) return;
   std::string where;
   for (const std::size_t k : grid.place(static_cast<std::size_t>(first_wrong)))
-    where += (where.empty() ? "" : ",") + std::to_string(k);
+    where.append(where.empty() ? "" : ",").append(std::to_string(k));
   throw InputError(label + ": cell " + where, problem);
 }
 

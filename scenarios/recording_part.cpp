@@ -31,13 +31,13 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 namespace {
 
-// Images, and the meshes of tools: nothing that a recording is made from.
+// Images, the meshes of tools, and live sessions: nothing that a recording of frames is made from.
 bool is_single_file(const fs::path& file) {
   std::string ending = file.extension().string();
   if (ending == ".png") return true;
   for (char& c : ending)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return ending == ".obj" || ending == ".ply" || ending == ".stl";
+  return ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".h5";
 }
 
 }  // namespace

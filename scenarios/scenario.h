@@ -1,6 +1,7 @@
 // The seam of every scenario: a stream of point cloud frames and what is true about the scene.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -26,6 +27,11 @@ class Scenario {
   // Frames 0 .. frame_count() - 1 exist; a scene that never changes has one and goes on with it.
   virtual int frame_count() const = 0;
   virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
+
+  // Of a recorded live session: when the frame came to the renderer, infinite where it never did; which
+  // fixtures were off when it was processed, a bit each.
+  virtual std::optional<double> arrives_s(int /*frame*/) const { return {}; }
+  virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
 
   // The newest frame captured by then; half a microsecond lets a frame's own time count, however it was
   // rounded.

@@ -1,5 +1,5 @@
-// What every entry of the catalog owes its seam. A new scenario, fixture rule, trajectory or renderer is
-// tested here from its birth.
+// What every entry of the catalog owes its seam. A new scenario, fixture rule or trajectory is tested here
+// from its birth, a renderer in renderer_contract_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,149 +13,43 @@
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
 #include "runners/json_parameters.h"
-#include "tests/allocation_counter.h"
+#include "runners/live/session_file.h"
 #include "tests/scenes.h"
 #include "tests/test_files.h"
 
 namespace remote_touch {
 namespace {
 
-// --- renderers ---
-
-std::unique_ptr<Renderer> build(const RendererEntry& entry) {
-  return entry.make()->build(1000, scenes::kernels());
-}
-
-// A flat cloud that holds the renderer: with regions, where it knows nothing else.
-PointCloud grid_for(const RendererEntry& entry, int n) {
-  PointCloud cloud = scenes::flat_grid(n);
-  if (entry.held_by == HeldBy::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
-  return cloud;
-}
-
-// A press into a flat cloud with a new frame every 33 ticks, and back out.
-std::vector<RenderOutput> press(const RendererEntry& entry, Renderer& renderer) {
-  std::vector<RenderOutput> outputs;
-  for (int tick = 0; tick < 200; ++tick) {
-    if (tick % 33 == 0) renderer.on_frame(scenes::frame(grid_for(entry, 60), tick / 33));
-    const double depth = tick < 100 ? 0.02 - 0.0005 * tick : -0.03 + 0.0005 * (tick - 100);
-    outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
+// A live session of two frames and some ticks, as entries called live-session need one.
+std::string write_session(const TestFolder& folder) {
+  const std::string file = (folder / "session.h5").string();
+  const SensorView view{{64, 2, 60, 60, 31.5, 0.5}, 0.001, 30, false, RigidTransform::Identity()};
+  SessionWriter session(file, view, RigidTransform::Identity(), {{"config", R"({"haptic_rate_hz": 1000})"}});
+  SensorFrame frame;
+  frame.depth.assign(128, 500);
+  for (int i = 0; i < 2; ++i) {
+    frame.number = i, frame.depth[5] = static_cast<std::uint16_t>(480 + i);
+    session.append(frame, i / 30.0, 0);
   }
-  return outputs;
+  LiveTick tick;
+  for (int i = 0; i < 100; ++i) {
+    tick.number = i + 3, tick.taken = i % 50 == 0 ? i / 50 : -1;
+    tick.device.position_W = Vec3(0.001 * i, 0, 0.5);
+    session.append(tick);
+  }
+  session.finish();
+  return file;
 }
 
-TEST(RendererContract, NoForceInFreeSpace) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
-    for (int tick = 0; tick < 50; ++tick) {
-      const RenderOutput out = renderer->step({Vec3(0.001 * tick, 0.03, 0)}, 0.001 * tick);
-      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
-      EXPECT_EQ(out.state, ContactState::free) << entry.name;
-      EXPECT_EQ(out.status, RenderStatus::ok) << entry.name;
-    }
-  }
-}
-
-TEST(RendererContract, HasAsManyDegreesOfFreedomAsItsEntrySays) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
-    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
-    EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
-  }
-}
-
-TEST(RendererContract, PushesTheHandOutOfTheSurface) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    double highest = 0;
-    for (const RenderOutput& out : press(entry, *renderer)) highest = std::max(highest, out.force_N.y());
-    EXPECT_GT(highest, 1) << entry.name;
-  }
-}
-
-TEST(RendererContract, SameInputSameBits) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto first = build(entry), second = build(entry);
-    const auto a = press(entry, *first), b = press(entry, *second);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      EXPECT_EQ(a[i].proxy_W, b[i].proxy_W) << entry.name;
-      EXPECT_EQ(a[i].force_N, b[i].force_N) << entry.name;
-      EXPECT_EQ(a[i].steps, b[i].steps) << entry.name;
-    }
-  }
-}
-
-TEST(RendererContract, AStepAllocatesNothing) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(grid_for(entry, 100)));
-    for (int tick = 0; tick < 300; ++tick) {
-      // Approach, press, slide fast, jump across the cloud.
-      const Vec3 hip(tick < 200 ? 0 : 0.002 * (tick - 250), tick < 100 ? 0.02 - 0.0004 * tick : -0.02,
-                     tick % 50 == 0 ? 0.05 : 0);
-      const std::size_t before = allocation_count();
-      renderer->step({hip}, 0.001 * tick);
-      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
-    }
-  }
-}
-
-// With guidance and a task on top of it as well.
-TEST(RendererContract, AGuidedStepAllocatesNothing) {
-  std::vector<FixtureValues> fixtures(2);
-  fixtures[0].label = "table";
-  fixtures[1].label = "valve", fixtures[1].role = FixtureRole::guidance;
-  SequenceStep lock, activate;
-  lock.action = FixtureAction::lock, lock.fixture = "table", lock.not_before_s = 0.05;
-  activate.action = FixtureAction::activate, activate.fixture = "valve", activate.start = StepStart::button;
-  activate.done = StepEnd::reached, activate.deadline_s = 0.1;
-  for (const RendererEntry& entry : renderers()) {
-    GuidedRenderer renderer(build(entry), {}, fixtures, {lock, activate},
-                            std::make_shared<FixtureSwitches>());
-    Frame frame = scenes::frame(grid_for(entry, 100));
-    frame.guidance = {{100, Vec3(0.2, 0, 0), Vec3::UnitY()}};
-    renderer.on_frame(frame);
-    RenderOutput out;
-    for (int tick = 0; tick < 300; ++tick) {
-      const DeviceState device{Vec3(0, 0.02 - 0.0004 * std::min(tick, 100), 0),
-                               Eigen::Quaterniond::Identity(), tick / 10 % 10 == 9 ? 1u : 0u};
-      const std::size_t before = allocation_count();
-      out = renderer.step(device, 0.001 * tick);
-      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
-    }
-    EXPECT_EQ(out.guidance->sequence_missed, 1) << entry.name;
-    EXPECT_TRUE(out.guidance->pulls) << entry.name;
-  }
-}
-
-TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    const RenderOutput out = renderer->step({Vec3(1, 2, 3)}, 0);
-    EXPECT_EQ(out.proxy_W, Vec3(1, 2, 3)) << entry.name;
-    EXPECT_EQ(out.status, RenderStatus::no_frame) << entry.name;
-    EXPECT_EQ(out.frame_index, -1) << entry.name;
-  }
-}
-
-TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
-  for (const RendererEntry& entry : renderers()) {
-    const auto renderer = build(entry);
-    renderer->on_frame(scenes::frame(grid_for(entry, 60)));
-    renderer->step({Vec3(0, 0.02, 0)}, 0);
-    const RenderOutput before = renderer->step({Vec3(0, -0.02, 0)}, 0.001);
-    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      const RenderOutput out = renderer->step({Vec3(0, bad, 0)}, 0.002);
-      EXPECT_EQ(out.status, RenderStatus::device_not_finite) << entry.name;
-      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
-      EXPECT_TRUE(out.proxy_W.allFinite()) << entry.name;
-    }
-    const RenderOutput after = renderer->step({Vec3(0, -0.02, 0)}, 0.003);
-    EXPECT_NEAR((after.proxy_W - before.proxy_W).norm(), 0, 1e-3) << entry.name;
-    EXPECT_GT(after.force_N.y(), 1) << entry.name;
-  }
+// The blueprint of an entry with its defaults; those that read a file get one that is made here.
+template <class Entry>
+auto with_a_file(const Entry& entry, const TestFolder& folder) {
+  auto blueprint = entry.make();
+  for (const Parameter& p : blueprint->settings())
+    if (p.name == "path")
+      *std::get<std::string*>(p.value) =
+          std::string(entry.name) == "live-session" ? write_session(folder) : folder.path().string();
+  return blueprint;
 }
 
 // --- scenarios ---
@@ -171,12 +65,8 @@ class ScenarioContract : public testing::Test {
                       "frame_rate_hz": 30})");
   }
 
-  // With the defaults of the catalog; the recording gets one that is made here.
   std::unique_ptr<Scenario> build(const ScenarioEntry& entry) const {
-    auto blueprint = entry.make();
-    for (const Parameter& p : blueprint->settings())
-      if (p.name == "path") *std::get<std::string*>(p.value) = folder_.path().string();
-    return blueprint->build(NoiseKey{7}, scenes::kernels());
+    return with_a_file(entry, folder_)->build(NoiseKey{7}, scenes::kernels());
   }
 
   TestFolder folder_{"contract"};
@@ -395,7 +285,9 @@ TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
     // The camera's scene has a surface height and an image: enough for every trajectory.
     const auto scene =
         find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
-    const auto one = entry.make()->build(*scene), other = entry.make()->build(*scene);
+    const TestFolder folder("contract");
+    const auto blueprint = with_a_file(entry, folder);
+    const auto one = blueprint->build(*scene), other = blueprint->build(*scene);
     for (int i = 0; i < 200; ++i) {
       const double time = 0.01 * ((i * 37) % 200);
       EXPECT_TRUE(one->at(time).position_W.allFinite()) << entry.name;

@@ -66,9 +66,23 @@ TEST(ExperimentSections, SurviveARoundTripCompletely) {
   EXPECT_EQ(json["fixtures"][1]["label"], "valve");
 }
 
+TEST(ExperimentSections, OfTheLiveLoopSurviveToo) {
+  const std::string text =
+      task({"live.device_m=[0,0.1,0]", "live.device_scale=2", "safety.ramp_s=1"}).to_json();
+  EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
+  const Json json = Json::parse(text);
+  expect_complete(json["live"], defaults<LiveSettings>());
+  expect_complete(json["safety"], defaults<SafetyLimits>());
+  EXPECT_EQ(task({"live.device_scale=2"}).live().device_scale, 2);
+  EXPECT_EQ(task({"safety.ramp_s=1"}).safety().ramp_s, 1);
+  EXPECT_EQ(task().safety().largest_force_N, SafetyLimits{}.largest_force_N);
+  EXPECT_HAS(why("safety.force_slew_N_per_s=100"), "safety.force_slew_N_per_s = 100");
+  EXPECT_HAS(why("safety.largest_force=3"), "safety.largest_force: unknown");
+}
+
 TEST(ExperimentSections, AreLeftOutWhereTheyAreNotAskedFor) {
   const Json json = Json::parse(Experiment::load("fig4.11").to_json());
-  for (const char* section : {"guidance", "sequence", "operator", "device"})
+  for (const char* section : {"guidance", "sequence", "operator", "device", "live", "safety"})
     EXPECT_FALSE(json.contains(section));
   EXPECT_FALSE(Json::parse(Experiment::load("fig4.11", {"sequence=[]"}).to_json()).contains("sequence"));
   EXPECT_TRUE(Json::parse(Experiment::load("fig4.11", {"operator={}"}).to_json()).contains("operator"));
@@ -155,9 +169,13 @@ TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
             "sequence.1.action = \"release\": allowed lock, unlock for a fixture with role = forbidden");
   EXPECT_EQ(why(R"(sequence.2={"action": "wait", "done": "reached", "fixture": "table"})"),
             "sequence.2.action = \"wait\": allowed lock, unlock for a fixture with role = forbidden");
-  EXPECT_EQ(why("sequence.2.button=3"),
-            "sequence.2.button = 3: allowed a button that operator.presses presses");
-  EXPECT_EQ(why("operator=null"), "sequence.1.button = 2: allowed a button that operator.presses presses");
+  EXPECT_EQ(
+      why("sequence.2.button=3"),
+      "sequence.2.button = 3: allowed a button that operator.presses presses, or any with a section live");
+  EXPECT_EQ(
+      why("operator=null"),
+      "sequence.1.button = 2: allowed a button that operator.presses presses, or any with a section live");
+  EXPECT_EQ(resolved({"operator=null", "live={}"})["sequence"].size(), 3u);  // a real device has buttons
   EXPECT_EQ(resolved({R"(sequence=[{"action": "wait"}])"})["sequence"].size(), 1u);  // one needs no step
   EXPECT_EQ(refusal([] {
               task({"sequence=[]", R"(fixtures.0={"name": "everywhere", "role": "guidance"})"});

@@ -45,7 +45,8 @@ void add_lists(Subcommands& commands) {
 
 void add_run(Subcommands& commands) {
   auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
-  command->add_option("experiment", run->experiment, "a name of the list, or a JSON file")->required();
+  command->add_option("experiment", run->experiment, "a name of the list, a JSON file, or a live session")
+      ->required();
   add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
   command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
   command->add_flag("--timing", run->timing, "also store the wall clock of each tick");
@@ -161,6 +162,31 @@ void add_repro_and_verify(Subcommands& commands) {
   other->add_option("--junit", verify->junit, "also write JUnit's XML");
 }
 
+void add_live(Subcommands& commands) {
+  auto [command, live] =
+      commands.add("live", "run an experiment in real time, with a sensor and a haptic device", command_live);
+  command->add_option("experiment", live->experiment, "a name of the list, a JSON file, or a live session")
+      ->required();
+  add_set(command, live->overrides, "parameter=value, for example safety.largest_force_N=3");
+  command->add_option("--device", live->device, "SCHEME:ADDRESS, see remote-touch devices")
+      ->capture_default_str();
+  command->add_option("--depth", live->depth, "SCHEME:ADDRESS, see remote-touch devices")
+      ->capture_default_str();
+  command->add_option("--duration", live->duration_s, "seconds (default: until SIGINT)")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--record", live->record, "the HDF5 file for what device and sensor tell");
+  command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
+  commands.add("devices", "sensors and haptic devices: what is compiled in, what is found, why not",
+               command_devices);
+  auto [other, jitter] = commands.add("jitter", "how punctual this machine's haptic loop is", command_jitter);
+  other->add_option("--duration", jitter->duration_s, "seconds")
+      ->check(CLI::Range(0.01, 86400.0))
+      ->capture_default_str();
+  other->add_option("--rate", jitter->rate_hz, "ticks a second")
+      ->check(CLI::Range(1.0, 100000.0))
+      ->capture_default_str();
+}
+
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -185,7 +211,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   Subcommands commands{app, line, act};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_compare,
-                         add_baseline, add_repro_and_verify})
+                         add_baseline, add_repro_and_verify, add_live})
     add(commands);
   try {
     app.parse(argc, argv);

@@ -16,6 +16,9 @@ struct CommandLine {
   bool quiet = false;
   const Kernels* kernels = nullptr;
   const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
+  // Set by SIGUSR1 and SIGUSR2; who answers sets them back.
+  std::atomic<bool>* report = nullptr;
+  std::atomic<bool>* rearm = nullptr;
 };
 
 struct ListRequest {};
@@ -110,6 +113,23 @@ struct HashesRequest {
   std::string output;
 };
 int command_hashes(const CommandLine& line, const HashesRequest& request);
+
+struct LiveRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string device = "sim:", depth = "sim:";
+  std::string record, output;  // files to write; empty: none
+  double duration_s = 0;
+};
+int command_live(const CommandLine& line, const LiveRequest& request);
+
+struct DevicesRequest {};
+int command_devices(const CommandLine& line, const DevicesRequest& request);
+
+struct JitterRequest {
+  double duration_s = 10, rate_hz = 1000;
+};
+int command_jitter(const CommandLine& line, const JitterRequest& request);
 
 struct InspectRequest {
   std::string file;

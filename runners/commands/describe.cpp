@@ -119,6 +119,10 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
       "\"operator\" of an experiment: a simulated hand that follows the trajectory and feels forces", name);
   found |= describe_section<MotorSettings>(
       "device", "\"device\" of an experiment: which axes of the haptic device have motors", name);
+  found |= describe_section<LiveSettings>(
+      "live", "\"live\" of an experiment: where device and camera stand when it is run in real time", name);
+  found |= describe_section<SafetyLimits>(
+      "safety", "\"safety\" of an experiment: what a haptic device may be told in real time", name);
   found |= describe_tool(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;

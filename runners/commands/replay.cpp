@@ -22,7 +22,7 @@ namespace {
 std::size_t cell_of(const std::string& text, const SweepResult& result) {
   std::string allowed;
   for (const Column& axis : result.axes)
-    allowed += (allowed.empty() ? "" : ",") + std::string("0..") + std::to_string(axis.length() - 1);
+    allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
   std::vector<std::size_t> place;
   const char *next = text.data(), *end = text.data() + text.size();
   while (next <= end && place.size() <= result.axes.size()) {

@@ -22,7 +22,7 @@ std::string quoted(const std::string& word) {
 
 std::string shell_command(const std::vector<std::string>& words) {
   std::string command;
-  for (const std::string& word : words) command += (command.empty() ? "" : " ") + quoted(word);
+  for (const std::string& word : words) command.append(command.empty() ? "" : " ").append(quoted(word));
   return command;
 }
 

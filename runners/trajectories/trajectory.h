@@ -12,6 +12,8 @@ class Trajectory {
   virtual DeviceState at(double time_s) const = 0;
   // When the motion ends; the device rests afterwards. 0 where there is no natural end.
   virtual double duration_s() const = 0;
+  // Of a recorded live session: its loop missed the tick of that time, which is passed over then.
+  virtual bool is_missed(double /*time_s*/) const { return false; }
 };
 
 }  // namespace remote_touch

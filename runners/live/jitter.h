@@ -1,0 +1,22 @@
+// How late the ticks of a haptic loop are on this machine, with nothing to do in them.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace remote_touch {
+
+struct Jitter {
+  std::vector<double> late_s;  // of every tick, after its time
+  long long missed = 0;        // ticks that never began
+  std::string real_time;       // what the system gave
+};
+
+// With the loop that devices without one of their own have. stop: ends it early.
+Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop);
+
+// Rows of "from to count bar", each twice as wide as the one before.
+std::string histogram(const std::vector<double>& late_s);
+
+}  // namespace remote_touch

@@ -1,0 +1,82 @@
+#include "runners/live/live_logger.h"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace remote_touch {
+
+LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder)
+    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveLogger::~LiveLogger() {
+  stop_.store(true);
+  if (thread_.joinable()) thread_.join();
+}
+
+bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
+  if (!recorder_) return true;
+  const std::lock_guard lock(frames_mutex_);
+  if (frames_.size() >= kMostFrames) return false;
+  frames_.push_back({frame, captured_s, fixtures_off});
+  return true;
+}
+
+void LiveLogger::take_rows() {
+  while (const LiveTick* row = rows_.oldest()) {
+    if (recorder_ && !failed_) recorder_->append(*row);
+    {
+      const std::lock_guard lock(log_mutex_);
+      log_.append(*row, haptic_rate_hz_);
+    }
+    rows_.pop();
+  }
+}
+
+void LiveLogger::take_frames() {
+  for (;;) {
+    std::unique_lock lock(frames_mutex_);
+    if (frames_.empty()) return;
+    const Recorded oldest = std::move(frames_.front());
+    frames_.pop_front();
+    lock.unlock();
+    if (!failed_) recorder_->append(oldest.frame, oldest.captured_s, oldest.fixtures_off);
+    take_rows();  // a frame takes a while to be written
+  }
+}
+
+void LiveLogger::run() {
+  const auto take = [this] {
+    try {
+      take_rows();
+      take_frames();
+    } catch (const std::exception& error) {  // the disk is full: go on without it, so that the log is whole
+      why_ = error.what();
+      failed_.store(true, std::memory_order_release);
+    }
+  };
+  while (!stop_.load()) {
+    take();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  take();
+}
+
+void LiveLogger::finish() {
+  stop_.store(true);
+  thread_.join();
+  if (recorder_ && !failed_) recorder_->finish();
+}
+
+std::string LiveLogger::failure() const {
+  return failed_.load(std::memory_order_acquire) ? why_ : std::string();
+}
+
+std::string LiveLogger::report(const CameraCounts& camera, int stalls, std::int64_t rows_lost) {
+  const std::lock_guard lock(log_mutex_);
+  return live_report(log_, camera, stalls, rows_lost);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,58 @@
+// Takes what the servo and the camera thread leave, in a thread of its own: into the log, and on disk where a
+// session is recorded.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "runners/live/live_log.h"
+#include "runners/live/session_file.h"
+
+namespace remote_touch {
+
+class LiveLogger {
+ public:
+  // recorder: null where nothing is recorded.
+  LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
+  ~LiveLogger();
+
+  // For the camera thread: false where the disk is behind by kMostFrames.
+  bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
+  // Takes all that is left and finishes the file; the servo and the camera have stopped.
+  void finish();
+  // For other threads: why nothing can be recorded any more.
+  std::string failure() const;
+  LiveLog take() { return std::move(log_); }  // after finish()
+  // While running: a copy, as it is now.
+  std::string report(const CameraCounts& camera, int stalls, std::int64_t rows_lost);
+
+ private:
+  static constexpr std::size_t kMostFrames = 90;
+  struct Recorded {
+    SensorFrame frame;
+    double captured_s;
+    std::uint64_t fixtures_off;
+  };
+  void run();
+  void take_rows();
+  void take_frames();
+
+  Ring<LiveTick>& rows_;
+  const double haptic_rate_hz_;
+  const std::unique_ptr<SessionWriter> recorder_;
+  std::mutex log_mutex_;
+  LiveLog log_;
+  std::mutex frames_mutex_;
+  std::deque<Recorded> frames_;
+  std::atomic<bool> stop_ = false, failed_ = false;
+  std::string why_;
+  std::thread thread_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+// The live loop: sensor, renderer and device in real time. runners/simulation.cpp is the same in simulated
+// time.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "analysis/hdf5_file.h"
+#include "core/kernels.h"
+#include "runners/experiment.h"
+#include "runners/live/live_log.h"
+
+namespace remote_touch {
+
+struct LiveOptions {
+  std::string device = "sim:", depth = "sim:";
+  double duration_s = 0;         // 0: until told to stop
+  std::filesystem::path record;  // empty: nothing is recorded
+  TextAttributes provenance;     // of the recording
+  const Kernels* kernels = nullptr;
+  const std::atomic<bool>* stop = nullptr;       // SIGINT and SIGTERM
+  std::atomic<bool>* report = nullptr;           // SIGUSR1: a table now; set back
+  std::atomic<bool>* rearm = nullptr;            // SIGUSR2: after a latch; set back
+  std::function<void(const std::string&)> tell;  // lines to the user while it runs
+};
+
+struct LiveResult {
+  LiveLog log;
+  CameraCounts camera;
+  int stalls = 0;
+  std::int64_t rows_lost = 0;
+  std::string real_time;  // what the system gave
+  std::string device;     // its name
+  std::string ended;      // why it ended
+  bool failed = false;    // device, sensor, disk or renderer, or force was latched off at the end
+};
+
+// Throws InputError when something cannot be opened; then nothing has moved.
+LiveResult run_live(const Experiment& experiment, const LiveOptions& options);
+
+}  // namespace remote_touch

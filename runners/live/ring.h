@@ -1,0 +1,40 @@
+// A queue of fixed length from one thread to another without waiting.
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <vector>
+
+namespace remote_touch {
+
+// One producer, one consumer. Allocates on construction only.
+template <class T>
+class Ring {
+ public:
+  // least_room: rounded up to a power of two.
+  explicit Ring(std::size_t least_room) : slots_(std::bit_ceil(least_room)) {}
+
+  // The slot to write next, or null where the queue is full; it is handed over by push().
+  T* room() {
+    const std::size_t end = end_.load(std::memory_order_relaxed);
+    if (end - start_.load(std::memory_order_acquire) == slots_.size()) return nullptr;
+    return &slots_[end & (slots_.size() - 1)];
+  }
+  void push() { end_.store(end_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+
+  // The oldest value, or null; it is let go by pop().
+  T* oldest() {
+    const std::size_t start = start_.load(std::memory_order_relaxed);
+    if (start == end_.load(std::memory_order_acquire)) return nullptr;
+    return &slots_[start & (slots_.size() - 1)];
+  }
+  void pop() { start_.store(start_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+
+ private:
+  std::vector<T> slots_;
+  alignas(64) std::atomic<std::size_t> end_ = 0;
+  alignas(64) std::atomic<std::size_t> start_ = 0;
+};
+
+}  // namespace remote_touch

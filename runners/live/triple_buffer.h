@@ -1,0 +1,41 @@
+// From one thread to another without waiting: the newest value wins.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace remote_touch {
+
+// One producer, one consumer; both calls are a single exchange. A slot belongs to one side at a time, so
+// whatever it holds is let go by the side that writes over it.
+template <class T>
+class TripleBuffer {
+ public:
+  // The producer's slot, to be written before publish().
+  T& back() { return slots_[back_]; }
+  // The value written becomes the newest. False: the one before was never taken.
+  bool publish() {
+    const std::uint32_t before = middle_.exchange(back_ | kNew, std::memory_order_acq_rel);
+    back_ = before & kSlot;
+    return (before & kNew) == 0;
+  }
+
+  // Takes the newest value, if there is one since the last call; front() is then that.
+  bool take() {
+    if ((middle_.load(std::memory_order_relaxed) & kNew) == 0) return false;
+    front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kSlot;
+    return true;
+  }
+  T& front() { return slots_[front_]; }
+
+ private:
+  static constexpr std::uint32_t kSlot = 3, kNew = 4;
+
+  std::array<T, 3> slots_{};
+  alignas(64) std::atomic<std::uint32_t> middle_ = 1;
+  alignas(64) std::uint32_t back_ = 0;
+  alignas(64) std::uint32_t front_ = 2;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,86 @@
+// What threads of the live loop hand over to each other; meant for the thread sanitizer too.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <thread>
+
+#include "runners/live/ring.h"
+#include "runners/live/triple_buffer.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr int kValues = 200'000;
+
+// Torn, it would not hold the same number everywhere.
+using Wide = std::array<int, 64>;
+
+TEST(TripleBuffer, GivesTheNewestWholeAndInOrder) {
+  TripleBuffer<Wide> buffer;
+  std::thread producer([&] {
+    for (int i = 1; i <= kValues; ++i) {
+      buffer.back().fill(i);
+      buffer.publish();
+    }
+  });
+  int last = 0, taken = 0;
+  while (last < kValues) {
+    if (!buffer.take()) continue;
+    const Wide& front = buffer.front();
+    for (const int part : front) ASSERT_EQ(part, front[0]) << "torn";
+    ASSERT_GT(front[0], last) << "reversed or repeated";
+    last = front[0], ++taken;
+  }
+  producer.join();
+  EXPECT_GT(taken, 1);
+  EXPECT_FALSE(buffer.take());
+}
+
+TEST(TripleBuffer, TellsWhetherAValueWasOvertaken) {
+  TripleBuffer<int> buffer;
+  buffer.back() = 1;
+  EXPECT_TRUE(buffer.publish());
+  buffer.back() = 2;
+  EXPECT_FALSE(buffer.publish());
+  EXPECT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.front(), 2);
+  EXPECT_FALSE(buffer.take());
+  EXPECT_EQ(buffer.front(), 2);
+  buffer.back() = 3;
+  EXPECT_TRUE(buffer.publish());
+}
+
+TEST(Ring, HandsOverEveryValueInOrder) {
+  Ring<Wide> ring(60);
+  std::thread producer([&] {
+    for (int i = 0; i < kValues;) {
+      Wide* const room = ring.room();
+      if (!room) continue;
+      room->fill(i++);
+      ring.push();
+    }
+  });
+  for (int i = 0; i < kValues;) {
+    const Wide* const oldest = ring.oldest();
+    if (!oldest) continue;
+    for (const int part : *oldest) ASSERT_EQ(part, i);
+    ring.pop(), ++i;
+  }
+  producer.join();
+  EXPECT_EQ(ring.oldest(), nullptr);
+}
+
+TEST(Ring, HasNoRoomWhenFull) {
+  Ring<int> ring(4);
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_NE(ring.room(), nullptr);
+    *ring.room() = i;
+    ring.push();
+  }
+  EXPECT_EQ(ring.room(), nullptr);
+  ring.pop();
+  EXPECT_NE(ring.room(), nullptr);
+}
+
+}  // namespace
+}  // namespace remote_touch
