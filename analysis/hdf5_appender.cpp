@@ -1,6 +1,5 @@
 #include "analysis/hdf5_appender.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "analysis/hdf5_handle.h"
@@ -29,19 +28,6 @@ hid_t stored(Hdf5Appender::Number number) {
       return H5T_STD_U16LE;
   }
   return -1;
-}
-
-void text_attribute(hid_t file, const std::string& object, const std::string& name,
-                    const std::string& value) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  check(H5Tset_size(type, std::max<std::size_t>(1, value.size())));
-  check(H5Tset_cset(type, H5T_CSET_UTF8));
-  check(H5Tset_strpad(type, H5T_STR_NULLPAD));
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  check(H5Awrite(made, type, value.empty() ? "\0" : value.data()));
 }
 
 }  // namespace
@@ -106,8 +92,8 @@ void Hdf5Appender::dataset(const Dataset& made) {
         H5Dcreate2(file_, made.path.c_str(), stored(made.number), space, H5P_DEFAULT, creation, H5P_DEFAULT);
     check(id < 0 ? -1 : 0);
     open_[made.path] = {id, made};
-    text_attribute(file_, made.path, "units", made.units);
-    text_attribute(file_, made.path, "long_name", made.long_name);
+    write_text(file_, made.path, "units", made.units);
+    write_text(file_, made.path, "long_name", made.long_name);
   });
 }
 
@@ -129,7 +115,7 @@ void Hdf5Appender::append(const std::string& path, const void* rows, std::size_t
 
 void Hdf5Appender::attributes(const std::string& object, const TextAttributes& list) {
   guarded([&] {
-    for (const auto& [name, value] : list) text_attribute(file_, object, name, value);
+    for (const auto& [name, value] : list) write_text(file_, object, name, value);
   });
 }
 

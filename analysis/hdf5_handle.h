@@ -3,7 +3,9 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace remote_touch {
@@ -29,6 +31,25 @@ class Handle {
 
 inline void check(herr_t result) {
   if (result < 0) throw std::runtime_error("the HDF5 library refused a call");
+}
+
+inline Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  check(H5Tset_size(type, std::max<std::size_t>(1, length)));
+  check(H5Tset_cset(type, H5T_CSET_UTF8));
+  check(H5Tset_strpad(type, H5T_STR_NULLPAD));
+  return type;
+}
+
+// An attribute of a group or dataset that exists.
+inline void write_text(hid_t file, const std::string& object, const std::string& name,
+                       const std::string& value) {
+  const Handle type = text_type(value.size());
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle made(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+  check(H5Awrite(made, type, value.empty() ? "\0" : value.data()));
 }
 
 }  // namespace remote_touch

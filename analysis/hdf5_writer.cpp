@@ -26,14 +26,6 @@ Handle creation_list(hid_t kind) {
   return list;
 }
 
-Handle text_type(std::size_t length) {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  check(H5Tset_size(type, std::max<std::size_t>(1, length)));
-  check(H5Tset_cset(type, H5T_CSET_UTF8));
-  check(H5Tset_strpad(type, H5T_STR_NULLPAD));
-  return type;
-}
-
 std::size_t longest(const std::vector<std::string>& texts) {
   std::size_t length = 0;
   for (const std::string& text : texts) length = std::max(length, text.size());
@@ -77,12 +69,7 @@ void Hdf5Writer::group(const std::string& path) {
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& value) {
-  const Handle type = text_type(value.size());
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle made(H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
-                                      H5P_DEFAULT, H5P_DEFAULT),
-                    H5Aclose);
-  check(H5Awrite(made, type, value.empty() ? "\0" : value.data()));
+  write_text(file_, object, name, value);
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name,

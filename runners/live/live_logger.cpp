@@ -64,10 +64,14 @@ void LiveLogger::run() {
   take();
 }
 
-void LiveLogger::finish() {
+// The log is worth having even where the disk is full.
+void LiveLogger::finish() try {
   stop_.store(true);
   thread_.join();
   if (recorder_ && !failed_) recorder_->finish();
+} catch (const std::exception& error) {
+  why_ = error.what();
+  failed_.store(true, std::memory_order_release);
 }
 
 std::string LiveLogger::failure() const {

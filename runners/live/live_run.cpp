@@ -73,6 +73,8 @@ class LiveRun {
     loop.join();
     camera_->stop();
     logger_->finish();
+    if (const std::string why = logger_->failure(); !why.empty())
+      result.ended = "the recording failed: " + why;
     result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() ||
                     !logger_->failure().empty();
     result.log = logger_->take();
@@ -138,6 +140,8 @@ class LiveRun {
   // The vendor's call does not come back, and neither would a join.
   [[noreturn]] void give_up() {
     device_->let_go();
+    camera_->stop();
+    logger_->finish();  // what was recorded until then is whole
     std::fputs("remote-touch: the device's loop does not end; it was let go\n", stderr);
     std::_Exit(1);
   }
