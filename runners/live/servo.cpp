@@ -41,6 +41,7 @@ void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
   if (!links_.frames.take()) return;
   LiveFrame& taken = links_.frames.front();
+  row.waited_s = static_cast<float>(steady_s() - taken.ready_s);
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
   row.taken = taken.frame.index;
@@ -98,9 +99,7 @@ void Servo::one_tick() {
   if (row_.gate == GateState::latched) note(gate_.reason(), false);
   latched_.store(row_.gate == GateState::latched, std::memory_order_release);
   if (row_.taken >= 0) {
-    const LiveFrame& taken = links_.frames.front();
-    row_.latency_s = static_cast<float>(steady_s() - taken.sensed_s);
-    row_.waited_s = static_cast<float>(begin_s - taken.ready_s);
+    row_.latency_s = static_cast<float>(steady_s() - links_.frames.front().sensed_s);
   }
   if (LiveTick* const slot = links_.rows.room()) {
     *slot = row_;
