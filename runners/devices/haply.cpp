@@ -133,7 +133,6 @@ class Haply final : public HapticDevice {
 
   const DeviceTraits& traits() const override { return traits_; }
 
-  void run(DeviceCycle& cycle) override;
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
   void let_go() noexcept override;
@@ -244,18 +243,6 @@ void Haply::let_go() noexcept {
       opened_.link->receive(text, deadline_s);
   }
   opened_.link->cut();
-}
-
-void Haply::run(DeviceCycle& cycle) {
-  const double period_s = 1 / traits_.tick_rate_hz;
-  double next_s = steady_s();
-  while (cycle.tick()) {
-    next_s = std::max(next_s + period_s, steady_s());
-    timespec next{};
-    next.tv_sec = static_cast<time_t>(next_s);
-    next.tv_nsec = static_cast<long>(1e9 * (next_s - std::floor(next_s)));
-    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr);
-  }
 }
 
 }  // namespace

@@ -75,6 +75,10 @@ std::string live_report(const LiveLog& log, const CameraCounts& camera, int stal
   text += count_row("stalls, the device let go", stalls);
   text += count_row("rows lost", rows_lost);
   text += count_row("frames received", camera.received);
+  const double handled =
+      std::max(1, camera.received - camera.reversed - camera.incomplete - camera.unrecorded);
+  text += count_row("processing of a frame, mean us", std::llround(1e6 * camera.processing_s / handled));
+  text += count_row("longest pause between frames, ms", std::llround(1e3 * camera.longest_pause_s));
   text += count_row("frames that the sensor counted and never sent", camera.passed_over);
   text += count_row("frames reversed or repeated by the sensor, dropped", camera.reversed);
   text += count_row("frames without all their pixels or colours, dropped", camera.incomplete);

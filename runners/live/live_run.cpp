@@ -1,6 +1,7 @@
 #include "runners/live/live_run.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <future>
@@ -39,6 +40,7 @@ class LiveRun {
         device_(open_device(options.device, experiment, kernels_)),
         source_(open_sensor(options.depth, experiment, kernels_)),
         rows_(kRows) {
+    require_rate();
     const SensorView& view = source_->view();
     renderer_->reserve(padded(view.camera.width) * padded(view.camera.height));
     const RigidTransform registration = camera_registration(experiment.live());
@@ -89,6 +91,14 @@ class LiveRun {
     if (options_.record.empty()) return nullptr;
     return std::make_unique<SessionWriter>(options_.record, view, registration * view.X_WC,
                                            options_.provenance);
+  }
+
+  // Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.
+  void require_rate() const {
+    const double device_hz = device_->traits().tick_rate_hz;
+    if (std::abs(device_hz - rate_hz_) > 0.01 * rate_hz_)
+      throw InputError("haptic_rate_hz = " + std::to_string(rate_hz_),
+                       "allowed " + std::to_string(device_hz) + ", the rate of this device's loop");
   }
 
   std::string camera_failure() const {

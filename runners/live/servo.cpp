@@ -107,7 +107,6 @@ void Servo::one_tick() {
   } else {
     rows_lost_.fetch_add(1, std::memory_order_relaxed);
   }
-  ticks_.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace remote_touch

@@ -58,7 +58,6 @@ class Servo final : public DeviceCycle {
   // For other threads.
   void rearm() noexcept { gate_.rearm(); }
   int stalls() const { return heartbeat_.stalls(); }
-  std::int64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
   std::int64_t rows_lost() const { return rows_lost_.load(std::memory_order_relaxed); }
   bool is_latched() const { return latched_.load(std::memory_order_acquire); }
   // Of the newest latch or failure.
@@ -81,7 +80,7 @@ class Servo final : public DeviceCycle {
   double last_tick_s_ = 0;
   DeviceReading last_reading_;
   LiveTick row_;
-  std::atomic<std::int64_t> ticks_ = 0, rows_lost_ = 0;
+  std::atomic<std::int64_t> rows_lost_ = 0;
   std::atomic<const char*> trouble_ = nullptr;
   std::atomic<bool> failed_ = false, latched_ = false;
 };
