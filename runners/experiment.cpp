@@ -246,4 +246,18 @@ SimulatedHand Experiment::build_hand() const {
   return {operator_, device_, 1 / settings_.haptic_rate_hz};
 }
 
+double Experiment::largest_stiffness_N_per_m() const {
+  double holds = 0, pulls = 0;
+  for (const Parameter& p : renderer_.blueprint->settings())
+    if (const auto* const value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+      holds = **value;
+  for (const FixtureValues& v : fixture_values()) {
+    if (v.role == FixtureRole::forbidden)
+      holds = std::max(holds, v.stiffness_N_per_m);
+    else
+      pulls = std::max(pulls, v.stiffness_N_per_m < 0 ? guidance_->stiffness_N_per_m : v.stiffness_N_per_m);
+  }
+  return holds + pulls;
+}
+
 }  // namespace remote_touch

@@ -1,136 +1,141 @@
-// What a haptic device feels when something of a live run fails: a test double of Force Dimension's library
-// stands for the device, and its force is taken at the device's side.
+// What a haptic device feels when something of a live run fails: test doubles of the vendors' libraries stand
+// for the device, and the force is taken at the device's side.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <functional>
 #include <limits>
-#include <thread>
+#include <memory>
 
-#include "runners/live/live_run.h"
 #include "runners/live/servo.h"
-#include "runners/live/steady_clock.h"
-#include "tests/scenes.h"
+#include "tests/background_run.h"
+#include "tests/test_files.h"
 #include "tests/vendor_devices.h"
 
 namespace remote_touch {
 namespace {
 
-constexpr double kPromise_s = 0.02;
-
-const char* const kPress = R"({
-  "scenario": {"name": "camera-scene"}, "renderer": {"name": "proxy"},
-  "trajectory": {"name": "follow-surface"},
-  "safety": {"ramp_s": 0.05}})";
-
-void nap() {
-  std::this_thread::sleep_for(std::chrono::microseconds(200));
-}
-
-bool wait_until(const std::function<bool()>& is_so) {
-  for (const double until_s = steady_s() + 20; steady_s() < until_s; nap())
-    if (is_so()) return true;
-  return false;
-}
-
 // A live run whose device is pressed into the table.
-class PressedDevice : public testing::Test {
+class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
  protected:
-  void SetUp() override {
-    const Experiment experiment = Experiment::from_json(kPress, "test");
-    height_m_ = experiment.build_scenario(scenes::kernels())->surface_height(0, 0, 0);
+  void press(const std::function<void(DeviceDouble::State&)>& prepare = {}) {
+    double_.reset();
+    double_ = std::make_unique<DoubleInstalled>(*GetParam());
+    if (prepare) device().set(prepare);
     hold(0.03);
-    options_.device = "fd:0";
-    options_.kernels = &scenes::kernels();
-    options_.stop = &stop_;
-    options_.duration_s = 60;
-    thread_ = std::thread([this] { result_ = run_live(Experiment::from_json(kPress, "test"), options_); });
+    run_ = std::make_unique<BackgroundRun>(kPress, GetParam()->uri);
     // The force begins in free space, and then there is something to feel.
-    ASSERT_TRUE(wait_until([&] { return double_->events().size() > 300; }));
-    hold(-0.002);
-    ASSERT_TRUE(wait_until([&] { return double_->now().force() > 1; })) << "never touched";
-  }
-  void TearDown() override {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
+    ASSERT_TRUE(wait_until([&] { return device().events().size() > 300; }));
+    hold(-kPressed_m);
+    ASSERT_TRUE(wait_until([&] { return device().now().force() > 0.4; })) << "never touched";
   }
 
-  // The middle of the device so far above the table; the vendor's z is up.
+  DeviceDouble& device() { return **double_; }
+  // The middle of the device so far above the table.
   void hold(double above_m) {
-    double_->set([&](DeviceDouble::State& state) { state.position = {0, 0, height_m_ + above_m}; });
+    const Vec3 place = GetParam()->length_per_m * (GetParam()->axes * Vec3(0, height_m_ + above_m, 0));
+    device().set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
   }
-  // From now on until there is no force at the device.
-  double time_to_nothing_s() const {
-    const double start_s = steady_s();
-    while (double_->now().force() > 0 && steady_s() - start_s < 1) nap();
-    return steady_s() - start_s;
+  double time_to_nothing_s() {
+    return remote_touch::time_to_nothing_s([&] { return device().now().force(); });
   }
-  const LiveResult& ended() {
-    thread_.join();
-    return result_;
+  double settled_force_N() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    return device().now().force();
   }
 
-  DoubleInstalled double_{kForceDimension};
-  std::atomic<bool> stop_ = false;
-  LiveOptions options_;
-  double height_m_ = 0;
-  LiveResult result_;
-  std::thread thread_;
+  static constexpr double kPressed_m = 0.002;
+  const double height_m_ = table_height_m();
+  std::unique_ptr<DoubleInstalled> double_;
+  std::unique_ptr<BackgroundRun> run_;
 };
 
-TEST_F(PressedDevice, UnpluggedItHasNoForceAndTheRunEndsSayingSo) {
-  double_->set([](DeviceDouble::State& state) { state.is_unplugged = true; });
-  const LiveResult& result = ended();
+TEST_P(PressedDevice, UnpluggedTheRunEndsSayingSo) {
+  press();
+  device().set([](DeviceDouble::State& state) { state.is_unplugged = true; });
+  const LiveResult& result = run_->ended();
   EXPECT_TRUE(result.failed);
-  EXPECT_NE(result.ended.find("the device failed"), std::string::npos) << result.ended;
+  EXPECT_HAS(result.ended, "the device failed: ");
 }
 
-TEST_F(PressedDevice, NoNumberFromItEndsTheForce) {
-  double_->set(
+TEST_P(PressedDevice, AReadingThatFailsEndsTheForceAndTheRun) {
+  press();
+  device().set([](DeviceDouble::State& state) { state.reading_error = GetParam()->error; });
+  EXPECT_LT(time_to_nothing_s(), kPromise_s);
+  const LiveResult& result = run_->ended();
+  EXPECT_TRUE(result.failed);
+  EXPECT_HAS(result.ended, "the device failed: ");
+}
+
+TEST_P(PressedDevice, NoNumberFromItEndsTheForce) {
+  press();
+  device().set(
       [](DeviceDouble::State& state) { state.position[1] = std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  EXPECT_TRUE(ended().failed);
+  EXPECT_TRUE(run_->ended().failed);
 }
 
-TEST_F(PressedDevice, AStopEndsTheForce) {
-  stop_ = true;
+TEST_P(PressedDevice, AStopEndsTheForce) {
+  press();
+  run_->stop();
   EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  const LiveResult& result = ended();
+  const LiveResult& result = run_->ended();
   EXPECT_FALSE(result.failed);
   EXPECT_EQ(result.ended, "stopped by a signal");
-  EXPECT_FALSE(double_->now().has_motors_on);
+  EXPECT_FALSE(device().now().has_motors_on);
 }
 
-TEST_F(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
-  double_->hang_next(DeviceDouble::tells_force);
-  ASSERT_TRUE(wait_until([&] { return double_->is_hanging(); }));
+TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
+  press();
+  device().hang_next(DeviceDouble::tells_force);
+  ASSERT_TRUE(wait_until([&] { return device().is_hanging(); }));
   EXPECT_LT(time_to_nothing_s(), kPromise_s);
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
-  double_->release();
+  device().release();
   const double released_s = steady_s();
   // What hung may still be told; from then on it begins as at the start: pressed in, it waits.
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  for (const DeviceDouble::Event& event : double_->events()) {
+  for (const DeviceDouble::Event& event : device().events()) {
     if (event.at_s > released_s + kPromise_s) {
       EXPECT_EQ(event.force(), 0);
     }
   }
   hold(0.03);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  hold(-0.002);
-  EXPECT_TRUE(wait_until([&] { return double_->now().force() > 1; })) << "never came back";
-  stop_ = true;
-  EXPECT_GE(ended().stalls, 1);
+  hold(-kPressed_m);
+  EXPECT_TRUE(wait_until([&] { return device().now().force() > 0.4; })) << "never came back";
+  EXPECT_GE(run_->ended_by_stop().counts.stalls, 1);
 }
 
-TEST_F(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
+TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
+  press();
   for (int i = 0; i < 40; ++i) {
     hold(i % 2 == 0 ? -0.2 : 0.03);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  for (const DeviceDouble::Event& event : double_->events())
+  for (const DeviceDouble::Event& event : device().events())
     EXPECT_LE(event.force(), SafetyLimits{}.largest_force_N * (1 + 1e-9));
 }
+
+INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
+                         [](const auto& device) { return device.param->name; });
+
+// OpenHaptics alone tells how stiff a device can be.
+using StiffnessOfADevice = PressedDevice;
+
+TEST_P(StiffnessOfADevice, IsNotExceeded) {
+  press();
+  const double whole_N = settled_force_N();
+  EXPECT_EQ(run_->ended_by_stop().force_share, 1);
+  EXPECT_EQ(run_->told().find("N/m"), std::string::npos);
+  constexpr double kLimit_N_per_m = 300, kRendered_N_per_m = 600;
+  press([&](DeviceDouble::State& state) { state.largest_stiffness = kLimit_N_per_m / 1000; });  // N/mm
+  const double limited_N = settled_force_N();
+  EXPECT_EQ(run_->ended_by_stop().force_share, kLimit_N_per_m / kRendered_N_per_m);
+  EXPECT_HAS(run_->told(), "the device takes 300 N/m at most: it gets 0.5 of every force and torque");
+  EXPECT_NEAR(limited_N, whole_N / 2, 0.05 * whole_N);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),
+                         [](const auto& device) { return device.param->name; });
 
 // --- a renderer that throws, against its contract ---
 

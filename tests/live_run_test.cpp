@@ -51,7 +51,7 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
     ASSERT_FALSE(result.failed) << name << ": " << result.ended;
     ASSERT_GT(result.log.trace.length(), 100u) << name;
     ASSERT_GT(result.log.latency_s.size(), 2u) << name << ": frames taken";
-    EXPECT_EQ(result.rows_lost, 0) << name;
+    EXPECT_EQ(result.counts.rows_lost, 0) << name;
     EXPECT_EQ(result.log.reversed_frames, 0) << name;
 
     SimulationOptions offline;

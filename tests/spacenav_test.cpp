@@ -3,8 +3,6 @@
 #include "runners/devices/spacenav.h"
 
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -17,40 +15,11 @@
 #include "runners/live/steady_clock.h"
 #include "tests/allocation_counter.h"
 #include "tests/doubles/spacenav_daemon.h"
+#include "tests/doubles/spacenav_socket.h"
 #include "tests/test_files.h"
 
 namespace remote_touch {
 namespace {
-
-// The socket of a daemon, of which the test writes the frames.
-class Server {
- public:
-  explicit Server(const std::string& path) : listener_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-    if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
-        ::listen(listener_, 4) != 0)
-      ADD_FAILURE() << "no socket at " << path;
-  }
-  ~Server() {
-    close();
-    ::close(listener_);
-  }
-
-  void accept() { connection_ = ::accept(listener_, nullptr, nullptr); }
-  void close() {
-    if (connection_ >= 0) ::close(connection_);
-    connection_ = -1;
-  }
-  void send(const std::vector<std::int32_t>& frame) { send(frame.data(), 4 * frame.size()); }
-  void send(const void* bytes, std::size_t size) {
-    EXPECT_EQ(::send(connection_, bytes, size, MSG_NOSIGNAL), static_cast<ssize_t>(size));
-  }
-
- private:
-  int listener_, connection_ = -1;
-};
 
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kSmallest = std::numeric_limits<std::int32_t>::min();
@@ -81,7 +50,7 @@ class Spacenav : public testing::Test {
 
   const TestFolder folder_;
   const std::string path_;
-  Server server_;
+  SpacenavSocket server_;
 };
 
 TEST_F(Spacenav, InputOnly) {

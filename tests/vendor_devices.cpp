@@ -23,6 +23,7 @@ Eigen::Matrix3d user_right_up() {
 }  // namespace
 
 const VendorDevice kForceDimension{.name = "force_dimension",
+                                   .uri = "fd:0",
                                    .double_file = REMOTE_TOUCH_DOUBLE_DHD,
                                    .variable = "REMOTE_TOUCH_LIBDHD",
                                    .library = "libdhd.so.3",
@@ -39,6 +40,7 @@ const VendorDevice kForceDimension{.name = "force_dimension",
                                    .gone_error = 2};
 
 const VendorDevice kOpenHaptics{.name = "open_haptics",
+                                .uri = "touch:",
                                 .double_file = REMOTE_TOUCH_DOUBLE_HD,
                                 .variable = "REMOTE_TOUCH_LIBHD",
                                 .library = "libHD.so",
@@ -55,6 +57,7 @@ const VendorDevice kOpenHaptics{.name = "open_haptics",
                                 .gone_error = 0x0302};
 
 const VendorDevice kEntact{.name = "entact",
+                           .uri = "entact:",
                            .double_file = REMOTE_TOUCH_DOUBLE_ENTACT,
                            .variable = "REMOTE_TOUCH_LIBENTACT",
                            .library = "libEntactAPI.so",

@@ -14,6 +14,7 @@ namespace remote_touch {
 
 struct VendorDevice {
   const char* name;
+  const char* uri;  // of the device, on the command line
   const char* double_file;
   const char* variable;  // names the library
   const char* library;   // that is looked for without it

@@ -176,6 +176,8 @@ void add_live(Subcommands& commands) {
       ->check(CLI::Range(0.0, 1e6));
   command->add_option("--record", live->record, "the HDF5 file for what device and sensor tell");
   command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
+  command->add_option("--report", live->report,
+                      "the HDF5 file for times and counts, a figure for scripts/plot; also at SIGUSR1");
   commands.add("devices", "sensors and haptic devices: what is compiled in, what is found, why not",
                command_devices);
   auto [other, jitter] = commands.add("jitter", "how punctual this machine's haptic loop is", command_jitter);

@@ -118,7 +118,7 @@ struct LiveRequest {
   std::string experiment;
   std::vector<std::string> overrides;
   std::string device = "sim:", depth = "sim:";
-  std::string record, output;  // files to write; empty: none
+  std::string record, output, report;  // files to write; empty: none
   double duration_s = 0;
 };
 int command_live(const CommandLine& line, const LiveRequest& request);

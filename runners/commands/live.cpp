@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include <exception>
+
 #include "analysis/digest.h"
 #include "analysis/result_file.h"
 #include "analysis/whole_file.h"
@@ -25,11 +27,19 @@ void tell(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
 }
 
+// While it runs: a file that cannot be written does not end it.
+void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
+  tell("so far\n" + text(report));
+  if (!file.empty()) write_figure(file, live_figure(report), origin);
+} catch (const std::exception& error) {
+  tell(error.what());
+}
+
 }  // namespace
 
 int command_live(const CommandLine& line, const LiveRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
-  for (const std::string& file : {request.record, request.output})
+  for (const std::string& file : {request.record, request.output, request.report})
     if (!file.empty()) require_writable(file);
   LiveOptions options;
   options.device = request.device, options.depth = request.depth;
@@ -40,12 +50,19 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
                                   input_hashes(experiment.inputs()));
   if (!line.quiet) options.tell = tell;
+  options.on_report = [&](const LiveReport& report) {
+    report_now(report, request.report, options.provenance);
+  };
   const LiveResult result = run_live(experiment, options);
 
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());
-  std::fputs(live_report(result.log, result.camera, result.stalls, result.rows_lost).c_str(), stdout);
-  std::printf("  largest force written: %.3g N\n", result.log.largest_force_N);
+  const LiveReport report = live_report(result.log, result.counts);
+  if (result.force_share < 1)
+    std::printf("  the device got %.3g of every force and torque, for its largest stiffness\n",
+                result.force_share);
+  std::fputs(text(report).c_str(), stdout);
+  if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
   const std::string sum = request.output.empty() ? digest(result.log.trace.columns())
                                                  : write_trace(request.output, result.log.trace,
                                                                options.provenance, result.log.step_s);

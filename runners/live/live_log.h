@@ -1,8 +1,7 @@
-// What a live run leaves behind: the trace, and how punctual everything was.
+// What a live run leaves behind: the trace, and the times and counts of its ticks.
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "analysis/trace.h"
@@ -33,10 +32,11 @@ struct LiveLog {
   int last_taken_ = -1;
 };
 
-// Least, p50, p99, p99.9 and largest of each time, and the counts, as a table to be read.
-std::string live_report(const LiveLog& log, const CameraCounts& camera, int stalls, std::int64_t rows_lost);
-
-// The value below which that share of them lies; NaN of none.
-double quantile(std::vector<double> values, double share);
+// What others count beside the ticks.
+struct LiveCounts {
+  CameraCounts camera;
+  int stalls = 0;
+  std::int64_t rows_lost = 0;
+};
 
 }  // namespace remote_touch

@@ -27,10 +27,7 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
 void LiveLogger::take_rows() {
   while (const LiveTick* row = rows_.oldest()) {
     if (recorder_ && !failed_) recorder_->append(*row);
-    {
-      const std::lock_guard lock(log_mutex_);
-      log_.append(*row, haptic_rate_hz_);
-    }
+    log_.append(*row, haptic_rate_hz_);
     rows_.pop();
   }
 }
@@ -59,6 +56,7 @@ void LiveLogger::run() {
   };
   while (!stop_.load()) {
     take();
+    answer();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   take();
@@ -78,9 +76,18 @@ std::string LiveLogger::failure() const {
   return failed_.load(std::memory_order_acquire) ? why_ : std::string();
 }
 
-std::string LiveLogger::report(const CameraCounts& camera, int stalls, std::int64_t rows_lost) {
-  const std::lock_guard lock(log_mutex_);
-  return live_report(log_, camera, stalls, rows_lost);
+void LiveLogger::ask(std::function<void(const LiveLog&)> question) {
+  const std::lock_guard lock(question_mutex_);
+  question_ = std::move(question);
+}
+
+void LiveLogger::answer() {
+  std::function<void(const LiveLog&)> question;
+  {
+    const std::lock_guard lock(question_mutex_);
+    std::swap(question, question_);
+  }
+  if (question) question(log_);
 }
 
 }  // namespace remote_touch

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -29,8 +29,8 @@ class LiveLogger {
   // For other threads: why nothing can be recorded any more.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
-  // While running: a copy, as it is now.
-  std::string report(const CameraCounts& camera, int stalls, std::int64_t rows_lost);
+  // While running: calls once, in the logger's thread, with the log as it is then.
+  void ask(std::function<void(const LiveLog&)> question);
 
  private:
   static constexpr std::size_t kMostFrames = 90;
@@ -42,12 +42,14 @@ class LiveLogger {
   void run();
   void take_rows();
   void take_frames();
+  void answer();
 
   Ring<LiveTick>& rows_;
   const double haptic_rate_hz_;
   const std::unique_ptr<SessionWriter> recorder_;
-  std::mutex log_mutex_;
   LiveLog log_;
+  std::mutex question_mutex_;
+  std::function<void(const LiveLog&)> question_;
   std::mutex frames_mutex_;
   std::deque<Recorded> frames_;
   std::atomic<bool> stop_ = false, failed_ = false;

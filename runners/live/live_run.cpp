@@ -52,14 +52,18 @@ class LiveRun {
     camera_ =
         std::make_unique<CameraThread>(std::move(source_), experiment.build_processing(kernels_, switches_),
                                        *renderer_, registration, start_s_, frames_, sink);
+    share_ = bearable_share(experiment.largest_stiffness_N_per_m(), experiment.live().device_scale,
+                            device_->traits().largest_stiffness_N_per_m);
     servo_ = std::make_unique<Servo>(
-        ServoLinks{*device_, *renderer_, frames_, rows_, stop_}, DevicePlacement(experiment.live()),
+        ServoLinks{*device_, *renderer_, frames_, rows_, stop_}, DevicePlacement(experiment.live(), share_),
         limits_for(experiment.safety(), device_->traits()), rate_hz_, start_s_, kStall_s);
   }
 
   LiveResult run() {
     LiveResult result;
     result.device = device_->traits().name;
+    result.force_share = share_;
+    if (share_ < 1) tell_of_share();
     camera_->start();
     std::promise<void> done;
     const std::future<void> is_done = done.get_future();
@@ -80,9 +84,7 @@ class LiveRun {
     result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() ||
                     !logger_->failure().empty();
     result.log = logger_->take();
-    result.camera = camera_->counts();
-    result.stalls = servo_->stalls();
-    result.rows_lost = servo_->rows_lost();
+    result.counts = counts();
     return result;
   }
 
@@ -100,6 +102,8 @@ class LiveRun {
       throw InputError("haptic_rate_hz = " + std::to_string(rate_hz_),
                        "allowed " + std::to_string(device_hz) + ", the rate of this device's loop");
   }
+
+  LiveCounts counts() const { return {camera_->counts(), servo_->stalls(), servo_->rows_lost()}; }
 
   std::string camera_failure() const {
     const std::string why = camera_->ended();
@@ -124,10 +128,19 @@ class LiveRun {
     }
   }
 
+  void tell(const std::string& line) const {
+    if (options_.tell) options_.tell(line);
+  }
+
+  void tell_of_share() const {
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "the device takes %.4g N/m at most: it gets %.3g of every force and torque",
+                  device_->traits().largest_stiffness_N_per_m, share_);
+    tell(line);
+  }
+
   void tell_of_changes() {
-    const auto tell = [&](const std::string& line) {
-      if (options_.tell) options_.tell(line);
-    };
     if (!told_camera_ && !camera_->ended().empty()) {
       told_camera_ = true;
       tell("no more frames (" + camera_->ended() + "): the last cloud stays");
@@ -143,8 +156,8 @@ class LiveRun {
                        : std::string("armed again"));
     }
     if (options_.rearm && options_.rearm->exchange(false)) servo_->rearm();
-    if (options_.report && options_.report->exchange(false))
-      tell(logger_->report(camera_->counts(), servo_->stalls(), servo_->rows_lost()));
+    if (options_.report && options_.report->exchange(false) && options_.on_report)
+      logger_->ask([this](const LiveLog& log) { options_.on_report(live_report(log, counts())); });
   }
 
   // The vendor's call does not come back, and neither would a join.
@@ -159,7 +172,7 @@ class LiveRun {
   const LiveOptions& options_;
   const Kernels& kernels_;
   const double rate_hz_;
-  double start_s_ = 0;
+  double start_s_ = 0, share_ = 1;
   std::atomic<bool> stop_ = false;
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;

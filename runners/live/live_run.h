@@ -10,7 +10,7 @@
 #include "analysis/hdf5_file.h"
 #include "core/kernels.h"
 #include "runners/experiment.h"
-#include "runners/live/live_log.h"
+#include "runners/live/live_report.h"
 
 namespace remote_touch {
 
@@ -21,20 +21,21 @@ struct LiveOptions {
   TextAttributes provenance;     // of the recording
   const Kernels* kernels = nullptr;
   const std::atomic<bool>* stop = nullptr;       // SIGINT and SIGTERM
-  std::atomic<bool>* report = nullptr;           // SIGUSR1: a table now; set back
+  std::atomic<bool>* report = nullptr;           // SIGUSR1: on_report now; set back
   std::atomic<bool>* rearm = nullptr;            // SIGUSR2: after a latch; set back
   std::function<void(const std::string&)> tell;  // lines to the user while it runs
+  // Of the run until now, from the thread that writes the recording: nobody else writes HDF5 then.
+  std::function<void(const LiveReport&)> on_report;
 };
 
 struct LiveResult {
   LiveLog log;
-  CameraCounts camera;
-  int stalls = 0;
-  std::int64_t rows_lost = 0;
-  std::string real_time;  // what the system gave
-  std::string device;     // its name
-  std::string ended;      // why it ended
-  bool failed = false;    // device, sensor, disk or renderer, or force was latched off at the end
+  LiveCounts counts;
+  std::string real_time;   // what the system gave
+  std::string device;      // its name
+  double force_share = 1;  // of what was rendered, for the device's largest stiffness
+  std::string ended;       // why it ended
+  bool failed = false;     // device, sensor, disk or renderer, or force was latched off at the end
 };
 
 // Throws InputError when something cannot be opened; then nothing has moved.

@@ -20,11 +20,17 @@ RigidTransform camera_registration(const LiveSettings& s) {
   return RigidTransform(Eigen::Translation3d(s.camera_m) * rotation(kRadiansPerDegree * s.camera_turn_deg));
 }
 
-DevicePlacement::DevicePlacement(const LiveSettings& s)
+double bearable_share(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m) {
+  const double felt = stiffness_N_per_m * device_scale;
+  return device_limit_N_per_m > 0 && felt > device_limit_N_per_m ? device_limit_N_per_m / felt : 1;
+}
+
+DevicePlacement::DevicePlacement(const LiveSettings& s, double share)
     : q_WD_(rotation(kRadiansPerDegree * s.device_turn_deg)),
       R_DW_(q_WD_.conjugate().toRotationMatrix()),
       p_W_(s.device_m),
-      scale_(s.device_scale) {}
+      scale_(s.device_scale),
+      share_(share) {}
 
 DeviceState DevicePlacement::in_world(const DeviceReading& reading) const {
   return {p_W_ + scale_ * (R_DW_.transpose() * reading.position_m), q_WD_ * reading.orientation,
@@ -32,7 +38,7 @@ DeviceState DevicePlacement::in_world(const DeviceReading& reading) const {
 }
 
 Wrench DevicePlacement::to_device(const Wrench& wrench_W) const {
-  return {R_DW_ * wrench_W.force_N, R_DW_ * wrench_W.torque_Nm};
+  return {share_ * (R_DW_ * wrench_W.force_N), share_ * (R_DW_ * wrench_W.torque_Nm)};
 }
 
 DeviceReading DevicePlacement::of_device(const DeviceState& state) const {

@@ -26,11 +26,15 @@ inline std::string conflict(const LiveSettings&) {
 // Of the camera over where its source says that it stands.
 RigidTransform camera_registration(const LiveSettings& s);
 
+// The share of all forces that a device can take whose own stiffness is limited; 1 where they fit, or where
+// the limit is 0, not known. device_scale ways in the world per way of the hand make that much stiffer.
+double bearable_share(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
+
 // From the device to the world and back: p_W = device_m + scale R p_D. Forces and torques are turned and not
-// scaled, so the hand feels scale times the stiffness.
+// scaled, so the hand feels scale times the stiffness; to the device goes their share.
 class DevicePlacement {
  public:
-  explicit DevicePlacement(const LiveSettings& s);
+  explicit DevicePlacement(const LiveSettings& s, double share = 1);
 
   DeviceState in_world(const DeviceReading& reading) const;
   Wrench to_device(const Wrench& wrench_W) const;
@@ -43,7 +47,7 @@ class DevicePlacement {
   Eigen::Quaterniond q_WD_;
   Eigen::Matrix3d R_DW_;
   Vec3 p_W_;
-  double scale_;
+  double scale_, share_;
 };
 
 }  // namespace remote_touch

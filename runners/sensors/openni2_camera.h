@@ -18,7 +18,9 @@ namespace remote_touch {
 // registered.
 //
 // The first one open changes the process's working folder for a moment, while the library loads its drivers:
-// open it before other threads look for files by relative paths.
+// open it before other threads look for files by relative paths. Frames are to be taken in one thread of the
+// process, whatever camera they are of: the library remembers the threads that waited, and crashes when it
+// looks for one that has ended.
 std::unique_ptr<DepthSource> open_openni2(const std::string& address);
 
 Availability openni2_availability();

@@ -6,6 +6,7 @@
 //   small_after=N    depth after frame N has half of the rows
 //   stays_mirrored   shows a mirrored image, whatever it is told
 //   unregistered     does not register depth to colour
+//   flat=N           shows a wall N mm ahead, in place of the pattern
 // The library's own headers need allocation macros that no package ships; these are enough.
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
 #define XN_DELETE(pointer) delete (pointer)
@@ -231,11 +232,12 @@ void Stream::stop() {
 }
 
 void Stream::draw(int number, std::uint8_t* to) const {
+  const int flat = told("flat");
   for (int v = 0; v < kHeight; ++v)
     for (int u = 0; u < kWidth; ++u, to += pixel_bytes()) {
       const int seen_u = is_mirrored_ ? kWidth - 1 - u : u;
       if (is_depth_) {
-        const std::uint16_t depth = depth_at(number, seen_u, v);
+        const std::uint16_t depth = flat > 0 ? static_cast<std::uint16_t>(flat) : depth_at(number, seen_u, v);
         std::memcpy(to, &depth, sizeof depth);
       } else {
         const std::uint32_t colour = colour_at(number, seen_u, v);

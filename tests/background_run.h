@@ -1,0 +1,92 @@
+// A live run in a thread of its own, with what it tells its user.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "runners/live/live_run.h"
+#include "runners/live/steady_clock.h"
+#include "tests/scenes.h"
+
+namespace remote_touch {
+
+class BackgroundRun {
+ public:
+  BackgroundRun(std::string experiment, std::string device, std::string depth = "sim:") {
+    options_.device = std::move(device), options_.depth = std::move(depth);
+    options_.kernels = &scenes::kernels();
+    options_.stop = &stop_;
+    options_.duration_s = 60;
+    options_.tell = [this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      told_ += line + "\n";
+    };
+    thread_ = std::thread([this, experiment = std::move(experiment)] { run(experiment); });
+  }
+  ~BackgroundRun() { ended_by_stop(); }
+
+  void stop() { stop_ = true; }
+  // Waits for the end.
+  const LiveResult& ended() {
+    if (thread_.joinable()) thread_.join();
+    return result_;
+  }
+  const LiveResult& ended_by_stop() {
+    stop();
+    return ended();
+  }
+  std::string told() {
+    const std::lock_guard lock(mutex_);
+    return told_;
+  }
+
+ private:
+  void run(const std::string& experiment) try {
+    result_ = run_live(Experiment::from_json(experiment, "test"), options_);
+  } catch (const std::exception& error) {
+    result_.ended = error.what(), result_.failed = true;
+  }
+
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;
+  std::string told_;
+  LiveOptions options_;
+  LiveResult result_;
+  std::thread thread_;
+};
+
+inline void nap() {
+  std::this_thread::sleep_for(std::chrono::microseconds(200));
+}
+
+inline bool wait_until(const std::function<bool()>& is_so) {
+  for (const double until_s = steady_s() + 20; steady_s() < until_s; nap())
+    if (is_so()) return true;
+  return false;
+}
+
+// From now on until there is no force; a second at most.
+inline double time_to_nothing_s(const std::function<double()>& force_N) {
+  const double start_s = steady_s();
+  while (force_N() > 0 && steady_s() - start_s < 1) nap();
+  return steady_s() - start_s;
+}
+
+// The device's side has no force so long after a failure.
+constexpr double kPromise_s = 0.02;
+
+// A proxy over the table of `camera-scene`.
+constexpr const char* kPress = R"({
+  "scenario": {"name": "camera-scene"}, "renderer": {"name": "proxy"},
+  "trajectory": {"name": "follow-surface"}, "safety": {"ramp_s": 0.05}})";
+
+inline double table_height_m() {
+  return Experiment::from_json(kPress, "test").build_scenario(scenes::kernels())->surface_height(0, 0, 0);
+}
+
+}  // namespace remote_touch
