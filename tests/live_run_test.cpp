@@ -24,12 +24,12 @@ LiveOptions options(double duration_s) {
 
 // A hand that follows the scene, with small images so that a machine with little to spare keeps up.
 const char* const kProxy = R"({
-  "scenario": {"name": "camera-scene"}, "renderer": {"name": "proxy"},
+  "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "renderer": {"name": "proxy"},
   "trajectory": {"name": "follow-surface", "from_m": [0, 0, -0.1], "to_m": [0, 0, 0.1], "depth_m": 0.003,
                  "speed_m_per_s": 0.1, "clearance_m": 0.01}})";
 
 const char* const kTool = R"({
-  "scenario": {"name": "camera-scene"}, "depth_pipeline": {},
+  "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "depth_pipeline": {},
   "renderer": {"name": "tool", "tool_mesh": "ball"},
   "trajectory": {"name": "poses", "poses": [[0, 0.06, 0, 0, 0, 0, 0], [0, 0.01, 0, 0, 0, 0, 0.5],
                                             [0.05, 0.01, 0, 0, 0, 0, 1]]}})";
@@ -44,8 +44,10 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
     const std::filesystem::path file = folder / "session.h5";
     LiveOptions live = options(1.5);
     live.record = file;
-    const Experiment run =
-        experiment.front() == '{' ? Experiment::from_json(experiment, name) : Experiment::load(experiment);
+    const Experiment run = experiment.front() == '{'
+                               ? Experiment::from_json(experiment, name)
+                               : Experiment::load(experiment, {"scenario.width=160", "scenario.height=120",
+                                                               "scenario.focal_px=131"});
     live.provenance = {{"config", run.to_json()}};
     const LiveResult result = run_live(run, live);
     ASSERT_FALSE(result.failed) << name << ": " << result.ended;
