@@ -255,7 +255,7 @@ double Experiment::largest_stiffness_N_per_m() const {
     if (v.role == FixtureRole::forbidden)
       holds = std::max(holds, v.stiffness_N_per_m);
     else
-      pulls = std::max(pulls, v.stiffness_N_per_m < 0 ? guidance_->stiffness_N_per_m : v.stiffness_N_per_m);
+      pulls += v.stiffness_N_per_m < 0 ? guidance_->stiffness_N_per_m : v.stiffness_N_per_m;
   }
   return holds + pulls;
 }

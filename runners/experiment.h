@@ -63,7 +63,7 @@ class Experiment {
                                    std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
   SimulatedHand build_hand() const;
   // No pose makes force grow faster with the device's way: springs of the renderer or of a forbidden region,
-  // and of guidance beside them.
+  // and of all guidance beside them.
   double largest_stiffness_N_per_m() const;
   // For the live loop; offline runs take no notice of them.
   LiveSettings live() const { return live_.value_or(LiveSettings{}); }

@@ -1,7 +1,7 @@
 #include "runners/live/live_run.h"
 
+#include <csignal>
 #include <cstdio>
-
 #include <exception>
 
 #include "analysis/digest.h"
@@ -25,6 +25,15 @@ std::string normalised(const LiveRequest& request) {
 
 void tell(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
+}
+
+// A haptic device must be let go whatever ends the program, and a program that is halted holds on to it.
+void see_to_every_end() {
+  struct sigaction interrupt {};
+  sigaction(SIGINT, nullptr, &interrupt);
+  sigaction(SIGQUIT, &interrupt, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGTSTP, SIG_IGN);
 }
 
 // While it runs: a file that cannot be written does not end it.
@@ -53,6 +62,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.on_report = [&](const LiveReport& report) {
     report_now(report, request.report, options.provenance);
   };
+  see_to_every_end();
   const LiveResult result = run_live(experiment, options);
 
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),

@@ -19,7 +19,7 @@ constexpr double kOpenWithin_s = 1;
 // Together, with 1 ms for the rest of a message that has begun, below the 10 ms after which a tick must have
 // told a fault.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
-constexpr double kTickEndsWithin_s = 10e-3, kLastAnswerWithin_s = 20e-3;
+constexpr double kTickEndsWithin_s = 5e-3, kLastAnswerWithin_s = 20e-3;
 constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kLeastCheckedForce_N = 0.3, kLeastShare = 0.1, kLargestSurplus_N = 1;

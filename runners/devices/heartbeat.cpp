@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "runners/live/real_time.h"
 #include "runners/live/steady_clock.h"
 
 namespace remote_touch {
@@ -26,6 +27,7 @@ bool Heartbeat::beat(double now_s) noexcept {
 
 // A beat may come between the look and letting go: the device is let go then too, and the next beat says so.
 void Heartbeat::watch() {
+  outrank_the_loop();
   double stalled_at_s = -1;
   std::unique_lock lock(mutex_);
   while (!stopping_.wait_for(lock, std::chrono::duration<double>(longest_s_ / 5), [this] { return stop_; })) {

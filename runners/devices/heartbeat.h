@@ -19,6 +19,8 @@ class Heartbeat {
   // From the loop, at the begin of every tick. The first one starts the watch. False: the device was let go
   // since the last beat.
   bool beat(double now_s) noexcept;
+  // After the last beat: no more are expected.
+  void rest() noexcept { last_s_.store(-1, std::memory_order_release); }
   int stalls() const { return stalls_.load(std::memory_order_relaxed); }
 
  private:

@@ -45,6 +45,8 @@ class SafetyGate {
   // What may be written at now_s, which never decreases, of a command made at made_s. fault: of the reading.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
               double made_s) noexcept;
+  // As after a fault of the device: no force, until rearm().
+  void latch(const DeviceFault& reason) noexcept;
   // The device was let go by someone else: as at the start.
   void restart() noexcept;
   // After a latch, on request of the user; from any thread.
@@ -54,7 +56,6 @@ class SafetyGate {
   const DeviceFault& reason() const { return reason_; }  // of a latch
 
  private:
-  void latch(const DeviceFault& reason) noexcept;
   DeviceFault trouble(const DeviceReading& reading, const DeviceFault& fault,
                       const Wrench& command) const noexcept;
   double share(double now_s, const Wrench& command) noexcept;

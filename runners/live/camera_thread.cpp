@@ -78,6 +78,8 @@ void CameraThread::run() try {
     }
 } catch (const std::exception& error) {
   end(error.what());
+} catch (...) {
+  end("an unknown error");
 }
 
 bool CameraThread::is_newer(const SensorFrame& sensed) {

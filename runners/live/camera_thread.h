@@ -20,7 +20,7 @@ using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint
 
 struct CameraCounts {
   int received = 0;
-  int passed_over = 0;  // numbers of the sensor that never came
+  int passed_over = 0;  // numbers that never came: not sent, or a newer one was there first
   int reversed = 0;     // not newer than the one before; dropped
   int incomplete = 0;   // without the colours that the sensor's view promises, or of another size; dropped
   int overtaken = 0;    // ready, and replaced by a newer one before the servo took them

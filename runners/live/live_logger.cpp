@@ -27,7 +27,11 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
 void LiveLogger::take_rows() {
   while (const LiveTick* row = rows_.oldest()) {
     if (recorder_ && !failed_) recorder_->append(*row);
-    log_.append(*row, haptic_rate_hz_);
+    if (!log_is_full_) {
+      log_is_full_ = true;  // unless this succeeds: half a row would be worse than none
+      log_.append(*row, haptic_rate_hz_);
+      log_is_full_ = false;
+    }
     rows_.pop();
   }
 }
@@ -50,13 +54,16 @@ void LiveLogger::run() {
       take_rows();
       take_frames();
     } catch (const std::exception& error) {  // the disk is full: go on without it, so that the log is whole
-      why_ = error.what();
-      failed_.store(true, std::memory_order_release);
+      fail(error);
     }
   };
   while (!stop_.load()) {
     take();
-    answer();
+    try {
+      answer();
+    } catch (const std::exception&) {
+      // No memory for a report: the run is more important.
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   take();
@@ -68,7 +75,18 @@ void LiveLogger::finish() try {
   thread_.join();
   if (recorder_ && !failed_) recorder_->finish();
 } catch (const std::exception& error) {
-  why_ = error.what();
+  fail(error);
+}
+
+// Told once: others may be reading it.
+void LiveLogger::fail(const std::exception& error) {
+  if (failed_) return;
+  if (log_is_full_) {
+    log_.trace = Trace();  // its columns may differ in length
+    why_ = "the log failed: no memory for more ticks";
+  } else {
+    why_ = std::string("the recording failed: ") + error.what();
+  }
   failed_.store(true, std::memory_order_release);
 }
 

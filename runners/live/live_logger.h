@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -26,7 +27,7 @@ class LiveLogger {
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   // Takes all that is left and finishes the file; the servo and the camera have stopped.
   void finish();
-  // For other threads: why nothing can be recorded any more.
+  // For other threads: why nothing can be recorded or logged any more.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
   // While running: calls once, in the logger's thread, with the log as it is then.
@@ -43,11 +44,13 @@ class LiveLogger {
   void take_rows();
   void take_frames();
   void answer();
+  void fail(const std::exception& error);
 
   Ring<LiveTick>& rows_;
   const double haptic_rate_hz_;
   const std::unique_ptr<SessionWriter> recorder_;
   LiveLog log_;
+  bool log_is_full_ = false;
   std::mutex question_mutex_;
   std::function<void(const LiveLog&)> question_;
   std::mutex frames_mutex_;

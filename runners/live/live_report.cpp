@@ -113,7 +113,7 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"frames received", number(camera.received)},
                    {"processing of a frame, mean us", 1e6 * camera.processing_s / handled},
                    {"longest pause between frames, ms", 1e3 * camera.longest_pause_s},
-                   {"frames that the sensor counted and never sent", number(camera.passed_over)},
+                   {"frames passed over: not sent, or replaced too soon", number(camera.passed_over)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
                    {"frames overtaken before the haptic loop took them", number(camera.overtaken)},

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <future>
+#include <limits>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -55,8 +56,9 @@ class LiveRun {
     share_ = bearable_share(experiment.largest_stiffness_N_per_m(), experiment.live().device_scale,
                             device_->traits().largest_stiffness_N_per_m);
     servo_ = std::make_unique<Servo>(
-        ServoLinks{*device_, *renderer_, frames_, rows_, stop_}, DevicePlacement(experiment.live(), share_),
-        limits_for(experiment.safety(), device_->traits()), rate_hz_, start_s_, kStall_s);
+        ServoLinks{*device_, *renderer_, frames_, rows_, stop_, options.stop, ends_s()},
+        DevicePlacement(experiment.live(), share_), limits_for(experiment.safety(), device_->traits()),
+        rate_hz_, start_s_, kStall_s);
   }
 
   LiveResult run() {
@@ -68,27 +70,45 @@ class LiveRun {
     std::promise<void> done;
     const std::future<void> is_done = done.get_future();
     std::thread loop([&] {
-      result.real_time = become_real_time();
-      device_->run(*servo_);
-      device_->let_go();
+      run_device(result.real_time);
       done.set_value();
     });
-    result.ended = wait();
+    try {
+      result.ended = wait();
+    } catch (...) {  // no memory for a line to the user: a loop that is not waited for would end the program
+      stop_ = true;
+      device_->let_go();
+      loop.join();
+      throw;
+    }
     stop_ = true;
     if (is_done.wait_for(kLongestStop) != std::future_status::ready) give_up();
     loop.join();
     camera_->stop();
     logger_->finish();
-    if (const std::string why = logger_->failure(); !why.empty())
-      result.ended = "the recording failed: " + why;
+    if (const std::string why = logger_->failure(); !why.empty()) result.ended = why;
     result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() ||
-                    !logger_->failure().empty();
+                    !logger_->failure().empty() || loop_failed_;
     result.log = logger_->take();
     result.counts = counts();
     return result;
   }
 
  private:
+  double ends_s() const {
+    return options_.duration_s > 0 ? start_s_ + options_.duration_s : std::numeric_limits<double>::infinity();
+  }
+
+  void run_device(std::string& real_time) noexcept {
+    try {
+      real_time = become_real_time();
+      device_->run(*servo_);
+    } catch (...) {
+      loop_failed_ = true;
+    }
+    device_->let_go();
+  }
+
   std::unique_ptr<SessionWriter> recorder(const SensorView& view, const RigidTransform& registration) const {
     if (options_.record.empty()) return nullptr;
     return std::make_unique<SessionWriter>(options_.record, view, registration * view.X_WC,
@@ -114,7 +134,8 @@ class LiveRun {
   std::string over() const {
     if (options_.stop && *options_.stop) return "stopped by a signal";
     if (servo_->has_failed()) return std::string("the device failed: ") + servo_->trouble();
-    if (const std::string why = logger_->failure(); !why.empty()) return "the recording failed: " + why;
+    if (loop_failed_) return "the device's loop failed";
+    if (const std::string why = logger_->failure(); !why.empty()) return why;
     if (options_.duration_s > 0 && steady_s() - start_s_ >= options_.duration_s)
       return "its duration is over";
     return {};
@@ -173,7 +194,7 @@ class LiveRun {
   const Kernels& kernels_;
   const double rate_hz_;
   double start_s_ = 0, share_ = 1;
-  std::atomic<bool> stop_ = false;
+  std::atomic<bool> stop_ = false, loop_failed_ = false;
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;

@@ -12,7 +12,13 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kPriority = 80;
+constexpr int kPriority = 80, kWatchPriority = 85;
+
+int take_priority(int value) {
+  sched_param priority{};
+  priority.sched_priority = value;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+}
 
 std::string outcome(const char* what, int error) {
   return std::string(what) +
@@ -36,12 +42,14 @@ int pin_to_last_processor() {
 }  // namespace
 
 std::string become_real_time() {
-  sched_param priority{};
-  priority.sched_priority = kPriority;
-  const int scheduled = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  const int scheduled = take_priority(kPriority);
   const int locked = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
   return outcome("SCHED_FIFO", scheduled) + ", " + outcome("memory locking", locked) + ", " +
          outcome("a processor", pin_to_last_processor());
+}
+
+void outrank_the_loop() noexcept {
+  take_priority(kWatchPriority);
 }
 
 }  // namespace remote_touch

@@ -10,4 +10,7 @@ namespace remote_touch {
 // reserve() only set aside. Returns a line that tells what was given, and why the rest was not.
 std::string become_real_time();
 
+// For a thread that watches such a loop: a higher priority and any processor, where that is permitted.
+void outrank_the_loop() noexcept;
+
 }  // namespace remote_touch

@@ -36,12 +36,20 @@ std::int64_t Servo::next_number(double now_s) {
   return last_number_ = std::max(last_number_ + 1, by_clock);
 }
 
+// Offline, a frame is there for the first tick at or after its time.
+void Servo::move_on_to(double time_s, LiveTick& row) {
+  auto number = static_cast<std::int64_t>(std::ceil(time_s * rate_hz_));
+  while (static_cast<double>(number) / rate_hz_ < time_s) ++number;  // the quotient is rounded
+  row.number = last_number_ = std::max(row.number, number);
+}
+
 // The slot is the servo's until it takes the next, so the time of arrival can be written into it.
 void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
   if (!links_.frames.take()) return;
   LiveFrame& taken = links_.frames.front();
   row.waited_s = static_cast<float>(steady_s() - taken.ready_s);
+  move_on_to(taken.frame.captured_s, row);
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
   row.taken = taken.frame.index;
@@ -54,14 +62,21 @@ void Servo::note(const DeviceFault& fault, bool of_device) noexcept {
   if (of_device) failed_.store(true, std::memory_order_release);
 }
 
+bool Servo::is_over() const noexcept {
+  return links_.stop.load(std::memory_order_relaxed) ||
+         (links_.signal && links_.signal->load(std::memory_order_relaxed)) || steady_s() >= links_.ends_s;
+}
+
 bool Servo::tick() noexcept try {
-  if (!links_.stop.load(std::memory_order_relaxed)) {
+  if (!is_over()) {
     one_tick();
     return true;
   }
+  heartbeat_.rest();
   links_.device.let_go();
   return false;
 } catch (...) {  // a renderer breaks its contract, or a frame that was not prepared found no memory
+  heartbeat_.rest();
   links_.device.let_go();
   note({"an exception in the haptic loop"}, true);
   return false;
@@ -71,7 +86,8 @@ void Servo::one_tick() {
   const double begin_s = steady_s();
   if (!heartbeat_.beat(begin_s)) {
     gate_.restart();
-    if (!links_.device.hold_again()) note({"the haptic loop hung, and the device was let go"}, true);
+    if (has_failed() || !links_.device.hold_again())
+      note({"the haptic loop hung, and the device was let go"}, true);
   }
   row_.since_last_tick_s = last_number_ < 0 ? 0 : static_cast<float>(begin_s - last_tick_s_);
   last_tick_s_ = begin_s;
@@ -93,7 +109,10 @@ void Servo::one_tick() {
   row_.written = gate_.pass(made_s, reading, fault, placement_.to_device(wrench_of(row_.out)), begin_s);
   const DeviceFault refused = links_.device.write(row_.written);
   row_.gate = gate_.state();
-  if (refused) links_.device.let_go();
+  if (refused) {
+    if (!is_let_go(refused)) gate_.latch(refused);
+    links_.device.let_go();
+  }
   note(fault, true);
   if (!is_let_go(refused)) note(refused, true);
   if (row_.gate == GateState::latched) note(gate_.reason(), false);

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
 #include "core/renderer.h"
 #include "runners/devices/heartbeat.h"
@@ -42,11 +43,15 @@ struct ServoLinks {
   TripleBuffer<LiveFrame>& frames;
   Ring<LiveTick>& rows;
   const std::atomic<bool>& stop;
+  // A second one, of the program's signals, and an end by the clock: the loop sees to both itself, for the
+  // thread that waits for it may be held up by the terminal that it writes to.
+  const std::atomic<bool>* signal = nullptr;
+  double ends_s = std::numeric_limits<double>::infinity();  // of the steady clock
 };
 
 // No allocation, no lock, no file; the device's calls excepted. Ticks are numbered by the clock: a missed one
-// leaves a gap, a device that is fast gives each its own number. Their times are rounded up, so that no frame
-// is taken before it was captured.
+// leaves a gap, a device that is fast gives each its own number. Their times are rounded up, and moved on
+// where a frame was captured while the device was read, so that no frame is taken before it was captured.
 class Servo final : public DeviceCycle {
  public:
   // stall_s: longest time without a tick until the heartbeat lets the device go.
@@ -67,7 +72,9 @@ class Servo final : public DeviceCycle {
 
  private:
   void one_tick();
+  bool is_over() const noexcept;
   std::int64_t next_number(double now_s);
+  void move_on_to(double time_s, LiveTick& row);
   void take_frame(LiveTick& row);
   void note(const DeviceFault& fault, bool of_device) noexcept;
 

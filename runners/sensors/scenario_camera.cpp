@@ -40,10 +40,12 @@ SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   const double rate_hz = scenario_->frame_rate_hz();
   const double now_s = steady_s() - start_s_;
   const int last = scenario_->frame_count() - 1;
-  // Of several that are due the newest; beyond the last frame the scene stays as it is.
-  next_ = std::max(next_, static_cast<int>(std::floor(now_s * rate_hz)));
-  const double captured_s =
-      next_ <= last ? scenario_->captured_s(next_) : scenario_->captured_s(last) + (next_ - last) / rate_hz;
+  // Beyond the last frame the scene stays as it is.
+  const auto due_s = [&](int i) {
+    return scenario_->captured_s(std::min(i, last)) + std::max(0, i - last) / rate_hz;
+  };
+  while (due_s(next_ + 1) <= now_s) ++next_;  // of several that are due the newest
+  const double captured_s = due_s(next_);
   const double wait_s = captured_s - now_s;
   std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(wait_s, 0.0, timeout_s)));
   if (wait_s > timeout_s) return SensorState::waiting;
