@@ -82,7 +82,7 @@ void LiveLogger::finish() try {
 void LiveLogger::fail(const std::exception& error) {
   if (failed_) return;
   if (log_is_full_) {
-    log_.trace = Trace();  // its columns may differ in length
+    log_ = LiveLog();  // its columns may differ in length
     why_ = "the log failed: no memory for more ticks";
   } else {
     why_ = std::string("the recording failed: ") + error.what();
