@@ -28,6 +28,8 @@ class NeighbourSearch {
   // Some radius is above 0: there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
   virtual bool has_stiffness() const { return false; }
+  // No r_f of the cloud is larger, m.
+  virtual double largest_fixture_radius_m() const { return 0; }
 };
 
 // A search over a stored cloud.
@@ -38,6 +40,7 @@ class CloudSearch : public NeighbourSearch {
   bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
   bool has_regions() const override { return largest_fixture_radius_ > 0; }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
+  double largest_fixture_radius_m() const override { return largest_fixture_radius_; }
   const PointCloud& cloud() const { return cloud_; }
   const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
 

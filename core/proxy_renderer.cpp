@@ -21,22 +21,40 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
       velocity_(parameters.longest_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
 
-void ProxyRenderer::on_frame(const Frame& frame) {
-  if (frame_index_ >= 0 && !(frame.captured_s > frame_captured_s_)) {
+// Whether the frame is newer than all before.
+bool ProxyRenderer::take(const Frame& frame) {
+  if (!is_newer(frame)) {
     stale_frame_ = true;
-    return;
+    return false;
   }
-  near_.set_points(frame.points);
-  has_look_ = false;
-  is_clear_ = false;
+  replace_points(frame.points);
   frame_index_ = frame.index;
   frame_captured_s_ = frame.captured_s;
   frame_arrived_s_ = frame.arrives_s;
-  if (!p_.velocity_estimate) return;
-  const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
-  proxy_W_ += correction;
-  carried_m_ += correction;
-  contact_proxy_W_ += correction;
+  return true;
+}
+
+void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points) {
+  near_.set_points(std::move(points));
+  has_look_ = false;
+  is_clear_ = false;
+}
+
+void ProxyRenderer::on_frame(const Frame& frame) {
+  if (!take(frame) || !p_.velocity_estimate) return;
+  carry(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
+}
+
+void ProxyRenderer::on_frame(const Frame& frame, const SurfaceMotion& motion) {
+  if (!take(frame)) return;
+  velocity_.on_measured(frame.captured_s, motion.velocity_m_per_s, motion.normal_W);
+  carry(motion.carry_m);
+}
+
+void ProxyRenderer::carry(const Vec3& way_m) {
+  proxy_W_ += way_m;
+  carried_m_ += way_m;
+  contact_proxy_W_ += way_m;
 }
 
 RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
@@ -103,6 +121,10 @@ int ProxyRenderer::move(const Vec3& hip_W) {
     }
     touched |= here.state != ContactState::free;
     if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
+
+    if (stops_at_convergence_ && here.state == ContactState::contact &&
+        has_converged(here.state, normal_W_, u, p_))
+      return k - 1;
 
     const Vec3 s = next_step(here, u);
     velocity_.on_step(s);  // (4.13)

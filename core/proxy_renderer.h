@@ -10,6 +10,13 @@
 
 namespace remote_touch {
 
+// How a surface moved from one frame to the next.
+struct SurfaceMotion {
+  Vec3 carry_m = Vec3::Zero();  // what the proxy is moved by
+  double velocity_m_per_s = 0;  // along the normal, positive towards the proxy
+  Vec3 normal_W = Vec3::Zero();
+};
+
 class ProxyRenderer final : public Renderer {
  public:
   // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
@@ -17,9 +24,21 @@ class ProxyRenderer final : public Renderer {
 
   void reserve(std::size_t points) override { near_.reserve(points, true, true); }
   void on_frame(const Frame& frame) override;
+  // The same with a motion that was measured otherwise; (4.3) and (4.13) then have no part in it.
+  void on_frame(const Frame& frame, const SurfaceMotion& motion);
+  // Other points in place of the newest frame's.
+  void replace_points(std::shared_ptr<const NeighbourSearch> points);
+  // Moves the proxy with a surface.
+  void carry(const Vec3& way_m);
+  // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
+  void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
+  bool is_newer(const Frame& frame) const { return frame_index_ < 0 || frame.captured_s > frame_captured_s_; }
+  const Vec3& proxy_W() const { return proxy_W_; }
+  bool in_contact() const { return in_contact_; }
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
+  bool take(const Frame& frame);
   struct Look {  // what the proxy sees from where it is
     Survey survey;
     ContactState state;
@@ -58,6 +77,7 @@ class ProxyRenderer final : public Renderer {
   int frame_index_ = -1;
   Vec3 carried_m_ = Vec3::Zero();  // by (4.3) since the last tick
   bool stale_frame_ = false;
+  bool stops_at_convergence_ = false;
 };
 
 }  // namespace remote_touch

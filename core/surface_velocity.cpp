@@ -28,4 +28,13 @@ double SurfaceVelocity::horizon_s() const {
   return std::max(longest_interval_s_, interval_s_);
 }
 
+void SurfaceVelocity::on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal) {
+  interval_s_ = has_frame_ ? captured_s - captured_s_ : 0;
+  captured_s_ = captured_s;
+  has_frame_ = true;
+  awaits_step_ = false;
+  velocity_m_per_s_ = velocity_m_per_s;
+  normal_ = normal;
+}
+
 }  // namespace remote_touch

@@ -20,6 +20,9 @@ class SurfaceVelocity {
   // never reset.
   void on_step(const Vec3& step);
 
+  // In place of both, where the motion is measured otherwise: the velocity along the normal, of either sign.
+  void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
+
   double m_per_s() const { return velocity_m_per_s_; }
   // v_hat as a vector, along the normal of the last frame.
   Vec3 vector() const { return velocity_m_per_s_ * normal_; }

@@ -5,6 +5,7 @@
 #include "core/fixtures/hue_range.h"
 #include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
+#include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/live/session_scene.h"
 #include "runners/tools/loaded_spheres.h"
 #include "runners/tools/loaded_tool.h"
@@ -104,6 +105,9 @@ const TrajectoryEntry kTrajectories[] = {
 const RendererEntry kRenderers[] = {
     renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three, HeldBy::points,
                                              "3-DOF point cloud proxy, chapters 4 and 5"),
+    renderer<TrackedSheetRenderer, TrackedSheetParameters>(
+        "tracked-sheet", Freedoms::three, HeldBy::points,
+        "3-DOF proxy on a sheet that is tracked and denoised"),
     renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six, HeldBy::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(

@@ -93,6 +93,7 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
 // Pure numbers, counts and places in an image; everything else says its unit.
 bool carries_unit(const std::string& name) {
   static const std::set<std::string> kPure = {"gamma",
+                                              "bridged_frames",
                                               "closing_steps",
                                               "xi",
                                               "phase_x",

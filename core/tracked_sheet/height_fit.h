@@ -1,0 +1,53 @@
+// From points with noise to the heights of a sheet: local planes of least squares.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/tracked_sheet/height_map.h"
+#include "core/tracked_sheet/patch_points.h"
+
+namespace remote_touch {
+
+// A plane through the points of a window.
+struct PlaneFit {
+  double height = 0, slope_u = 0, slope_v = 0;  // at the place asked about
+  double variance = 0;                          // of the height, in units of the noise's
+  double residual = 0;                          // sum of squares
+  double count = 0;                             // points
+  bool valid = false;                           // they do not lie on a line
+};
+
+// Sums over the members of a patch, of which those over any window of whole cells follow at once.
+class HeightFit {
+ public:
+  HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
+  // The members of points, which all lie on the map's square.
+  void take(const PatchPoints& points);
+
+  // Half sides of windows in contact radii are rounded to cells.
+  PlaneFit plane_around(double u, double v, double half_side) const;
+  // Standard deviation of the heights about the planes of small blocks, a low quantile over the blocks, so
+  // that those with edges do not count.
+  double noise() const;
+  // In each node the plane of the widest window that does not disagree with the narrower ones by more than
+  // noise of that standard deviation explains (Lepski's rule, by intersecting confidence intervals:
+  // Goldenshluger and Nemirovski 1997). Windows too narrow to tell a height at all have no say.
+  void fit(double sigma, HeightMap& map) const;
+  // Members in a square of one contact radius, the median over where there are any.
+  double typical_density() const;
+
+ private:
+  static constexpr int kCorners = HeightMap::kCells + 1;
+  enum Moment { n, su, sv, sh, uu, uv, vv, uh, vh, hh, kMoments };
+  using Sums = std::array<double, kMoments>;
+  const Sums& below(int cu, int cv) const { return sums_[static_cast<std::size_t>(cv * kCorners + cu)]; }
+  Sums window(int corner_u, int corner_v, int half) const;
+  double count(int corner_u, int corner_v, int half) const;
+  static PlaneFit plane(const Sums& sums, double u, double v);
+  void choose(int i, int j, double sigma, HeightMap::Node& node) const;
+
+  std::vector<Sums> sums_;  // at each corner of cells, of all points with smaller u and v
+};
+
+}  // namespace remote_touch

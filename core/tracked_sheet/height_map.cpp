@@ -1,0 +1,113 @@
+#include "core/tracked_sheet/height_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
+  const auto along = [](double x) {
+    return static_cast<int>(std::clamp((x + kHalf) / kNodePitch + 0.5, 0.0, kNodes - 1.0));
+  };
+  return node(along(u), along(v));
+}
+
+// A corner between nodes gets the mean of their planes.
+void HeightMap::fill_cells() {
+  for (int j = 0; j < kCorners; ++j)
+    for (int i = 0; i < kCorners; ++i) {
+      const double u = i * kCell - kHalf, v = j * kCell - kHalf;
+      double sum = 0;
+      int count = 0;
+      for (int b = j / 2; b <= (j + 1) / 2; ++b)
+        for (int a = i / 2; a <= (i + 1) / 2; ++a) {
+          const Node& n = node(a, b);
+          if (!n.known) continue;
+          sum += n.height + n.slope_u * (u - node_at(a)) + n.slope_v * (v - node_at(b));
+          ++count;
+        }
+      corner_[static_cast<std::size_t>(j * kCorners + i)] =
+          count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+void HeightMap::set_plane(double height, double slope_u, double slope_v, double radius) {
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      const double u = node_at(i), v = node_at(j);
+      const bool inside = u * u + v * v <= radius * radius;
+      node(i, j) = {height + slope_u * u + slope_v * v, slope_u, slope_v, 0, inside, inside};
+    }
+  fill_cells();
+}
+
+void HeightMap::extend(int rings) {
+  for (int ring = 0; ring < rings; ++ring) {
+    const auto before = nodes_;
+    for (int j = 0; j < kNodes; ++j)
+      for (int i = 0; i < kNodes; ++i) {
+        if (node(i, j).known) continue;
+        Node sum;
+        int count = 0;
+        for (int b = std::max(0, j - 1); b <= std::min(kNodes - 1, j + 1); ++b)
+          for (int a = std::max(0, i - 1); a <= std::min(kNodes - 1, i + 1); ++a) {
+            const Node& n = before[static_cast<std::size_t>(b * kNodes + a)];
+            if (!n.known) continue;
+            sum.height += n.height + kNodePitch * (n.slope_u * (i - a) + n.slope_v * (j - b));
+            sum.slope_u += n.slope_u, sum.slope_v += n.slope_v;
+            ++count;
+          }
+        if (count > 0)
+          node(i, j) = {sum.height / count, sum.slope_u / count, sum.slope_v / count, 0, true, false};
+      }
+  }
+  fill_cells();
+}
+
+void HeightMap::add_plane(double height, double slope_u, double slope_v) {
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      node(i, j).height += height + slope_u * node_at(i) + slope_v * node_at(j);
+      node(i, j).slope_u += slope_u, node(i, j).slope_v += slope_v;
+    }
+  for (int j = 0; j < kCorners; ++j)
+    for (int i = 0; i < kCorners; ++i)
+      corner_[static_cast<std::size_t>(j * kCorners + i)] +=
+          height + slope_u * (i * kCell - kHalf) + slope_v * (j * kCell - kHalf);
+}
+
+double HeightMap::height(double u, double v) const {
+  const double x = std::clamp((u + kHalf) / kCell, 0.0, kCells - 1e-9);
+  const double y = std::clamp((v + kHalf) / kCell, 0.0, kCells - 1e-9);
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double fu = x - i, fv = y - j;
+  const double* c = &corner_[static_cast<std::size_t>(j * kCorners + i)];
+  const double low = c[0] + fu * (c[1] - c[0]), high = c[kCorners] + fu * (c[kCorners + 1] - c[kCorners]);
+  return low + fv * (high - low);
+}
+
+HeightMap::Slopes HeightMap::slopes(double u, double v) const {
+  const double d = 0.5 * kCell;
+  return {(height(u + d, v) - height(u - d, v)) / kCell, (height(u, v + d) - height(u, v - d)) / kCell};
+}
+
+HeightMap::Slopes HeightMap::mean_slopes(double u, double v, double radius) const {
+  Slopes sum{0, 0};
+  int count = 0;
+  for (int j = 0; j < kNodes; ++j)
+    for (int i = 0; i < kNodes; ++i) {
+      const Node& n = node(i, j);
+      const double du = node_at(i) - u, dv = node_at(j) - v;
+      if (!n.covered || du * du + dv * dv > radius * radius) continue;
+      sum.u += n.slope_u, sum.v += n.slope_v;
+      ++count;
+    }
+  return count > 0 ? Slopes{sum.u / count, sum.v / count} : slopes(u, v);
+}
+
+bool HeightMap::covers(double u, double v) const {
+  return nearest_node(u, v).covered && std::isfinite(height(u, v));
+}
+
+}  // namespace remote_touch

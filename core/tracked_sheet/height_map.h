@@ -1,0 +1,58 @@
+// The heights of a sheet over a patch.
+#pragma once
+
+#include <array>
+
+#include "core/tracked_sheet/patch_frame.h"
+
+namespace remote_touch {
+
+// Over the square |u|, |v| <= kHalf around the patch's origin, in contact radii. Nodes, one contact radius
+// apart, carry local planes; corners of cells between them carry heights, and within a cell the map is
+// bilinear, so it is continuous.
+class HeightMap {
+ public:
+  static constexpr double kHalf = 8;
+  static constexpr int kCells = 32;  // along each side
+  static constexpr double kCell = 2 * kHalf / kCells;
+  static constexpr int kNodes = kCells / 2 + 1;
+  static constexpr double kNodePitch = 2 * kCell;
+
+  struct Node {
+    double height = 0, slope_u = 0, slope_v = 0;
+    double error = 0;      // standard error of the height
+    bool known = false;    // there is a plane
+    bool covered = false;  // the sheet is there; else the plane continues it beyond its border
+  };
+  static double node_at(int i) { return i * kNodePitch - kHalf; }
+  Node& node(int i, int j) { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
+  const Node& node(int i, int j) const { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
+  const Node& nearest_node(double u, double v) const;
+  // To be called after nodes were changed.
+  void fill_cells();
+
+  // A plane, known within so many contact radii of the origin.
+  void set_plane(double height, double slope_u, double slope_v, double radius);
+  // Continues the map by so many contact radii beyond its border, as planes.
+  void extend(int rings);
+  // Adds a plane: what the sheet moved and turned by.
+  void add_plane(double height, double slope_u, double slope_v);
+
+  // NaN where the map knows nothing. Beyond its border: that of the nearest place on it.
+  double height(double u, double v) const;
+  // Of the cells; NaN likewise.
+  struct Slopes {
+    double u, v;
+  };
+  Slopes slopes(double u, double v) const;
+  // Mean of the nodes that the sheet covers within that distance.
+  Slopes mean_slopes(double u, double v, double radius) const;
+  bool covers(double u, double v) const;
+
+ private:
+  static constexpr int kCorners = kCells + 1;
+  std::array<Node, kNodes * kNodes> nodes_;
+  std::array<double, kCorners * kCorners> corner_;
+};
+
+}  // namespace remote_touch

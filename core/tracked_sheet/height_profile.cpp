@@ -1,0 +1,67 @@
+#include "core/tracked_sheet/height_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+void HeightProfile::clear(double half_range) {
+  const int half = static_cast<int>(std::ceil(std::min(half_range, kLargestRange) / kBin));
+  bins_ = std::min(2 * half, static_cast<int>(count_.size()));
+  half_range_ = 0.5 * bins_ * kBin;
+  std::fill_n(count_.begin(), bins_, 0.0);
+}
+
+double HeightProfile::most() const {
+  return bins_ == 0 ? 0 : *std::max_element(count_.begin(), count_.begin() + bins_);
+}
+
+// A box twice, which is a triangle.
+HeightProfile HeightProfile::smoothed(double sigma) const {
+  HeightProfile result = *this;
+  const int half = std::max(1, static_cast<int>(std::round(1.2 * sigma / kBin)));
+  std::array<double, 1025> sums{};
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int i = 0; i < bins_; ++i)
+      sums[static_cast<std::size_t>(i + 1)] = sums[static_cast<std::size_t>(i)] + result.count(i);
+    for (int i = 0; i < bins_; ++i)
+      result.count_[static_cast<std::size_t>(i)] =
+          (sums[static_cast<std::size_t>(std::min(bins_, i + half + 1))] -
+           sums[static_cast<std::size_t>(std::max(0, i - half))]) /
+          (2 * half + 1);
+  }
+  return result;
+}
+
+double HeightProfile::shift_of(const HeightProfile& other, double reach) const {
+  constexpr double kNearness = 0.1;  // so much less counts what is at the end of the reach
+  const int most = static_cast<int>(std::round(reach / kBin)), offset = (other.bins_ - bins_) / 2;
+  double best = -1;
+  int at = 0;
+  for (int step = 0; step <= 2 * most; ++step) {
+    const int k = step % 2 == 0 ? step / 2 : -(step + 1) / 2;
+    double sum = 0;
+    const int first = std::max(0, -(offset + k)), last = std::min(bins_, other.bins_ - offset - k);
+    for (int b = first; b < last; ++b) sum += count(b) * other.count(b + offset + k);
+    sum *= 1 - kNearness * (k * k) / (most * most + 1.0);
+    if (sum > best) best = sum, at = k;
+  }
+  return at * kBin;
+}
+
+double HeightProfile::valley_from(double height, int direction) const {
+  if (bins_ == 0) return 0;
+  const int start = std::clamp(static_cast<int>((height + half_range_) / kBin), 0, bins_ - 1);
+  const double peak = count(start);
+  double least = peak;
+  int where = start;
+  for (int b = start; b >= 0 && b < bins_; b += direction) {
+    if (count(b) < least) least = count(b), where = b;
+    const double chance = 3 * std::sqrt(0.1 * (least + 1));  // counts are means over several bins
+    if (where != start && count(b) > 2 * least + 0.15 * peak + chance)
+      return std::abs(centre(where) - height);
+  }
+  return 2 * half_range_;
+}
+
+}  // namespace remote_touch

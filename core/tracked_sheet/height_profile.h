@@ -1,0 +1,42 @@
+// How many points of a patch lie at which height.
+#pragma once
+
+#include <array>
+
+namespace remote_touch {
+
+// Counts in bins of a tenth of a contact radius, symmetric about height 0.
+class HeightProfile {
+ public:
+  static constexpr double kBin = 0.1;
+  static constexpr double kLargestRange = 51.2;
+
+  explicit HeightProfile(double half_range = 0) { clear(half_range); }
+  void clear(double half_range);
+  void add(double height) {
+    const double bin = (height + half_range_) / kBin;
+    if (bin >= 0 && bin < bins_) count_[static_cast<std::size_t>(bin)] += 1;  // NaN is neither
+  }
+
+  int bins() const { return bins_; }
+  double half_range() const { return half_range_; }
+  double centre(int bin) const { return (bin + 0.5) * kBin - half_range_; }
+  double count(int bin) const { return count_[static_cast<std::size_t>(bin)]; }
+  double most() const;
+
+  // Counts per bin under a triangle of about this standard deviation.
+  HeightProfile smoothed(double sigma) const;
+  // How far the other profile must be moved down to agree best with this one, at most reach either way: the
+  // largest sum of products. Of nearly equal ones the smallest.
+  double shift_of(const HeightProfile& other, double reach) const;
+  // How far from a height, upwards (1) or downwards (-1), another sheet begins: at the bottom of a valley
+  // that chance does not explain. Twice the range where there is none. Of a smoothed profile.
+  double valley_from(double height, int direction) const;
+
+ private:
+  double half_range_ = 0;
+  int bins_ = 0;
+  std::array<double, 1024> count_{};
+};
+
+}  // namespace remote_touch

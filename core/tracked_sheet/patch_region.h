@@ -1,0 +1,26 @@
+// Where a patch speaks for the frame.
+#pragma once
+
+#include <cmath>
+
+#include "core/gathered_points.h"
+#include "core/tracked_sheet/patch_frame.h"
+
+namespace remote_touch {
+
+// The part of space in which a patch says what is there: a cylinder about its normal, in contact radii.
+struct PatchRegion {
+  PatchFrame frame;
+  double radius = 0, half_height = 0;
+
+  bool holds(const PatchPlace& p) const {
+    return p.u * p.u + p.v * p.v < radius * radius && std::abs(p.h) <= half_height;
+  }
+  bool holds(const Ball& ball) const;
+  // Around all of it, m.
+  Ball around() const {
+    return {frame.origin_W(), std::hypot(radius, half_height) * frame.unit_m() * (1 + 1e-9)};
+  }
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,33 @@
+// Finding the sheet of surface that lies nearest to a proxy, from one frame alone.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/kernels.h"
+#include "core/neighbour_search.h"
+#include "core/tracked_sheet/height_fit.h"
+#include "core/tracked_sheet/patch_points.h"
+
+namespace remote_touch {
+
+struct FoundSheet {
+  PatchFrame frame;  // its origin lies on the sheet, its normal points to the proxy's side
+  double sigma = 0;  // noise, contact radii
+  double known = 0;  // radius around the origin in which it was seen, contact radii
+};
+
+// Room for the work of a search; its contents mean nothing.
+struct AcquisitionRoom {
+  GatheredPoints& gathered;
+  PatchPoints& points;
+  HeightFit& fit;
+};
+
+// The nearest mode of heights along the normal, which is first that of (4.1) over a wide reach and then that
+// of the mode itself. None: too few points, or they make no surface that faces the proxy.
+std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
+                                     double contact_radius_m, const Kernels& kernels,
+                                     const AcquisitionRoom& room);
+
+}  // namespace remote_touch

@@ -1,0 +1,83 @@
+#include "core/tracked_sheet/sheet_search.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace remote_touch {
+
+void SheetSearch::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
+  for (Columns* c : {&added_, &sorted_}) {
+    c->x.grow(points), c->y.grow(points), c->z.grow(points), c->index.grow(points);
+    if (with_radius) c->radius.grow(points);
+    if (with_stiffness) c->stiffness.grow(points);
+  }
+  cell_of_.grow(points);
+}
+
+void SheetSearch::start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
+                        std::shared_ptr<GatheredPoints> room) {
+  region_ = region;
+  frame_ = std::move(frame), room_ = std::move(room);
+  count_ = 0;
+  start_.fill(0);
+}
+
+int SheetSearch::cell_along(double coordinate) const {
+  const double cell = (coordinate + region_.radius) * (kCells / (2 * region_.radius));
+  return static_cast<int>(std::clamp(cell, 0.0, kCells - 1.0));
+}
+
+void SheetSearch::add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row) {
+  const Vec3 p_W = region_.frame.world(place);
+  const PointsView all = gathered.view();
+  added_.x[count_] = p_W.x(), added_.y[count_] = p_W.y(), added_.z[count_] = p_W.z();
+  added_.index[count_] = gathered.index()[row];
+  if (all.radius) added_.radius[count_] = all.radius[row];
+  if (all.stiffness) added_.stiffness[count_] = all.stiffness[row];
+  cell_of_[count_] = static_cast<std::uint32_t>(cell_along(place.v) * kCells + cell_along(place.u));
+  ++start_[cell_of_[count_++] + 1];
+}
+
+// Counting sort.
+void SheetSearch::finish() {
+  for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) start_[cell + 1] += start_[cell];
+  auto next = start_;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::uint32_t to = next[cell_of_[i]]++;
+    sorted_.x[to] = added_.x[i], sorted_.y[to] = added_.y[i], sorted_.z[to] = added_.z[i];
+    sorted_.index[to] = added_.index[i];
+    if (has_fixture_radius()) sorted_.radius[to] = added_.radius[i];
+    if (has_stiffness()) sorted_.stiffness[to] = added_.stiffness[i];
+  }
+}
+
+void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  const Ball wide{ball.centre, ball.radius + largest_fixture_radius_m()};
+  // Points lie in the cells of their rounded places.
+  const PatchPlace c = region_.frame.place(ball.centre);
+  const double reach = wide.radius / region_.frame.unit_m() + 0x1p-10;
+  const int first = cell_along(c.u - reach), last = cell_along(c.u + reach);
+  for (int row = cell_along(c.v - reach); row <= cell_along(c.v + reach); ++row) {
+    const std::uint32_t begin = start_[static_cast<std::size_t>(row * kCells + first)],
+                        end = start_[static_cast<std::size_t>(row * kCells + last + 1)];
+    if (begin == end) continue;
+    out.add({sorted_.x.data() + begin, sorted_.y.data() + begin, sorted_.z.data() + begin,
+             has_fixture_radius() ? sorted_.radius.data() + begin : nullptr,
+             has_stiffness() ? sorted_.stiffness.data() + begin : nullptr, sorted_.index.data() + begin, 0,
+             end - begin},
+            ball, kernels);
+  }
+  if (region_.holds(wide)) return;
+  room_->clear();
+  frame_->gather(ball, kernels, *room_);
+  room_->finish();
+  const PointsView all = room_->view();
+  for (std::size_t i = 0; i < room_->size(); ++i) {
+    if (region_.holds(region_.frame.place(Vec3(all.x[i], all.y[i], all.z[i])))) continue;
+    out.add({all.x + i, all.y + i, all.z + i, all.radius ? all.radius + i : nullptr,
+             all.stiffness ? all.stiffness + i : nullptr, room_->index() + i, 0, 1},
+            ball, kernels);
+  }
+}
+
+}  // namespace remote_touch

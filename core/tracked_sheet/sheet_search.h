@@ -1,0 +1,48 @@
+// The points that a tracked sheet leaves of a frame: those of its patch without their noise, those beyond as
+// they are.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/neighbour_search.h"
+#include "core/tracked_sheet/patch_region.h"
+
+namespace remote_touch {
+
+// Filled anew for every frame; without allocating where reserve() gave it room for the frame's points.
+class SheetSearch final : public NeighbourSearch {
+ public:
+  void reserve(std::size_t points, bool with_radius, bool with_stiffness);
+  // Begins with no points in the region. room: for points of the frame while gather() runs.
+  void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
+             std::shared_ptr<GatheredPoints> room);
+  // A point of the frame, by its row in what was gathered of it, at the place that it is shown at.
+  void add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row);
+  void finish();
+
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+  std::size_t size() const override { return frame_->size(); }
+  bool has_fixture_radius() const override { return frame_->has_fixture_radius(); }
+  bool has_regions() const override { return frame_->has_regions(); }
+  bool has_stiffness() const override { return frame_->has_stiffness(); }
+  double largest_fixture_radius_m() const override { return frame_->largest_fixture_radius_m(); }
+
+ private:
+  static constexpr int kCells = 20;  // along each side of the region
+  struct Columns {
+    Room<double> x, y, z, radius, stiffness;
+    Room<std::uint32_t> index;
+  };
+  int cell_along(double coordinate) const;
+
+  PatchRegion region_;
+  std::shared_ptr<const NeighbourSearch> frame_;
+  std::shared_ptr<GatheredPoints> room_;
+  Columns added_, sorted_;  // in the order of coming, and cell by cell
+  Room<std::uint32_t> cell_of_;
+  std::size_t count_ = 0;
+  std::array<std::uint32_t, kCells * kCells + 1> start_{};
+};
+
+}  // namespace remote_touch

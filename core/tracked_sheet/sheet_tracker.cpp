@@ -1,0 +1,310 @@
+#include "core/tracked_sheet/sheet_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/tracked_sheet/sheet_acquisition.h"
+#include "core/tracked_sheet/sheet_registration.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Lengths in contact radii.
+constexpr double kNoisePart = 3.5;  // what lies further from a sheet than this many sigma is no noise of it
+constexpr double kThinnest = 0.5;   // half of a sheet without noise
+constexpr double kLost = 0.2, kDoubtful = 0.5;  // share of the members found again
+constexpr double kMiddle = 5;      // within this of the origin the patch shows all that the proxy touches
+constexpr double kTouching = 2.5;  // a proxy further away is held by something else
+
+double half_thickness(double sigma) {
+  return std::max(kThinnest, kNoisePart * sigma);
+}
+
+}  // namespace
+
+SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels)
+    : s_(settings), unit_m_(contact_radius_m), kernels_(kernels) {}
+
+void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
+  for (auto& room : {gathered_, room_}) room->reserve(points, with_radius, with_stiffness);
+  for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
+  points_.reserve(points);
+  sheet_.reserve(points);
+}
+
+void SheetTracker::make_room() {
+  reserve(newest_->size(), newest_->has_fixture_radius(), newest_->has_stiffness());
+}
+
+// Half of the height that is looked at besides what a gate asks for.
+double SheetTracker::half_height() const {
+  return std::max(4.0, 2 + kNoisePart * sigma_);
+}
+
+void SheetTracker::gather(double half_height) {
+  region_.half_height = half_height;
+  gathered_->clear();
+  newest_->gather(region_.around(), kernels_, *gathered_);
+  gathered_->finish();
+  points_.take(*gathered_, region_);
+}
+
+void SheetTracker::start_anew(const Vec3& proxy_W) {
+  age_ = missed_ = 0;
+  shift_ = shift_before_ = 0;
+  sheet_.clear();
+  const auto found = find_sheet(*newest_, proxy_W, unit_m_, kernels_, {*gathered_, points_, fit_});
+  tracks_ = found.has_value();
+  if (!tracks_) return;
+  region_ = {found->frame, HeightMap::kHalf, 0};
+  sigma_ = found->sigma;
+  gather(half_height());
+  map_.set_plane(0, 0, 0, found->known + 1);
+  const PatchPlace proxy = patch().place(proxy_W);
+  for (int ring = 0; ring < 4; ++ring) {
+    map_.extend(3);
+    find_members(proxy);
+    fit_map(1);
+  }
+}
+
+// By the hand's motion, or because the tracked sheet is not what holds the proxy.
+bool SheetTracker::is_of_other_surface(const ProxyPlace& proxy) const {
+  const PatchPlace p = patch().place(proxy.p_W);
+  if (!(p.u * p.u + p.v * p.v < region_.radius * region_.radius)) return true;
+  const double clearance = p.h - map_.height(p.u, p.v);
+  if (!std::isfinite(clearance) || clearance < -0.5) return true;
+  if (proxy.pressing) return clearance > kTouching + contact_distance(p) - 1;
+  return !map_.covers(p.u, p.v) || nearer_stray_;
+}
+
+// The map around another middle, or along another normal, from the members of the frame before.
+void SheetTracker::recentre(const Vec3& middle_W) {
+  constexpr double kOff = 1.5, kSteep = 0.2, kTooSteep = 2;
+  const PatchPlace p = patch().place(middle_W);
+  if (!(p.u * p.u + p.v * p.v < region_.radius * region_.radius)) return;
+  const double height = map_.height(p.u, p.v);
+  const HeightMap::Slopes slopes = map_.mean_slopes(p.u, p.v, kMiddle);
+  const double steep = std::hypot(slopes.u, slopes.v);
+  if (!std::isfinite(height + steep)) return;
+  if (p.u * p.u + p.v * p.v < kOff * kOff && steep < kSteep) return;
+  const PatchFrame before = patch();
+  const Vec3 normal_W = steep < kTooSteep ? before.normal_W(slopes.u, slopes.v) : before.normal_W();
+  region_.frame = PatchFrame(before.world({p.u, p.v, height}), normal_W, unit_m_);
+  points_.place.clear();
+  for (const PatchPlace& q : sheet_) {
+    const PatchPlace moved = patch().place(before.world(q));
+    if (moved.u * moved.u + moved.v * moved.v < region_.radius * region_.radius)
+      points_.place.push_back(moved);
+  }
+  points_.member.assign(points_.place.size(), 1);
+  sheet_ = points_.place;
+  fit_.take(points_);
+  fit_.fit(0.3 * sigma_, map_);
+}
+
+// From the last two shifts; of their change as much as is not noise.
+double SheetTracker::predicted_shift(double interval_s) const {
+  if (age_ == 0 || !(interval_s_ > 0)) return 0;
+  const double ratio = interval_s / interval_s_;
+  double change = age_ >= 2 ? shift_ - shift_before_ : 0;
+  const double square = change * change;
+  if (square > 0) change *= square / (square + 8 * shift_error_ * shift_error_);
+  return shift_ * ratio + change * ratio * ratio;
+}
+
+// Which points belong to the sheet that the map predicts: those within its noise, and nearer to it than to
+// another sheet. Returns their number.
+double SheetTracker::find_members(const PatchPlace& proxy) {
+  set_residuals(points_, map_);
+  const HeightProfile smooth =
+      profile_near(points_, proxy, region_.half_height).smoothed(std::max(0.2, 0.5 * sigma_));
+  const double most = half_thickness(sigma_);
+  const double up = std::min(most, smooth.valley_from(0, 1)),
+               down = std::min(most, smooth.valley_from(0, -1));
+  double count = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    points_.member[i] = points_.residual[i] <= up && points_.residual[i] >= -down;  // NaN is none
+    count += points_.member[i];
+  }
+  return count;
+}
+
+void SheetTracker::fit_map(double weight_of_new_noise) {
+  fit_.take(points_);
+  fit_.fit(sigma_, map_);
+  sigma_ += weight_of_new_noise * (fit_.noise() - sigma_);
+}
+
+// Finds the sheet in the newest frame; false when it is gone.
+bool SheetTracker::follow(const Vec3& proxy_W) {
+  const double before = static_cast<double>(sheet_.size());
+  const double first = age_ >= 1 ? s_.gate_m : s_.first_gate_m;
+  for (const double gate_m : {first, s_.first_gate_m, s_.widest_gate_m}) {
+    const double gate = gate_m / unit_m_;
+    if (gate_m < first) continue;
+    gather(half_height() + gate);
+    const PatchPlace proxy = patch().place(proxy_W);
+    set_residuals(points_, map_);
+    const SheetShift shift = register_sheet(points_, profile_, proxy, gate, region_.half_height, sigma_);
+    const HeightMap before_it = map_;
+    map_.add_plane(shift.height, shift.slope_u, shift.slope_v);
+    map_.extend(2);
+    const double found = find_members(proxy);
+    if (found >= kDoubtful * before ||
+        (gate_m >= s_.widest_gate_m && found >= kLost * before && found >= 3)) {
+      fit_map(age_ >= 1 ? 0.4 : 1);
+      return true;
+    }
+    map_ = before_it;
+  }
+  return false;
+}
+
+// From which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
+double SheetTracker::contact_distance(const PatchPlace& proxy) const {
+  const PointsView all = gathered_->view();
+  if (!all.radius) return 1;
+  double nearest = 4, radius = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!points_.member[i]) continue;
+    const double du = points_.place[i].u - proxy.u, dv = points_.place[i].v - proxy.v, d2 = du * du + dv * dv;
+    const double r = all.radius[points_.source[i]] / unit_m_;
+    if (d2 < nearest || (d2 == nearest && r > radius)) nearest = d2, radius = r;
+  }
+  return 1 + radius;
+}
+
+std::shared_ptr<const NeighbourSearch> SheetTracker::keep(std::shared_ptr<const NeighbourSearch> frame) {
+  newest_ = std::move(frame);
+  make_room();
+  tracks_ = false;
+  return newest_;
+}
+
+// How far above the sheet, along the patch's normal; NaN where there is none.
+double SheetTracker::clearance(const Vec3& p_W) const {
+  const PatchPlace p = patch().place(p_W);
+  return p.h - map_.height(p.u, p.v);
+}
+
+// How far a proxy must go along the normal not to be in the sheet.
+double SheetTracker::way_out(const Vec3& proxy_W) const {
+  const PatchPlace p = patch().place(proxy_W);
+  const double now = clearance(proxy_W);
+  return map_.covers(p.u, p.v) && std::isfinite(now) ? std::max(0.0, contact_distance(p) - now) : 0;
+}
+
+// A proxy that the sheet holds back keeps its clearance; a free one is moved only out of a sheet that swept
+// over it. In contact radii, along the normal.
+double SheetTracker::carry(const ProxyPlace& proxy, double clearance_before) const {
+  if (!proxy.pressing) return way_out(proxy.p_W);
+  const double moved = clearance_before - clearance(proxy.p_W);
+  return std::isfinite(moved) ? moved : 0;
+}
+
+// Where the sheet was nowhere seen before.
+SheetUpdate SheetTracker::look_afresh(const Vec3& proxy_W) {
+  start_anew(proxy_W);
+  return {show(proxy_W), Vec3::Zero(), 0, Vec3::Zero()};
+}
+
+SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
+                                   double interval_s) {
+  newest_ = std::move(frame);
+  make_room();
+  const Vec3 ahead = 0.5 * (proxy.p_W - last_proxy_W_);
+  last_proxy_W_ = proxy.p_W;
+  if (!tracks_ || is_of_other_surface(proxy)) return look_afresh(proxy.p_W);
+  const double before = clearance(proxy.p_W);
+  recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
+  const PatchFrame unmoved = patch();
+  region_.frame.move_along_normal(predicted_shift(interval_s));
+  if (!follow(proxy.p_W)) {
+    if (!proxy.pressing || ++missed_ > s_.bridged_frames) return look_afresh(proxy.p_W);
+    region_.frame = unmoved;
+    return {nullptr, Vec3::Zero(), 0, Vec3::Zero()};
+  }
+  missed_ = 0;
+  SheetUpdate update;
+  update.carry_m = carry(proxy, before) * unit_m_ * patch().normal_W();
+  update.normal_W = patch().normal_W();
+  update.velocity_m_per_s = velocity(proxy.p_W, before, interval_s);
+  update.points = show(proxy.p_W + update.carry_m);
+  return update;
+}
+
+// From how the clearance of a resting point changed, of which as much as is not noise.
+double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, double interval_s) {
+  const double moved = clearance_before - clearance(proxy_W);
+  if (!std::isfinite(moved) || !(interval_s > 0)) return 0;
+  const PatchPlace p = patch().place(proxy_W);
+  shift_before_ = age_ >= 1 ? shift_ : moved;
+  shift_ = moved;
+  shift_error_ = std::max(1.5 * map_.nearest_node(p.u, p.v).error, 0.003);  // of two heights
+  interval_s_ = interval_s;
+  ++age_;
+  const double square = moved * moved;
+  return square / (square + 4 * shift_error_ * shift_error_) * moved * unit_m_ / interval_s;
+}
+
+bool SheetTracker::must_look_again(const Vec3& proxy_W) const {
+  if (!newest_) return false;
+  if (!tracks_) return (proxy_W - looked_from_W_).norm() > unit_m_;
+  const PatchPlace p = patch().place(proxy_W);
+  return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
+}
+
+SheetUpdate SheetTracker::look_again(const ProxyPlace& proxy) {
+  if (!tracks_ || is_of_other_surface(proxy)) return look_afresh(proxy.p_W);
+  recentre(proxy.p_W);
+  gather(half_height());
+  map_.extend(6);
+  find_members(patch().place(proxy.p_W));
+  fit_map(0.4);
+  SheetUpdate update;
+  update.carry_m = way_out(proxy.p_W) * unit_m_ * patch().normal_W();
+  update.points = show(proxy.p_W + update.carry_m);
+  return update;
+}
+
+// The members without their noise, of the others those that are surfaces.
+std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
+  looked_from_W_ = proxy_W;
+  nearer_stray_ = false;
+  sheet_.clear();
+  if (!tracks_) return newest_;
+  const bool clean = sigma_ < kUntouched || !s_.denoise;
+  const PatchPlace proxy = patch().place(proxy_W);
+  const double most = kNoisePart * sigma_;
+  SheetSearch& shown = *shown_[present_ ^= 1];
+  if (!clean) shown.start(region_, newest_, room_);
+  set_residuals(points_, map_);
+  profile_ = profile_near(points_, proxy, region_.half_height + 2).smoothed(0.1);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!points_.member[i] || !std::isfinite(points_.residual[i])) continue;
+    PatchPlace p = points_.place[i];
+    p.h = PatchFrame::rounded(p.h - std::clamp(points_.residual[i], -most, most));
+    sheet_.push_back(p);
+    if (!clean) shown.add(p, *gathered_, points_.source[i]);
+  }
+  strays_.count(points_, region_, sigma_, fit_.typical_density());
+  const double clearance = proxy.h - map_.height(proxy.u, proxy.v);
+  double nearest = 0.7 * clearance;
+  nearest = nearest > 0 ? nearest * nearest : 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_.member[i]) continue;
+    const PatchPlace& p = points_.place[i];
+    if (!strays_.is_surface(p)) continue;
+    if (!clean) shown.add(p, *gathered_, points_.source[i]);
+    const double du = p.u - proxy.u, dv = p.v - proxy.v, dh = p.h - proxy.h;
+    nearer_stray_ |= du * du + dv * dv + dh * dh < nearest;
+  }
+  if (clean) return newest_;
+  shown.finish();
+  return {shown_[present_], &shown};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,100 @@
+// Follows the sheet of surface in front of a proxy from frame to frame.
+#pragma once
+
+#include <memory>
+
+#include "core/tracked_sheet/height_fit.h"
+#include "core/tracked_sheet/height_map.h"
+#include "core/tracked_sheet/height_profile.h"
+#include "core/tracked_sheet/patch_points.h"
+#include "core/tracked_sheet/sheet_search.h"
+#include "core/tracked_sheet/stray_points.h"
+
+namespace remote_touch {
+
+struct SheetSettings {
+  double gate_m = 0.015, first_gate_m = 0.035, widest_gate_m = 0.075;
+  int bridged_frames = 1;
+  bool denoise = true;
+};
+
+// Where the proxy is, and whether a surface holds it back.
+struct ProxyPlace {
+  Vec3 p_W = Vec3::Zero();
+  bool pressing = false;
+};
+
+// What a frame shows, and how the proxy is to follow.
+struct SheetUpdate {
+  std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet given up
+  Vec3 carry_m = Vec3::Zero();
+  double velocity_m_per_s = 0;
+  Vec3 normal_W = Vec3::Zero();
+};
+
+class SheetTracker {
+ public:
+  SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels);
+  // For frames of so many points; without allocating where there was room.
+  void reserve(std::size_t points, bool with_radius, bool with_stiffness);
+
+  // A new frame, interval_s after the one before.
+  SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
+                       double interval_s);
+  // Keeps a frame for look_again(), while it is not known where the proxy is, and shows it as it is.
+  std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
+  // The proxy has left the middle of the patch.
+  bool must_look_again(const Vec3& proxy_W) const;
+  // The newest frame's points around the proxy's new place. No allocation.
+  SheetUpdate look_again(const ProxyPlace& proxy);
+
+  bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
+  bool tracks() const { return tracks_; }
+  double noise_sigma_m() const { return sigma_ * unit_m_; }
+
+ private:
+  static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is left as it is
+  void gather(double half_height);
+  const PatchFrame& patch() const { return region_.frame; }
+  void make_room();
+  double half_height() const;
+  void start_anew(const Vec3& proxy_W);
+  bool is_of_other_surface(const ProxyPlace& proxy) const;
+  void recentre(const Vec3& middle_W);
+  double predicted_shift(double interval_s) const;
+  bool follow(const Vec3& proxy_W);
+  double find_members(const PatchPlace& proxy);
+  void fit_map(double weight_of_new_noise);
+  SheetUpdate look_afresh(const Vec3& proxy_W);
+  double clearance(const Vec3& p_W) const;
+  double way_out(const Vec3& proxy_W) const;
+  double carry(const ProxyPlace& proxy, double clearance_before) const;
+  double velocity(const Vec3& proxy_W, double clearance_before, double interval_s);
+  double contact_distance(const PatchPlace& proxy) const;
+  std::shared_ptr<const NeighbourSearch> show(const Vec3& proxy_W);
+
+  const SheetSettings s_;
+  const double unit_m_;
+  const Kernels& kernels_;
+  std::shared_ptr<const NeighbourSearch> newest_;
+  std::shared_ptr<GatheredPoints> gathered_ = std::make_shared<GatheredPoints>(),
+                                  room_ = std::make_shared<GatheredPoints>();
+  std::shared_ptr<SheetSearch> shown_[2] = {std::make_shared<SheetSearch>(), std::make_shared<SheetSearch>()};
+  int present_ = 0;
+
+  bool tracks_ = false;
+  PatchRegion region_;
+  HeightMap map_;
+  HeightFit fit_;
+  PatchPoints points_;
+  StrayPoints strays_;
+  std::vector<PatchPlace> sheet_;  // the members at the places that they are shown at
+  HeightProfile profile_;
+  double sigma_ = 0;
+  double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
+  int age_ = 0, missed_ = 0;  // shifts measured; frames without the sheet
+  bool nearer_stray_ = false;
+  Vec3 looked_from_W_ = Vec3::Zero(), last_proxy_W_ = Vec3::Zero();
+};
+
+}  // namespace remote_touch

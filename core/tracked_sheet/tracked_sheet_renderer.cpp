@@ -1,0 +1,82 @@
+#include "core/tracked_sheet/tracked_sheet_renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace remote_touch {
+
+Parameters parameters(TrackedSheetParameters& p) {
+  Parameters list = parameters(p.proxy);
+  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });  // it is measured
+  SheetSettings& s = p.sheet;
+  const Parameters more = {
+      {"gate_m", &s.gate_m, 1e-4, 1,
+       "how far from where it is predicted a tracked sheet is looked for first"},
+      {"first_gate_m", &s.first_gate_m, 1e-4, 1,
+       "how far a sheet that was seen once is looked for, and one that is not within gate_m"},
+      {"widest_gate_m", &s.widest_gate_m, 1e-4, 1, "how far a sheet is looked for before it counts as gone"},
+      {"bridged_frames", &s.bridged_frames, 0, 100,
+       "frames without the sheet through which a proxy in contact is held; after them it is let go"},
+      {"denoise", &s.denoise, 0, 1, "show the proxy the sheet's points without their noise, or as they are"},
+  };
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+std::string conflict(const TrackedSheetParameters& p) {
+  const SheetSettings& s = p.sheet;
+  const auto line = [](const char* name, double value, const char* other, double least) {
+    return std::string(name) + " = " + std::to_string(value) + ": allowed from " + other + " = " +
+           std::to_string(least);
+  };
+  if (s.first_gate_m < s.gate_m) return line("first_gate_m", s.first_gate_m, "gate_m", s.gate_m);
+  if (s.widest_gate_m < s.first_gate_m)
+    return line("widest_gate_m", s.widest_gate_m, "first_gate_m", s.first_gate_m);
+  return conflict(p.proxy);
+}
+
+TrackedSheetRenderer::TrackedSheetRenderer(const TrackedSheetParameters& p, double haptic_rate_hz,
+                                           const Kernels& kernels)
+    : proxy_(p.proxy, haptic_rate_hz, kernels), tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
+
+void TrackedSheetRenderer::reserve(std::size_t points) {
+  proxy_.reserve(points);
+  tracker_.reserve(points, true, true);
+}
+
+void TrackedSheetRenderer::on_frame(const Frame& frame) {
+  if (!proxy_.is_newer(frame)) return proxy_.on_frame(frame);
+  const double interval_s = has_frame_ ? frame.captured_s - captured_s_ : 0;
+  SheetUpdate update;
+  if (placed_)
+    update = tracker_.on_frame(frame.points, proxy_place(), interval_s);
+  else
+    update.points = tracker_.keep(frame.points);
+  if (update.points) {  // else the sheet is missing: what was shown stays
+    shown_ = std::move(update.points);
+    captured_s_ = frame.captured_s, has_frame_ = true;
+  }
+  proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
+                  {update.carry_m, update.velocity_m_per_s, update.normal_W});
+}
+
+// A proxy without a place has none until the first HIP; one that moved far needs the newest frame's points
+// where it is now.
+RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s) {
+  if (!placed_ && has_frame_ && device.position_W.allFinite()) {
+    placed_ = true;
+    show(tracker_.look_again({device.position_W, false}));
+  } else if (placed_ && tracker_.must_look_again(proxy_.proxy_W())) {
+    show(tracker_.look_again(proxy_place()));
+  }
+  proxy_.stop_at_convergence(tracker_.changes_points());
+  return proxy_.step(device, time_s);
+}
+
+void TrackedSheetRenderer::show(const SheetUpdate& update) {
+  if (update.points != shown_) proxy_.replace_points(update.points);
+  shown_ = update.points;
+  proxy_.carry(update.carry_m);
+}
+
+}  // namespace remote_touch

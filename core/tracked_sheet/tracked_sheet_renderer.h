@@ -1,0 +1,46 @@
+// 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
+// frame and freed of its noise. Beyond the dissertation; it sees what the proxy sees, points and times.
+//
+// Each frame: the sheet in front of the proxy is found again where its motion predicts it and registered to
+// the frame before; a proxy that it holds back is carried with it, a free one only when the sheet swept over
+// it; its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of
+// the proxy, with the measured velocity in (4.15).
+#pragma once
+
+#include <string>
+
+#include "core/proxy_renderer.h"
+#include "core/tracked_sheet/sheet_tracker.h"
+
+namespace remote_touch {
+
+struct TrackedSheetParameters {
+  ProxyParameters proxy;
+  SheetSettings sheet;
+};
+
+Parameters parameters(TrackedSheetParameters& p);
+std::string conflict(const TrackedSheetParameters& p);
+
+class TrackedSheetRenderer final : public Renderer {
+ public:
+  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  TrackedSheetRenderer(const TrackedSheetParameters& parameters, double haptic_rate_hz,
+                       const Kernels& kernels);
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  ProxyPlace proxy_place() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
+  void show(const SheetUpdate& update);
+
+  ProxyRenderer proxy_;
+  SheetTracker tracker_;
+  std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
+  double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
+  bool has_frame_ = false;
+  bool placed_ = false;  // the proxy is where the HIP was
+};
+
+}  // namespace remote_touch
