@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/contact_measures.h"
 #include "analysis/contact_point.h"
 
 namespace remote_touch {
@@ -32,6 +33,14 @@ constexpr Measure kMeasures[] = {
     {"largest_steps", "1", "most proxy steps in a tick", largest_steps},
     {"unconverged_share", "1", "share of ticks that ended without convergence (4.8)", unconverged_share},
     {"non_finite_share", "1", "share of ticks with a number that is not finite", non_finite_share},
+    {"mean_height", "m", "mean height of the rendered surface above the true one, in contact", mean_height_m},
+    {"height_sd", "m", "standard deviation of that height", height_sd_m},
+    {"end_distance", "m", "distance of the centre to the true surface in the last tick", end_distance_m},
+    {"force_share", "1", "share of ticks with a force", force_share},
+    {"last_force_time", "s", "time of the last tick with a force", last_force_time_s},
+    {"rms_force_jump", "N", "rms change of the force at a frame update", rms_force_jump_N},
+    {"force_noise", "N", "rms change of the force from tick to tick, without an update", force_noise_N},
+    {"energy_injected", "J", "work that the rendered force does on the hand", energy_injected_J},
 };
 
 }  // namespace

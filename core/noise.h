@@ -26,6 +26,8 @@ enum class NoiseUse : std::uint32_t {
   motion = 3,
   colour = 4,
   dropout = 5,
+  sensor_point = 6,
+  sensor_frame = 7,
 };
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.

@@ -23,6 +23,7 @@
 #include "scenarios/listed_points.h"
 #include "scenarios/moving_lift.h"
 #include "scenarios/moving_plane.h"
+#include "scenarios/moving_shape.h"
 #include "scenarios/open_box.h"
 #include "scenarios/recorded_scene.h"
 #include "scenarios/sheet.h"
@@ -64,6 +65,8 @@ RendererEntry renderer(const char* name, Freedoms freedoms, HeldBy held_by, cons
 const ScenarioEntry kScenarios[] = {
     scenario<FlatGrid>("flat-grid", "a flat 100 x 100 cloud that rests, 4.3.1"),
     scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
+    scenario<MovingShape>("moving-shape",
+                          "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
     scenario<TriangleWave>("triangle-wave", "sharp edges of growing height, 4.3.3"),
     scenario<CameraScene>("camera-scene",
                           "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),

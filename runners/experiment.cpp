@@ -125,6 +125,7 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
 Experiment Experiment::from_json(Json configuration) {
   Experiment experiment;
   experiment.scenario_ = read_part(taken(configuration, "scenario"), scenarios(), "scenario");
+  experiment.faults_ = read_section<SensorFaults>(configuration, "faults");
   experiment.depth_pipeline_ = read_section<DepthPipelineSettings>(configuration, "depth_pipeline");
   experiment.fixtures_ = read_fixtures(taken(configuration, "fixtures"));
   experiment.guidance_ = read_section<GuidanceSettings>(configuration, "guidance");
@@ -161,6 +162,7 @@ std::string Experiment::to_json() const {
   RunSettings settings = settings_;
   write_parameters(parameters(settings), json);
   json["scenario"] = part_json(scenario_);
+  write_section(faults_, "faults", json);
   write_section(depth_pipeline_, "depth_pipeline", json);
   json["fixtures"] = Json::array();
   for (const auto& rule : fixtures_) json["fixtures"].push_back(part_json(rule));
@@ -190,7 +192,9 @@ std::vector<RecordingPart> Experiment::inputs() const {
 }
 
 std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) const {
-  return scenario_.blueprint->build(settings_.key, kernels);
+  auto scenario = scenario_.blueprint->build(settings_.key, kernels);
+  if (!faults_) return scenario;
+  return std::make_unique<FaultySensor>(std::move(scenario), *faults_, settings_.key, kernels);
 }
 
 std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenario) const {

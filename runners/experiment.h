@@ -1,5 +1,5 @@
-// One resolved configuration: scenario, depth pipeline, fixtures, guidance, task, renderer, trajectory,
-// operator, device, live loop, durations, seed.
+// One resolved configuration: scenario, faults of the sensor, depth pipeline, fixtures, guidance, task,
+// renderer, trajectory, operator, device, live loop, durations, seed.
 #pragma once
 
 #include <memory>
@@ -15,6 +15,7 @@
 #include "runners/live/live_settings.h"
 #include "runners/operator/simulated_hand.h"
 #include "runners/stored.h"
+#include "scenarios/sensor_faults.h"
 
 namespace remote_touch {
 
@@ -52,6 +53,7 @@ class Experiment {
   // The recordings that a run reads, as they are named; none has been looked for yet.
   std::vector<RecordingPart> inputs() const;
 
+  // As the sensor shows it: with its faults.
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
   // switches: where a task sets and the processing of frames reads which fixtures count; without a task there
@@ -76,6 +78,7 @@ class Experiment {
 
   RunSettings settings_;
   Part<ScenarioEntry> scenario_;
+  std::optional<SensorFaults> faults_;
   std::optional<DepthPipelineSettings> depth_pipeline_;
   std::vector<Part<FixtureEntry>> fixtures_;
   std::optional<GuidanceSettings> guidance_;

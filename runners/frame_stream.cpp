@@ -36,7 +36,7 @@ FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, c
 bool FrameStream::exists(int frame) const {
   if (frame < scenario_.frame_count()) return true;
   const bool goes_on = processing_.fixtures.changes_with_time() || delivery_.drop_probability > 0;
-  return goes_on && !scenario_.arrives_s(0);
+  return goes_on && !scenario_.ends();
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.
@@ -51,7 +51,9 @@ double FrameStream::captured_s(int frame) const {
 void FrameStream::send(int frame) {
   const auto chance = uniforms(noise_stream(key_, NoiseUse::delivery, static_cast<std::uint32_t>(frame)), 0);
   if (chance[0] < delivery_.drop_probability) return;
-  const double there_s = scenario_.arrives_s(seen(frame)).value_or(captured_s(frame));
+  std::optional<double> out_s;  // of the sensor
+  if (frame == seen(frame)) out_s = scenario_.arrives_s(frame);
+  const double there_s = out_s.value_or(captured_s(frame));
   const OnTheWay sent{there_s + delivery_.latency_s + chance[1] * delivery_.jitter_s, frame};
   const auto after = [](const OnTheWay& a, const OnTheWay& b) { return a.arrives_s < b.arrives_s; };
   on_the_way_.insert(std::upper_bound(on_the_way_.begin(), on_the_way_.end(), sent, after), sent);

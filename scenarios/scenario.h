@@ -27,10 +27,13 @@ class Scenario {
   // Frames 0 .. frame_count() - 1 exist; a scene that never changes has one and goes on with it.
   virtual int frame_count() const = 0;
   virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
+  // No frame follows the last, where else a camera would go on and see what it saw: a recorded live session.
+  virtual bool ends() const { return false; }
 
-  // Of a recorded live session: when the frame came to the renderer, infinite where it never did; which
-  // fixtures were off when it was processed, a bit each.
+  // When the frame comes out of the sensor, where that is not when it was captured: it was late, or a
+  // recorded live session tells when the renderer got it, infinite where it never did.
   virtual std::optional<double> arrives_s(int /*frame*/) const { return {}; }
+  // Of a recorded live session: which fixtures were off when the frame was processed, a bit each.
   virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
 
   // The newest frame captured by then; half a microsecond lets a frame's own time count, however it was

@@ -1,4 +1,4 @@
-// Guidance, task, operator and device in an experiment: what is read, written and refused.
+// Faults, guidance, task, operator and device in an experiment: what is read, written and refused.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -82,7 +82,7 @@ TEST(ExperimentSections, OfTheLiveLoopSurviveToo) {
 
 TEST(ExperimentSections, AreLeftOutWhereTheyAreNotAskedFor) {
   const Json json = Json::parse(Experiment::load("fig4.11").to_json());
-  for (const char* section : {"guidance", "sequence", "operator", "device", "live", "safety"})
+  for (const char* section : {"faults", "guidance", "sequence", "operator", "device", "live", "safety"})
     EXPECT_FALSE(json.contains(section));
   EXPECT_FALSE(Json::parse(Experiment::load("fig4.11", {"sequence=[]"}).to_json()).contains("sequence"));
   EXPECT_TRUE(Json::parse(Experiment::load("fig4.11", {"operator={}"}).to_json()).contains("operator"));
@@ -137,7 +137,7 @@ TEST(ExperimentSections, RefuseSectionsOfAnotherShape) {
   EXPECT_HAS(why("sequence=3"), "sequence: allowed a list of {\"action\": ..., parameters}");
   EXPECT_HAS(why(R"(sequence={"action": "wait"})"), "sequence: allowed a list of");
   EXPECT_HAS(why("sequence=[3]"), "sequence.0: allowed {parameters}");
-  for (const std::string section : {"guidance", "operator", "device"}) {
+  for (const std::string section : {"faults", "guidance", "operator", "device"}) {
     EXPECT_HAS(why(section + "=3"), section + ": allowed {parameters}");
     EXPECT_HAS(why(section + "=[]"), section + ": allowed {parameters}");
   }

@@ -34,6 +34,7 @@ void for_each_owner(Visit visit) {
   for (const auto& entry : fixtures()) visit(std::string("fixture rule ") + entry.name, entry.make);
   for (const auto& entry : renderers()) visit(std::string("renderer ") + entry.name, entry.make);
   for (const auto& entry : trajectories()) visit(std::string("trajectory ") + entry.name, entry.make);
+  visit(std::string("faults"), [] { return std::make_unique<Section<SensorFaults>>(); });
   visit(std::string("run"), [] { return std::make_unique<Section<RunSettings>>(); });
   visit(std::string("guidance"), [] { return std::make_unique<Section<GuidanceSettings>>(); });
   visit(std::string("sequence"), [] { return std::make_unique<Section<SequenceStep>>(); });
@@ -90,7 +91,7 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
   });
 }
 
-// Pure numbers, counts and places in an image; everything else says its unit.
+// Pure numbers, counts and places in an image; everything else says its unit, or of what it is the share.
 bool carries_unit(const std::string& name) {
   static const std::set<std::string> kPure = {"gamma",
                                               "bridged_frames",
@@ -128,10 +129,14 @@ bool carries_unit(const std::string& name) {
                                               "tool_leaves",
                                               "fewest_points",
                                               "button",
-                                              "share"};
+                                              "share",
+                                              "sheets",
+                                              "vanish_at_frame",
+                                              "empty_frame",
+                                              "view"};
   static const char* const kUnits[] = {
-      "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",    "_Ns_per_m",
-      "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};
+      "_share",    "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",
+      "_Ns_per_m", "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }

@@ -106,6 +106,8 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     print_run_settings();
     found = true;
   }
+  found |= describe_section<SensorFaults>(
+      "faults", "\"faults\" of an experiment: what the sensor makes of the frames of any scenario", name);
   found |= describe_section<DepthPipelineSettings>(
       "depth-pipeline",
       "\"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1", name);

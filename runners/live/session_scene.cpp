@@ -98,8 +98,8 @@ std::string session_experiment(const std::string& path) try {
   using Json = nlohmann::ordered_json;
   Json json = Json::parse(SessionReader(find_recording(path)).config());
   for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};
-  // The hand is the recorded one, and frames come when they came.
-  for (const char* section : {"operator", "device", "live", "safety"}) json.erase(section);
+  // The hand is the recorded one, and frames come when and as they came.
+  for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
   for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
     json[setting] = 0;
   return json.dump();

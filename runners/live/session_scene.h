@@ -24,6 +24,7 @@ class SessionScene final : public Scenario {
   double frame_rate_hz() const override { return session_.view().frame_rate_hz; }
   int frame_count() const override { return static_cast<int>(session_.frame_count()); }
   double captured_s(int frame) const override { return session_.captured_s(static_cast<std::size_t>(frame)); }
+  bool ends() const override { return true; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // There is no truth.
