@@ -44,6 +44,7 @@ class GatheredPoints {
   void finish();
 
   std::size_t size() const { return count_; }
+  // The numbers that the points have in the frame, whatever the order of the search.
   const std::uint32_t* index() const { return index_.data(); }
   PointsView view() const;
 

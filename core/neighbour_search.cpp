@@ -102,8 +102,10 @@ void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, Gathere
 
 // --- uniform grid ---
 
-UniformGridSearch::UniformGridSearch(PointCloud cloud, double cell_m) : CloudSearch(std::move(cloud)) {
+UniformGridSearch::UniformGridSearch(PointCloud cloud, double cell_m)
+    : CloudSearch(std::move(cloud)), columns_(cloud_.columns()) {
   if (!(cell_m > 0)) throw std::invalid_argument("UniformGridSearch: cell size must be positive");
+  cloud_.grid_columns = 0;
   choose_cells(cell_m);
   sort_points_by_cell();
 }

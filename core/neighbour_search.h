@@ -30,6 +30,9 @@ class NeighbourSearch {
   virtual bool has_stiffness() const { return false; }
   // No r_f of the cloud is larger, m.
   virtual double largest_fixture_radius_m() const { return 0; }
+  // Of an organised frame: how wide its rows are. The point in a row and column has the number row x columns
+  // + column in GatheredPoints::index(), whatever the order of the search. 0: points in no order.
+  virtual int organised_columns() const { return 0; }
 };
 
 // A search over a stored cloud.
@@ -41,6 +44,7 @@ class CloudSearch : public NeighbourSearch {
   bool has_regions() const override { return largest_fixture_radius_ > 0; }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
   double largest_fixture_radius_m() const override { return largest_fixture_radius_; }
+  int organised_columns() const override { return cloud_.columns(); }
   const PointCloud& cloud() const { return cloud_; }
   const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
 
@@ -81,6 +85,7 @@ class UniformGridSearch final : public CloudSearch {
   // 0.
   UniformGridSearch(PointCloud cloud, double cell_m);
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+  int organised_columns() const override { return columns_; }
 
  private:
   int cell_along(int axis, double coordinate) const;
@@ -90,6 +95,7 @@ class UniformGridSearch final : public CloudSearch {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
   double cells_per_m_ = 1;
   int cells_[3] = {1, 1, 1};
+  int columns_;                                // of the points as they came: here they stand in another order
   std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
   std::vector<std::uint32_t> original_index_;  // of each stored position
 };

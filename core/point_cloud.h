@@ -37,12 +37,17 @@ struct PointCloud {
   // where a point has no normal.
   std::vector<double> nx, ny, nz;
   std::optional<ImageLayout> image;  // set when the points are the pixels of one image
+  // The points are rows of a grid so many wide, one after the other, as those of an image are; 0: no order
+  // that tells which points are neighbours.
+  int grid_columns = 0;
 
   std::size_t size() const { return x.size(); }
   bool is_measured(std::size_t i) const {
     return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
   }
   bool has_normals() const { return !nx.empty(); }
+  // How wide the rows are in which the points stand, of an image or a grid; 0: no order.
+  int columns() const { return image ? image->camera.width : grid_columns; }
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
   void append(const Vec3& p) { x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z()); }

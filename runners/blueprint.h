@@ -63,8 +63,10 @@ using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
 // Of the hand that a renderer is for: six where its outputs have RenderOutput::tool.
 enum class Freedoms { three, six };
 
-// What a renderer touches of a cloud: all points, or the regions of those with r_f above 0 alone.
-enum class HeldBy { points, regions };
+// What a renderer is held by: all points of a cloud, the regions of those with r_f above 0 alone, the
+// triangles between neighbours in an organised frame, for which the order of the points matters, or nothing:
+// it is pushed by points, and passes them when it is pressed deeper than they push.
+enum class HeldBy { points, regions, mesh, nothing };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   Freedoms freedoms = Freedoms::three;

@@ -5,6 +5,9 @@
 #include "core/fixtures/hue_range.h"
 #include "core/fixtures/near_point.h"
 #include "core/proxy_renderer.h"
+#include "core/rivals/god_object_renderer.h"
+#include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/penalty_renderer.h"
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/live/session_scene.h"
 #include "runners/tools/loaded_spheres.h"
@@ -111,6 +114,14 @@ const RendererEntry kRenderers[] = {
     renderer<TrackedSheetRenderer, TrackedSheetParameters>(
         "tracked-sheet", Freedoms::three, HeldBy::points,
         "3-DOF proxy on a sheet that is tracked and denoised"),
+    renderer<PenaltyRenderer, PenaltyParameters>("penalty", Freedoms::three, HeldBy::nothing,
+                                                 "a rival: direct rendering, a spring and no proxy"),
+    renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
+        "implicit-surface", Freedoms::three, HeldBy::points,
+        "a rival: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+    renderer<GodObjectRenderer, GodObjectParameters>(
+        "god-object", Freedoms::three, HeldBy::mesh,
+        "a rival: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
     renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six, HeldBy::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(

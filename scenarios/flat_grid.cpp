@@ -30,6 +30,7 @@ std::shared_ptr<const NeighbourSearch> FlatGrid::points(int frame) const {
 PointCloud FlatGrid::cloud(int frame) const {
   PointCloud cloud;
   const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) cloud.append({grid.x(column), 0, grid.z(row)});
   const auto drawn = static_cast<std::uint32_t>(settings_.redraw_noise ? frame : 0);

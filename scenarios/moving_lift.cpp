@@ -59,6 +59,7 @@ std::shared_ptr<const NeighbourSearch> MovingLift::points(int frame) const {
 PointCloud MovingLift::cloud(int frame) const {
   PointCloud cloud;
   const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       cloud.append({grid.x(column), height_m_[static_cast<std::size_t>(frame)], grid.z(row)});

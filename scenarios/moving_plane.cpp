@@ -51,6 +51,7 @@ std::shared_ptr<const NeighbourSearch> MovingPlane::points(int frame) const {
 PointCloud MovingPlane::cloud(int frame) const {
   PointCloud cloud;
   const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
   const double y = height(captured_s(frame));
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)

@@ -16,6 +16,7 @@ class NoisyGridSearch final : public NeighbourSearch {
   NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream);
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
   std::size_t size() const override { return static_cast<std::size_t>(grid_.size()); }
+  int organised_columns() const override { return grid_.columns; }
 
  private:
   // Points at any height whose x and z lie within radius_m of the axis.

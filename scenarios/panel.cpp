@@ -37,6 +37,11 @@ void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid) {
                    panel.normal);
 }
 
+int columns(const FlatPanel& panel, const PanelGrid& grid) {
+  return last_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) -
+         first_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) + 1;
+}
+
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity(), over = 0;
   for (const FlatPanel& panel : panels) {

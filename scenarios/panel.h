@@ -27,8 +27,11 @@ struct PanelGrid {
   double phase_u_m = 0, phase_v_m = 0;
 };
 
-// Adds the points of the grid that lie on the panel, its border included, with the panel's normal.
+// Adds, row after row, the points of the grid that lie on the panel, its border included, with the panel's
+// normal.
 void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid);
+// How many points stand in such a row.
+int columns(const FlatPanel& panel, const PanelGrid& grid);
 
 // Distance to the nearest of the panels, positive on the side that its normal points to. Beyond a border that
 // is the side of its plane; where several panels are equally near, the one that p lies over most steeply

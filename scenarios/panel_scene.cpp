@@ -4,7 +4,9 @@ namespace remote_touch {
 
 PointCloud PanelScene::cloud(int frame) const {
   PointCloud cloud;
-  for (const FlatPanel& panel : panels(captured_s(frame))) append(cloud, panel, grid());
+  const std::vector<FlatPanel> all = panels(captured_s(frame));
+  for (const FlatPanel& panel : all) append(cloud, panel, grid());
+  if (all.size() == 1) cloud.grid_columns = columns(all.front(), grid());  // else rows of several widths
   return cloud;
 }
 

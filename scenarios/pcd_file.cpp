@@ -179,7 +179,10 @@ PcdCloud read_pcd(const std::filesystem::path& file) {
     read_binary(header, read_compressed_block(name, header, rest.text).data(), true, cloud);
   }
   mark_missing_points(cloud);
-  if (header.height > 1) cloud.image = fit_pinhole(cloud, result.width, result.height);
+  if (header.height > 1) {
+    cloud.grid_columns = result.width;
+    cloud.image = fit_pinhole(cloud, result.width, result.height);
+  }
   return result;
 }
 

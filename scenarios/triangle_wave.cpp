@@ -60,6 +60,7 @@ std::shared_ptr<const NeighbourSearch> TriangleWave::points(int frame) const {
 PointCloud TriangleWave::cloud(int frame) const {
   PointCloud cloud;
   const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       cloud.append({grid.x(column), surface_height(grid.x(column), 0, 0), grid.z(row)});

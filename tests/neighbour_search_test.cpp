@@ -56,6 +56,25 @@ PointCloud with_regions(PointCloud cloud) {
   return cloud;
 }
 
+// What a mesh of neighbours needs: rows of that width, and the numbers of the points as they came.
+TEST(NeighbourSearch, TellsHowWideTheRowsOfAnOrganisedFrameAre) {
+  EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
+  const PointCloud grid = scenes::flat_grid(30);
+  const UniformGridSearch search(grid, 0.004);
+  EXPECT_EQ(search.organised_columns(), 30);
+  EXPECT_EQ(search.cloud().columns(), 0) << "its own points stand in another order";
+  EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
+  GatheredPoints out;
+  out.reserve(search.size(), false, false);
+  search.gather({Vec3::Zero(), 1}, scenes::kernels(), out);
+  ASSERT_EQ(out.size(), grid.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint32_t row = out.index()[i] / 30, column = out.index()[i] % 30;
+    EXPECT_EQ(out.view().x[i], grid.x[30 * row + column]);
+    EXPECT_EQ(out.view().z[i], grid.z[30 * row + column]);
+  }
+}
+
 void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, double reach) {
   const PointCloud centres = scenes::random_cloud(300, reach, 5);
   std::size_t total = 0;

@@ -133,7 +133,8 @@ bool carries_unit(const std::string& name) {
                                               "sheets",
                                               "vanish_at_frame",
                                               "empty_frame",
-                                              "view"};
+                                              "view",
+                                              "threshold"};
   static const char* const kUnits[] = {
       "_share",    "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",
       "_Ns_per_m", "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};

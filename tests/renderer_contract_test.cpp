@@ -159,16 +159,17 @@ TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
 TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
+    const double height = entry.held_by == HeldBy::nothing ? 0.002 : -0.02;
     renderer->on_frame(scenes::frame(grid_for(entry, 60)));
     renderer->step({Vec3(0, 0.02, 0)}, 0);
-    const RenderOutput before = renderer->step({Vec3(0, -0.02, 0)}, 0.001);
+    const RenderOutput before = renderer->step({Vec3(0, height, 0)}, 0.001);
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
       const RenderOutput out = renderer->step({Vec3(0, bad, 0)}, 0.002);
       EXPECT_EQ(out.status, RenderStatus::device_not_finite) << entry.name;
       EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
       EXPECT_TRUE(out.proxy_W.allFinite()) << entry.name;
     }
-    const RenderOutput after = renderer->step({Vec3(0, -0.02, 0)}, 0.003);
+    const RenderOutput after = renderer->step({Vec3(0, height, 0)}, 0.003);
     EXPECT_NEAR((after.proxy_W - before.proxy_W).norm(), 0, 1e-3) << entry.name;
     EXPECT_GT(after.force_N.y(), 1) << entry.name;
   }

@@ -15,6 +15,7 @@ namespace remote_touch::scenes {
 // n x n points at y = 0, centred.
 inline PointCloud flat_grid(int n, double spacing = 0.0015, double y = 0) {
   PointCloud cloud;
+  cloud.grid_columns = n;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       cloud.append({(i - 0.5 * (n - 1)) * spacing, y, (j - 0.5 * (n - 1)) * spacing});

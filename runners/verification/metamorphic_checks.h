@@ -26,9 +26,10 @@ struct CheckResult {
 };
 
 // All results, scene by scene. The first of each scene, "touch", is that the renderer pushes back in most
-// ticks: without that the others would say little. assignments: "r1_m=0.004". Throws InputError for a
-// renderer of six degrees of freedom, for an assignment that the renderer refuses, and for a parameter that a
-// change of units cannot follow (see dimension.h). stop: when set, ends between two scenes with Interrupted.
+// ticks, or in some where it lets go by its nature (held by a mesh, or by nothing): without that the others
+// would say little. assignments: "r1_m=0.004". Throws InputError for a renderer of six degrees of freedom,
+// for an assignment that the renderer refuses, and for a parameter that a change of units cannot follow (see
+// dimension.h). stop: when set, ends between two scenes with Interrupted.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop = nullptr);

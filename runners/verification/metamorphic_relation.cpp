@@ -34,6 +34,7 @@ bool use_other_grid(Variation& run) {
 }
 
 bool shuffle(Variation& run) {
+  if (run.order_matters) return false;
   search_by_grid(run, 0);
   reorder(run, [](int size) {
     std::vector<int> order(static_cast<std::size_t>(size));
@@ -46,6 +47,7 @@ bool shuffle(Variation& run) {
 }
 
 bool add_missing(Variation& run) {
+  if (run.order_matters) return false;
   search_by_grid(run, run.scene.cell_m);
   reorder(run, [](int size) {
     std::vector<int> order{-1};

@@ -78,7 +78,10 @@ void mirror(Variation& variation, int axis) {
 
 void search_by_grid(Variation& variation, double cell_m) {
   variation.scene.cell_m = cell_m;
-  for (CloudView& view : variation.scene.views) view.cloud.image.reset();
+  for (CloudView& view : variation.scene.views) {
+    view.cloud.grid_columns = view.cloud.columns();
+    view.cloud.image.reset();
+  }
 }
 
 void reorder(Variation& variation, const std::function<std::vector<int>(int size)>& order) {
@@ -86,6 +89,7 @@ void reorder(Variation& variation, const std::function<std::vector<int>(int size
   for (CloudView& view : variation.scene.views) {
     PointCloud& cloud = view.cloud;
     const std::vector<int> from = order(static_cast<int>(cloud.size()));
+    cloud.grid_columns = 0;
     cloud.x = picked(cloud.x, from, kMissing), cloud.y = picked(cloud.y, from, kMissing);
     cloud.z = picked(cloud.z, from, kMissing);
     cloud.fixture_radius_m = picked(cloud.fixture_radius_m, from, 0.0);

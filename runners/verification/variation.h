@@ -19,6 +19,7 @@ struct Variation {
   UnitChange units = {};                         // of the renderer's parameters
   bool until_velocity = false;                   // compared until either run has estimated a surface velocity
   double reach_m = 0;                            // the renderer's largest length
+  bool order_matters = false;                    // to the renderer: of points in rows and columns
   std::optional<double> stiffness_N_per_m = {};  // of the renderer, where it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // to be given to it instead
 };
@@ -32,11 +33,12 @@ void move_rigidly(Variation& variation, const RigidTransform& motion);
 // One coordinate changes its sign. A camera cannot follow: the cloud is searched by a grid.
 void mirror(Variation& variation, int axis);
 
-// Another way to search; the layout of an organised cloud is forgotten. cell_m = 0: look at every point.
+// Another way to search; of the layout of an organised cloud nothing is kept but the width of its rows.
+// cell_m = 0: look at every point.
 void search_by_grid(Variation& variation, double cell_m);
 
 // Rebuilds every cloud from the points with the numbers order[0], order[1], ...; -1 stands for a point that
-// was not measured. For points that are searched by a grid.
+// was not measured. For points that are searched by a grid; they are no longer organised.
 void reorder(Variation& variation, const std::function<std::vector<int>(int size)>& order);
 
 // More points of every cloud, with the columns that it has: no region of their own, the cloud's first

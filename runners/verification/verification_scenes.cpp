@@ -54,6 +54,7 @@ Vec3 groove(double u, double v) {
 PointCloud sheet(const Surface& surface, double noise_m, int seed, int view, const Kernels& kernels) {
   const Grid grid{70, 50, 0.0015, 0, 0};
   PointCloud cloud;
+  cloud.grid_columns = grid.columns;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) cloud.append(surface(grid.x(column), grid.z(row)));
   const NoiseKey key{static_cast<std::uint64_t>(seed)};

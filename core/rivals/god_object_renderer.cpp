@@ -1,0 +1,126 @@
+#include "core/rivals/god_object_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace remote_touch {
+
+namespace {
+
+// Radius of the ball in which the mesh is made, and the longest way of one round, in units of the edge limit.
+constexpr double kMeshed = 0.5, kLongestWay = 0.25;
+// A shorter way is none, and planes are obeyed up to this, in units of the surface offset.
+constexpr double kAtRest = 1e-6;
+
+}  // namespace
+
+Parameters parameters(GodObjectParameters& p) {
+  return {
+      {"edge_limit_m", &p.edge_limit_m, 1e-6, 1,
+       "triangles with a longer edge are left out, as at depth edges"},
+      {"surface_offset_m", &p.surface_offset_m, 1e-9, 0.01,
+       "the god-object stays so far off the planes that hold it, so that its side is clear"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
+       "spring k_s between HIP and god-object, Zilles and Salisbury 1995"},
+      {"steps_per_tick", &p.steps_per_tick, 1, 100000, "largest number of rounds in a haptic tick"},
+  };
+}
+
+std::string conflict(const GodObjectParameters& p) {
+  constexpr double kLeastRatio = 10;
+  if (kLeastRatio * p.surface_offset_m <= p.edge_limit_m) return {};
+  std::ostringstream text;
+  text << "surface_offset_m = " << p.surface_offset_m
+       << ": allowed up to a tenth of edge_limit_m = " << p.edge_limit_m;
+  return text.str();
+}
+
+GodObjectRenderer::GodObjectRenderer(const GodObjectParameters& parameters, double, const Kernels& kernels)
+    : RivalRenderer(parameters.edge_limit_m, parameters.stiffness_N_per_m, kernels),
+      p_(parameters),
+      mesh_(parameters.edge_limit_m),
+      planes_(kAtRest * parameters.surface_offset_m) {}
+
+void GodObjectRenderer::reserve(std::size_t points) {
+  RivalRenderer::reserve(points);
+  mesh_.reserve(points);
+}
+
+bool GodObjectRenderer::take(const NeighbourSearch& points) {
+  mesh_.reserve(points.size());
+  columns_ = points.organised_columns();
+  is_meshed_ = false;
+  return columns_ > 0;
+}
+
+// The mesh reaches beyond every way of one round. Which triangles it has beyond that does not matter.
+void GodObjectRenderer::look_around() {
+  const double radius = kMeshed * p_.edge_limit_m, room = radius - kLongestWay * p_.edge_limit_m;
+  if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= room * room) return;
+  meshed_W_ = proxy_W_;
+  is_meshed_ = true;
+  // Rounding must not cost a triangle.
+  const double reach = (radius + p_.edge_limit_m) * (1 + 1e-9);
+  mesh_.assign(near_.within(meshed_W_, reach), columns_, {meshed_W_, radius * (1 + 1e-9)});
+}
+
+void GodObjectRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  rounds_ = 0;
+  held_by_ = 0;
+  out.converged = false;
+  while (rounds_ < p_.steps_per_tick && !out.converged) out.converged = !follow(hip_W);
+  report(hip_W, out);
+}
+
+// From where the god-object is to the place nearest to the HIP over the triangles in the way. Returns whether
+// it moved.
+bool GodObjectRenderer::follow(const Vec3& hip_W) {
+  const Vec3 start_W = proxy_W_;
+  planes_.clear();
+  while (rounds_ < p_.steps_per_tick) {
+    ++rounds_;
+    const PlaneConstraints::Nearest nearest = planes_.nearest(hip_W);
+    held_by_ = nearest.found ? nearest.held_by : 3;
+    if (!nearest.found || go(nearest.place)) break;
+  }
+  return (proxy_W_ - start_W).norm() > kAtRest * p_.surface_offset_m;
+}
+
+// Straight to the goal, or up to the first triangle, whose plane then joins the others. Returns whether this
+// look for planes is over: it got there, or there are too many.
+bool GodObjectRenderer::go(const Vec3& goal) {
+  look_around();
+  const Vec3 way = goal - proxy_W_;
+  const double length = way.norm(), longest = kLongestWay * p_.edge_limit_m;
+  const Vec3 end = length > longest ? Vec3(proxy_W_ + (longest / length) * way) : goal;
+  const std::optional<Crossing> crossing = mesh_.first_crossing(proxy_W_, end);
+  if (!crossing) {
+    proxy_W_ = end;
+    return true;
+  }
+  const Triangle& t = *crossing->triangle;
+  const Vec3 normal = t.normal.dot(proxy_W_ - t.a) < 0 ? Vec3(-t.normal) : t.normal;
+  if (crossing->start > p_.surface_offset_m)
+    proxy_W_ +=
+        (crossing->start - p_.surface_offset_m) / (crossing->start - crossing->end) * (end - proxy_W_);
+  return !planes_.add(normal, t.a, p_.surface_offset_m);
+}
+
+void GodObjectRenderer::report(const Vec3& hip_W, RenderOutput& out) {
+  PointsView points = near_.around(proxy_W_).view();
+  points.radius = nullptr;
+  const double reach = p_.edge_limit_m;
+  const Survey survey =
+      kernels_.survey(points, proxy_W_.data(), {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
+  out.nearest_m = survey.nearest <= reach ? survey.nearest : std::numeric_limits<double>::infinity();
+  out.steps = rounds_;
+  if (held_by_ == 0) return;
+  const Vec3 push = proxy_W_ - hip_W;
+  out.contact_count = held_by_;
+  out.state = ContactState::contact;
+  out.force_N = stiffness_of(survey) * push;
+  if (!push.isZero(0)) normal_W_ = push.normalized();
+}
+
+}  // namespace remote_touch

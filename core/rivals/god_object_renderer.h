@@ -1,0 +1,66 @@
+// The god-object of C. Zilles and K. Salisbury, "A constraint-based god-object method for haptic display",
+// IROS 1995, on the grid mesh of an organised frame (grid_mesh.h): what was done with recorded depth images
+// before point clouds were touched directly ([82], [83] of the dissertation).
+//
+// The god-object is a point that never passes a triangle, from either side. In each round it goes straight
+// to the place nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
+// way, whose plane then joins them; without one it has arrived, and the planes are looked for anew from
+// there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
+//
+// So that it is always clear on which side it is, the god-object stays surface_offset_m away from planes
+// that hold it; where two are nearer to each other than that, it stays where it is.
+//
+// Limits: a new frame replaces the mesh and the god-object stays where it is, for nothing tells how the
+// surface moved: a mesh that passes over it leaves it behind (pop-through). It falls through what was not
+// measured, and through triangles with an edge above edge_limit_m. A frame whose points stand in no order has
+// no mesh: nothing holds then, and the status is no_frame, with frame_index 0 or more. Forbidden regions r_f
+// are ignored; the stiffness of points (5.8) is not.
+//
+// Of the outputs: contact_count counts the planes that hold the god-object, 0 to 3, steps the rounds,
+// nearest_m goes to the nearest point; it is never entrenched, for what has passed it is out of its reach.
+#pragma once
+
+#include <string>
+
+#include "core/parameter.h"
+#include "core/rivals/grid_mesh.h"
+#include "core/rivals/plane_constraints.h"
+#include "core/rivals/rival_renderer.h"
+
+namespace remote_touch {
+
+struct GodObjectParameters {
+  double edge_limit_m = 0.02;
+  double surface_offset_m = 1e-5;
+  double stiffness_N_per_m = 600;
+  int steps_per_tick = 60;
+};
+
+Parameters parameters(GodObjectParameters& p);
+// What contradicts what, as one line; empty when the settings fit together.
+std::string conflict(const GodObjectParameters& p);
+
+class GodObjectRenderer final : public RivalRenderer {
+ public:
+  // pre: conflict(parameters) is empty. The rate does not matter to the method: it has no memory of time.
+  GodObjectRenderer(const GodObjectParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+  void reserve(std::size_t points) override;
+
+ private:
+  bool take(const NeighbourSearch& points) override;
+  void touch(const Vec3& hip_W, RenderOutput& out) override;
+  void look_around();
+  bool follow(const Vec3& hip_W);
+  bool go(const Vec3& goal);
+  void report(const Vec3& hip_W, RenderOutput& out);
+
+  const GodObjectParameters p_;
+  GridMesh mesh_;
+  Vec3 meshed_W_ = Vec3::Zero();  // the middle of the mesh, while it is meshed
+  bool is_meshed_ = false;
+  int columns_ = 0;  // of the newest frame
+  PlaneConstraints planes_;
+  int held_by_ = 0, rounds_ = 0;  // of this tick
+};
+
+}  // namespace remote_touch

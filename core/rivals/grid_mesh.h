@@ -1,0 +1,55 @@
+// The triangles between neighbouring points of an organised frame, near a place. Four neighbours in two rows
+// and columns make two triangles, cut from the upper right to the lower left; where one of the four was not
+// measured, the other three make one. A triangle with an edge longer than a limit is left out: it would
+// bridge a depth edge, or join two sheets whose rows follow each other.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/gathered_points.h"
+#include "core/vector.h"
+
+namespace remote_touch {
+
+struct Triangle {
+  Vec3 a, b, c;
+  Vec3 normal;  // unit; which of the two sides it points to means nothing
+};
+
+// Where a segment crosses a triangle. height: of both ends over the triangle's plane, on the side that the
+// segment starts from, so start > 0 >= end.
+struct Crossing {
+  const Triangle* triangle = nullptr;
+  double start = 0, end = 0;
+  double share() const { return start / (start - end); }  // of the segment, up to the plane
+};
+
+class GridMesh {
+ public:
+  explicit GridMesh(double edge_limit_m) : edge_limit_m_(edge_limit_m) {}
+
+  // Room for frames of so many points. assign() and the rest then never allocate.
+  void reserve(std::size_t points);
+  // The triangles that meet the ball, from the points of a frame whose rows are so wide. pre: points has all
+  // that lie within ball.radius + edge limit of the ball's centre. Whatever the order of the points, the
+  // triangles are the same in the same order.
+  void assign(const GatheredPoints& points, int columns, const Ball& ball);
+  std::span<const Triangle> triangles() const { return {triangles_.data(), count_}; }
+
+  // The triangle that the segment crosses first. An end on its plane has crossed it; a start on its plane has
+  // no side, and crosses nothing. Triangles are larger by 1e-9 of themselves, so that none passes between
+  // two.
+  std::optional<Crossing> first_crossing(const Vec3& from, const Vec3& to) const;
+
+ private:
+  void add(const Vec3& a, const Vec3& b, const Vec3& c, const Ball& ball);
+
+  double edge_limit_m_;
+  std::size_t count_ = 0;
+  Room<Triangle> triangles_;
+  Room<std::uint32_t> place_;  // of each point in a window of the frame: number in the list + 1; 0: none
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,165 @@
+#include "core/rivals/implicit_surface_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// In units of R:
+constexpr double kStride = 0.125;       // longest step of a walk or a slide
+constexpr double kLongestNewton = 0.5;  // longest step back to the surface
+constexpr double kOnSurface = 1e-10;    // nearer to f = 0 than this is on it
+constexpr double kAtRest = 1e-9;        // a shorter way is none
+constexpr double kNearRest = 1e-4;      // shorter steps than this are the last ones
+constexpr int kNewtonSteps = 10, kBisections = 12, kHalvings = 6;
+
+bool is_inside(const SurfaceSample& sample) {
+  return sample.supported && sample.distance() < -kOnSurface;
+}
+
+bool is_on_surface(const SurfaceSample& sample) {
+  return sample.supported && std::abs(sample.distance()) <= kOnSurface;
+}
+
+// v less its part along the unit vector n.
+Vec3 less(const Vec3& v, const Vec3& n) {
+  return v - v.dot(n) * n;
+}
+
+}  // namespace
+
+Parameters parameters(ImplicitSurfaceParameters& p) {
+  return {
+      {"surface", choice(p.surface, {"metaballs", "surfels"}), 0, 0,
+       "[84]: f = T - sum of weights, or f = n . (p - a) by weighted total least squares"},
+      {"weight", choice(p.weight, {"wyvill", "wendland"}), 0, 0,
+       "w(q): 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2, or (1 - q)^4 (4 q + 1)"},
+      {"support_radius_m", &p.support_radius_m, 1e-6, 1, "R of [84]: points farther away have no weight"},
+      {"threshold", &p.threshold, 1e-3, 1000,
+       "T of the metaballs [84], in points: below 1 a single point is solid"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy"},
+      {"steps_per_tick", &p.steps_per_tick, 1, 100000,
+       "no step begins after so many evaluations of f in a haptic tick"},
+  };
+}
+
+ImplicitSurfaceRenderer::ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double,
+                                                 const Kernels& kernels)
+    : RivalRenderer(parameters.support_radius_m, parameters.stiffness_N_per_m, kernels),
+      p_(parameters),
+      surface_(parameters.surface, parameters.weight, parameters.support_radius_m, parameters.threshold) {}
+
+ImplicitSurfaceRenderer::Place ImplicitSurfaceRenderer::place(const Vec3& p_W, const Vec3& side) {
+  ++steps_;
+  const PointsView points = near_.around(p_W).view();
+  return {p_W, surface_.at(points, near_.sum_grid(), p_W, side)};
+}
+
+// One tick. It begins alike with and without a new frame, so that a frame with the same points changes
+// nothing.
+void ImplicitSurfaceRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  steps_ = 0;
+  Place here = place(proxy_W_, side_);
+  if (is_inside(here.sample)) settle(here);
+  while (steps_ < p_.steps_per_tick && !is_inside(here.sample)) {
+    if (advance(here, hip_W)) continue;
+    out.converged = true;
+    break;
+  }
+  proxy_W_ = here.p_W;
+  side_ = here.sample.supported ? here.sample.normal() : Vec3::Zero();
+  if (!side_.isZero(0)) normal_W_ = side_;
+  report(here, hip_W, out);
+}
+
+// Newton's steps to f = 0. False where they do not lead there; here is then where they ended.
+bool ImplicitSurfaceRenderer::settle(Place& here) {
+  for (int k = 0; k < kNewtonSteps && here.sample.supported; ++k) {
+    if (is_on_surface(here.sample)) return true;
+    const Vec3 n = here.sample.normal();
+    if (n.isZero(0)) return false;
+    const double step = std::clamp(here.sample.distance(), -kLongestNewton, kLongestNewton);
+    here = place(here.p_W - (p_.support_radius_m * step) * n, n);
+  }
+  return is_on_surface(here.sample);
+}
+
+// One step of the scheme; false when the proxy is at rest.
+bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
+  const Vec3 u = hip_W - here.p_W;
+  if (u.isZero(0)) return false;
+  const bool held = is_on_surface(here.sample) && here.sample.normal().dot(u) < 0;
+  return held ? slide(here, hip_W) : walk(here, hip_W);
+}
+
+// Straight towards the HIP, one stride, or up to the surface. Where nothing is near, to where something is.
+bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
+  const double R = p_.support_radius_m, distance = (hip_W - here.p_W).norm();
+  const Vec3 direction = (hip_W - here.p_W) / distance;
+  double way = kStride * R;
+  if (!here.sample.supported) way += near_.first_hit(here.p_W, direction, R, distance);
+  const Vec3 goal = way < distance ? Vec3(here.p_W + way * direction) : hip_W;
+  const Place next = place(goal, here.sample.normal());
+  if (!is_inside(next.sample)) {
+    here = next;
+    return true;
+  }
+  const Vec3 start = here.p_W;
+  stop_at_surface(here, next);
+  return (here.p_W - start).norm() > kAtRest * R;
+}
+
+// Bisects the way between both, then goes on by Newton's steps.
+void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
+  for (int k = 0; k < kBisections && !is_on_surface(outside.sample); ++k) {
+    const Place middle = place(0.5 * (outside.p_W + inside.p_W), outside.sample.normal());
+    (is_inside(middle.sample) ? inside : outside) = middle;
+  }
+  Place settled = outside;
+  if (settle(settled)) outside = settled;
+}
+
+// In the tangent plane towards the HIP, and back to the surface. A step must bring the proxy nearer to the
+// HIP; near rest, where squares of distances no longer tell, the next step must be shorter.
+bool ImplicitSurfaceRenderer::slide(Place& here, const Vec3& hip_W) {
+  const Vec3 n = here.sample.normal(), u = hip_W - here.p_W, tangential = less(u, n);
+  const double length = tangential.norm(), R = p_.support_radius_m;
+  if (length <= kAtRest * R) return false;
+  double stride = std::min(length, kStride * R);
+  for (int k = 0; k < kHalvings; ++k, stride *= 0.5) {
+    Place next = place(here.p_W + (stride / length) * tangential, n);
+    const bool beyond_edge = !next.sample.supported;
+    if (!beyond_edge && !settle(next)) continue;
+    const Vec3 rest = hip_W - next.p_W;
+    const bool is_better = stride > kNearRest * R ? rest.squaredNorm() < u.squaredNorm()
+                                                  : less(rest, next.sample.normal()).norm() < length;
+    if (!beyond_edge && !is_better) continue;
+    here = next;
+    return true;
+  }
+  return false;
+}
+
+void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, RenderOutput& out) {
+  PointsView points = near_.around(proxy_W_).view();
+  points.radius = nullptr;
+  const double R = p_.support_radius_m;
+  const Survey survey =
+      kernels_.survey(points, proxy_W_.data(), {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
+  out.nearest_m = survey.nearest <= R ? survey.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(survey.touching);
+  out.steps = steps_;
+  const Vec3 u = hip_W - proxy_W_;
+  if (is_inside(here.sample)) {
+    out.state = ContactState::entrenched;
+    if (here.sample.normal().isZero(0)) out.status = RenderStatus::degenerate_normal;
+  } else if (is_on_surface(here.sample) && here.sample.normal().dot(u) < 0) {
+    out.state = ContactState::contact;
+  }
+  if (out.state != ContactState::free) out.force_N = -stiffness_of(survey) * u;
+}
+
+}  // namespace remote_touch

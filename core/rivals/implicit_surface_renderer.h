@@ -1,0 +1,68 @@
+// Constraint-based rendering of a point cloud as an implicit surface, [84] (see point_surface.h). The proxy
+// is a point that is held outside by the scheme of K. Salisbury and C. Tarr, "Haptic rendering of surfaces
+// defined by implicit functions", ASME IMECE 1997:
+//
+//   free       straight to the HIP, up to where the segment first crosses f = 0 (steps of R / 8, bisection)
+//   contact    in the tangent plane towards the HIP, and back to the surface by Newton's steps
+//              -f grad f / |grad f|^2; a step that brings it no nearer to the HIP is halved
+//   released   when the HIP is outside of the tangent plane at the proxy
+//
+// and F = k_s (proxy - HIP). Clouds that vary with time: at the beginning of a tick a proxy that a new frame
+// has buried is brought back along the gradient. Limits: one that is buried deeper than the middle of the
+// expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at all;
+// nothing follows the motion of the cloud; surfels have no edges, a sheet goes on for R beyond its last
+// points, and an isolated point or line of points holds nothing. Forbidden regions r_f are ignored.
+//
+// Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
+// f < 0 at the end of a tick.
+#pragma once
+
+#include <string>
+
+#include "core/parameter.h"
+#include "core/rivals/point_surface.h"
+#include "core/rivals/rival_renderer.h"
+
+namespace remote_touch {
+
+struct ImplicitSurfaceParameters {
+  SurfaceKind surface = SurfaceKind::metaballs;
+  SurfaceWeight weight = SurfaceWeight::wyvill;
+  double support_radius_m = 0.01;
+  double threshold = 0.5;
+  double stiffness_N_per_m = 600;
+  int steps_per_tick = 200;
+};
+
+Parameters parameters(ImplicitSurfaceParameters& p);
+inline std::string conflict(const ImplicitSurfaceParameters&) {
+  return {};
+}
+
+class ImplicitSurfaceRenderer final : public RivalRenderer {
+ public:
+  // The rate does not matter to the method: it has no memory of time.
+  ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double haptic_rate_hz,
+                          const Kernels& kernels);
+
+ private:
+  struct Place {
+    Vec3 p_W;
+    SurfaceSample sample;
+  };
+  void touch(const Vec3& hip_W, RenderOutput& out) override;
+  Place place(const Vec3& p_W, const Vec3& side);
+  bool settle(Place& here);
+  bool advance(Place& here, const Vec3& hip_W);
+  bool walk(Place& here, const Vec3& hip_W);
+  bool slide(Place& here, const Vec3& hip_W);
+  void stop_at_surface(Place& outside, Place inside);
+  void report(const Place& here, const Vec3& hip_W, RenderOutput& out);
+
+  const ImplicitSurfaceParameters p_;
+  const PointSurface surface_;
+  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which surfels are to go on with; zero away from them
+  int steps_ = 0;             // of this tick
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,59 @@
+#include "core/rivals/penalty_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "core/proxy_step.h"
+
+namespace remote_touch {
+
+Parameters parameters(PenaltyParameters& p) {
+  return {
+      {"contact_radius_m", &p.contact_radius_m, 1e-6, 1,
+       "radius r_c of the ball around the HIP; the force is at most k_s r_c"},
+      {"r3_m", &p.r3_m, 1e-6, 1, "points nearer than this form the normal (4.1)"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
+       "spring k_s by how far the nearest point is in the ball"},
+      {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper along the normal, in contact"},
+  };
+}
+
+std::string conflict(const PenaltyParameters& p) {
+  if (p.contact_radius_m < p.r3_m) return {};
+  std::ostringstream text;
+  text << "contact_radius_m = " << p.contact_radius_m << ": allowed below r3_m = " << p.r3_m;
+  return text.str();
+}
+
+PenaltyRenderer::PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz,
+                                 const Kernels& kernels)
+    : RivalRenderer(parameters.r3_m, parameters.stiffness_N_per_m, kernels),
+      p_(parameters),
+      haptic_rate_hz_(haptic_rate_hz) {}
+
+void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  const Vec3 velocity =
+      has_previous_ ? Vec3(haptic_rate_hz_ * (hip_W - previous_hip_W_)) : Vec3(Vec3::Zero());
+  previous_hip_W_ = proxy_W_ = hip_W;
+  has_previous_ = true;
+
+  const PointsView points = near_.around(hip_W).view();
+  const ProxyRegions regions{p_.contact_radius_m, p_.contact_radius_m, p_.r3_m, near_.sum_grid(),
+                             p_.stiffness_N_per_m};
+  const Survey survey = kernels_.survey(points, hip_W.data(), regions);
+  normal_W_ = unit_normal(survey, normal_W_);
+  out.nearest_m = survey.nearest <= p_.r3_m ? survey.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(survey.touching);
+  out.steps = 1;
+  out.converged = true;
+  const double depth = p_.contact_radius_m - survey.nearest;
+  if (!(depth > 0)) return;
+  out.state = ContactState::contact;
+  if (normal_W_.isZero(0)) out.status = RenderStatus::degenerate_normal;
+  const double push = stiffness_of(survey) * depth - p_.damping_Ns_per_m * velocity.dot(normal_W_);
+  out.force_N = std::max(push, 0.0) * normal_W_;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// Direct rendering, the first of the methods that the proxy is to be compared with (introduction of the
+// dissertation, [34] to [37]): no proxy at all. The HIP is a ball of radius r_c, and a spring pushes it out
+// as far as the nearest point is in it,
+//
+//   F = k_s (r_c - r_n) n,    r_n = |HIP - x| - r_f of the nearest region (5.5),
+//
+// along the unit normal n (4.1) of the points within r_3 of the HIP, with the weights of (4.2), r_1 = r_c.
+// With a damper the part of the HIP's velocity along n is slowed, and the sum pushes or is zero.
+//
+// Known limits, and what it is here for: n turns round when the HIP passes the points, so that deeper than
+// the surface it pushes to the far side (pop-through); the force is at most k_s r_c; between points it bears
+// their pattern, and dF/dx is k_s along n only, for n itself turns fast where the HIP is near the points.
+//
+// Of the outputs: the proxy is the HIP; contact_count counts the points within r_c; contact is r_n < r_c.
+#pragma once
+
+#include <string>
+
+#include "core/parameter.h"
+#include "core/rivals/rival_renderer.h"
+
+namespace remote_touch {
+
+struct PenaltyParameters {
+  double contact_radius_m = 0.005;
+  double r3_m = 0.01;
+  double stiffness_N_per_m = 600;
+  double damping_Ns_per_m = 0;
+};
+
+Parameters parameters(PenaltyParameters& p);
+// What contradicts what, as one line; empty when the settings fit together.
+std::string conflict(const PenaltyParameters& p);
+
+class PenaltyRenderer final : public RivalRenderer {
+ public:
+  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+
+ private:
+  void touch(const Vec3& hip_W, RenderOutput& out) override;
+  void let_go() override { has_previous_ = false; }
+
+  const PenaltyParameters p_;
+  double haptic_rate_hz_;
+  Vec3 previous_hip_W_ = Vec3::Zero();
+  bool has_previous_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,86 @@
+#include "core/rivals/plane_constraints.h"
+
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// Planes whose normals span less than this (squared sine, or volume) are left to the choices without one of
+// them: their intersection lies far away, or nowhere.
+constexpr double kParallel = 1e-9;
+
+// Motions from the goal onto planes, and the shortest that obeys them all.
+class Search {
+ public:
+  // rise: how far the goal must rise along each normal.
+  Search(const std::array<Vec3, PlaneConstraints::kMost>& normal,
+         const std::array<double, PlaneConstraints::kMost>& rise, std::size_t count, double slack)
+      : normal_(normal), rise_(rise), count_(count), slack_(slack) {}
+
+  void on_plane(std::size_t i) { offer(rise_[i] * normal_[i], 1); }
+  // y - goal = l_i n_i + l_j n_j with multipliers from both planes' equations.
+  void on_line(std::size_t i, std::size_t j) {
+    const double between = normal_[i].dot(normal_[j]), rest = normal_[i].cross(normal_[j]).squaredNorm();
+    if (!(rest > kParallel)) return;
+    const double l_i = (rise_[i] - between * rise_[j]) / rest, l_j = (rise_[j] - between * rise_[i]) / rest;
+    offer(l_i * normal_[i] + l_j * normal_[j], 2);
+  }
+  // Three equations, solved by Cramer's rule.
+  void on_corner(std::size_t i, std::size_t j, std::size_t k) {
+    const Vec3 jk = normal_[j].cross(normal_[k]), ki = normal_[k].cross(normal_[i]),
+               ij = normal_[i].cross(normal_[j]);
+    const double volume = normal_[i].dot(jk);
+    if (!(std::abs(volume) > kParallel)) return;
+    offer((rise_[i] * jk + rise_[j] * ki + rise_[k] * ij) / volume, 3);
+  }
+  void offer(const Vec3& motion, int held_by) {
+    const double squared = motion.squaredNorm();
+    if (!(squared < shortest_)) return;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!(normal_[i].dot(motion) >= rise_[i] - slack_)) return;
+    shortest_ = squared, best_ = motion, held_by_ = held_by;
+  }
+
+  bool found() const { return shortest_ < std::numeric_limits<double>::infinity(); }
+  const Vec3& best() const { return best_; }
+  int held_by() const { return held_by_; }
+
+ private:
+  const std::array<Vec3, PlaneConstraints::kMost>& normal_;
+  const std::array<double, PlaneConstraints::kMost>& rise_;
+  std::size_t count_;
+  double slack_, shortest_ = std::numeric_limits<double>::infinity();
+  Vec3 best_ = Vec3::Zero();
+  int held_by_ = 0;
+};
+
+}  // namespace
+
+bool PlaneConstraints::add(const Vec3& normal, const Vec3& point, double offset_m) {
+  if (count_ == kMost) return false;
+  planes_[count_++] = {normal, point, offset_m};
+  return true;
+}
+
+PlaneConstraints::Nearest PlaneConstraints::nearest(const Vec3& goal) const {
+  std::array<Vec3, kMost> normal;
+  std::array<double, kMost> rise;
+  for (std::size_t i = 0; i < count_; ++i) {
+    normal[i] = planes_[i].normal;
+    rise[i] = planes_[i].normal.dot(planes_[i].point - goal) + planes_[i].offset_m;
+  }
+  Search search(normal, rise, count_, slack_m_);
+  search.offer(Vec3::Zero(), 0);
+  for (std::size_t i = 0; i < count_; ++i) {
+    search.on_plane(i);
+    for (std::size_t j = i + 1; j < count_; ++j) {
+      search.on_line(i, j);
+      for (std::size_t k = j + 1; k < count_; ++k) search.on_corner(i, j, k);
+    }
+  }
+  return {search.found(), goal + search.best(), search.held_by()};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,122 @@
+#include "core/rivals/point_surface.h"
+
+#include <cmath>
+
+#include "core/rivals/thinnest_axis.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A gradient shorter than this has no direction: what remains is rounding.
+constexpr double kNoDirection = 1e-10;
+// Sums of weights below this are mostly rounding: they count as outside of all support.
+constexpr double kLeastWeight = 1e-6;
+// A middle variance below this, units of R^2: the points do not span a plane.
+constexpr double kLeastWidth = 1e-6;
+// No term of a gradient is longer than 4 where its weight is at most 1.
+constexpr double kLongestTerm = 4;
+
+// w at a distance, and what multiplies (x - p) / R in its gradient by p / R.
+struct Bell {
+  double weight, slope;
+};
+
+// Factored, so that rounding near the rim makes no weight negative.
+Bell wyvill(double squared) {
+  const double rest = 1 - squared;
+  return {rest * rest * (1 - squared * (4.0 / 9)), 2 * rest * (22.0 / 9 - squared * (12.0 / 9))};
+}
+
+Bell wendland(double squared) {
+  const double q = std::sqrt(squared), rest = 1 - q, cubed = rest * rest * rest;
+  return {cubed * rest * (4 * q + 1), 20 * cubed};
+}
+
+// Sums up to as many terms of magnitude 1 as the grid is for: exact, so in any order the same.
+class ExactSum {
+ public:
+  explicit ExactSum(double grid) : grid_(grid) {}
+  void add(double term) { sum_ += (term + grid_) - grid_; }
+  double value() const { return sum_; }
+
+ private:
+  double grid_, sum_ = 0;
+};
+
+struct ExactVector {
+  explicit ExactVector(double grid) : x(grid), y(grid), z(grid) {}
+  void add(const Vec3& v) { x.add(v.x()), y.add(v.y()), z.add(v.z()); }
+  Vec3 value() const { return {x.value(), y.value(), z.value()}; }
+  ExactSum x, y, z;
+};
+
+// Calls act(bell, e) for every point within R, e = (x - p) / R.
+template <class Act>
+void for_each_near(const PointsView& points, const Vec3& p_W, double radius_m, SurfaceWeight weight,
+                   const Act& act) {
+  for (std::size_t i = 0; i < points.padded_count; ++i) {
+    const Vec3 e = (Vec3(points.x[i], points.y[i], points.z[i]) - p_W) / radius_m;
+    const double squared = e.squaredNorm();
+    if (!(squared < 1)) continue;
+    act(weight == SurfaceWeight::wyvill ? wyvill(squared) : wendland(squared), e);
+  }
+}
+
+}  // namespace
+
+Vec3 SurfaceSample::normal() const {
+  const double length = gradient.norm();
+  return length > kNoDirection ? Vec3(gradient / length) : Vec3::Zero();
+}
+
+double SurfaceSample::distance() const {
+  const double length = gradient.norm();
+  return length > kNoDirection ? value / length : std::copysign(1.0, value);
+}
+
+SurfaceSample PointSurface::at(const PointsView& points, double sum_grid, const Vec3& p_W,
+                               const Vec3& side) const {
+  return kind_ == SurfaceKind::metaballs ? metaballs(points, sum_grid, p_W)
+                                         : surfels(points, sum_grid, p_W, side);
+}
+
+SurfaceSample PointSurface::metaballs(const PointsView& points, double sum_grid, const Vec3& p_W) const {
+  ExactSum weights(sum_grid);
+  ExactVector slopes(sum_grid);
+  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e) {
+    weights.add(bell.weight);
+    slopes.add((bell.slope / kLongestTerm) * e);
+  });
+  if (!(weights.value() > 0)) return {};
+  return {true, threshold_ - weights.value(), -kLongestTerm * slopes.value()};
+}
+
+SurfaceSample PointSurface::surfels(const PointsView& points, double sum_grid, const Vec3& p_W,
+                                    const Vec3& side) const {
+  ExactSum weights(sum_grid);
+  ExactVector first(sum_grid), squares(sum_grid), products(sum_grid);  // xx, yy, zz and yz, zx, xy
+  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e) {
+    weights.add(bell.weight);
+    first.add(bell.weight * e);
+    squares.add(bell.weight * e.cwiseProduct(e));
+    products.add(bell.weight * Vec3(e.y() * e.z(), e.z() * e.x(), e.x() * e.y()));
+  });
+  if (!(weights.value() > kLeastWeight)) return {};
+  const Vec3 mean = first.value() / weights.value();  // a - p
+  const Vec3 xx = squares.value() / weights.value(), yz = products.value() / weights.value();
+  Eigen::Matrix3d covariance;
+  covariance << xx.x(), yz.z(), yz.y(), yz.z(), xx.y(), yz.x(), yz.y(), yz.x(), xx.z();
+  covariance -= mean * mean.transpose();
+
+  const ThinnestAxis thin = thinnest_axis(covariance);
+  if (thin.middle < kLeastWidth) {
+    const double length = mean.norm();
+    return {true, length, length > kNoDirection ? Vec3(-mean / length) : Vec3::Zero()};
+  }
+  const double ahead = side.isZero(0) ? -thin.axis.dot(mean) : thin.axis.dot(side);
+  const Vec3 n = ahead < 0 ? Vec3(-thin.axis) : thin.axis;
+  return {true, -n.dot(mean), n};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,58 @@
+// A point cloud as an implicit surface: A. Leeper, S. Chan, K. Salisbury, "Point clouds can be represented as
+// implicit surfaces for constraint-based haptic rendering", ICRA 2012, [84] of the dissertation. f is
+// positive outside, f = 0 is the surface. Two of them:
+//
+//   metaballs  f(p) = T - sum_i w(|p - x_i| / R): every point is expanded to a smooth ball
+//   surfels    f(p) = n . (p - a) / R: a is the weighted mean of the points around p, n the axis along which
+//              their weighted covariance is smallest (total least squares). The gradient is taken to be n.
+//
+// Lengths are in units of the support radius R here, so that f and its gradient have none. r_f of points is
+// ignored. The same bits for every order of the points: the sums are pre-rounded as in core/kernels.h.
+#pragma once
+
+#include "core/kernels.h"
+#include "core/vector.h"
+
+namespace remote_touch {
+
+enum class SurfaceKind { metaballs, surfels };
+// w(q), 1 at q = 0 and 0 with its slope from q = 1 on.
+enum class SurfaceWeight {
+  wyvill,   // 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2
+  wendland  // (1 - q)^4 (4 q + 1), the psi of (4.2)
+};
+
+// f and its gradient at a place. Outside all support f is positive, and there is no gradient.
+struct SurfaceSample {
+  bool supported = false;  // there are points within R
+  double value = 1;
+  Vec3 gradient = Vec3::Zero();
+
+  // Out of the surface, unit; zero where the gradient gives no direction.
+  Vec3 normal() const;
+  // To the surface by f / |grad f|, units of R, negative inside: exact for a plane of surfels, else the step
+  // of Newton. Without a gradient 1 with the sign of f.
+  double distance() const;
+};
+
+class PointSurface {
+ public:
+  // threshold: T of the metaballs, above 0.
+  PointSurface(SurfaceKind kind, SurfaceWeight weight, double support_radius_m, double threshold)
+      : kind_(kind), weight_(weight), radius_m_(support_radius_m), threshold_(threshold) {}
+
+  // points: all within R of p, and any beyond. sum_grid: M of core/kernels.h for as many points. side:
+  // surfels have no inside of their own; n is taken to be within 90 degrees of side, or, where that is zero,
+  // towards the side that p is on. One point, or points on a line, have no plane: p is then outside.
+  SurfaceSample at(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;
+
+ private:
+  SurfaceSample metaballs(const PointsView& points, double sum_grid, const Vec3& p_W) const;
+  SurfaceSample surfels(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;
+
+  SurfaceKind kind_;
+  SurfaceWeight weight_;
+  double radius_m_, threshold_;
+};
+
+}  // namespace remote_touch

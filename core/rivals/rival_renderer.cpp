@@ -1,0 +1,43 @@
+#include "core/rivals/rival_renderer.h"
+
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+// A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
+constexpr double kFarthestHip_m = 1e6;
+}  // namespace
+
+void RivalRenderer::on_frame(const Frame& frame) {
+  if (!order_.take(frame)) return;
+  near_.set_points(frame.points);
+  usable_ = take(*frame.points);
+}
+
+RenderOutput RivalRenderer::step(const DeviceState& device, double) {
+  const Vec3& hip_W = device.position_W;
+  RenderOutput out;
+  out.frame_index = order_.newest();
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
+    let_go();  // hold still: a force from a lost position would be a guess
+    out.status = RenderStatus::device_not_finite;
+  } else {
+    if (!placed_) proxy_W_ = hip_W, placed_ = true;
+    if (usable_) {
+      touch(hip_W, out);
+    } else {
+      let_go();
+      proxy_W_ = hip_W;
+      out.nearest_m = std::numeric_limits<double>::infinity();
+      out.converged = true;
+      out.status = RenderStatus::no_frame;
+    }
+  }
+  out.proxy_W = out.slave_W = proxy_W_;
+  out.normal_W = normal_W_;
+  out.status = order_.status(out.status);
+  return out;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,53 @@
+// What the rivals of the chapter 4 proxy have in common: 3-DOF renderers written from other papers, to be
+// compared on the same scenes with the same noise. Here are the rules of the seam that are no part of any
+// method: frames in their order, a device that is lost, and what is answered before the first frame.
+#pragma once
+
+#include "core/frame_order.h"
+#include "core/neighbourhood.h"
+#include "core/renderer.h"
+
+namespace remote_touch {
+
+class RivalRenderer : public Renderer {
+ public:
+  void reserve(std::size_t points) override { near_.reserve(points, true, true); }
+  void on_frame(const Frame& frame) final;
+  RenderOutput step(const DeviceState& device, double time_s) final;
+
+ protected:
+  // reach: points as near as that matter to the method, m.
+  RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
+      : near_(reach_m, kernels),
+        kernels_(kernels),
+        reach_m_(reach_m),
+        stiffness_N_per_m_(stiffness_N_per_m) {}
+
+  // The newest frame, when it is taken. Returns false where the method can do nothing with it: until the next
+  // one the answers are those without a frame.
+  virtual bool take(const NeighbourSearch& /*points*/) { return true; }
+  // One tick for a HIP that is finite and a frame that was taken. The proxy starts at the first HIP. Fills in
+  // force_N, state, nearest_m, steps, converged, contact_count and status, and leaves the proxy and the
+  // normal in the members below.
+  virtual void touch(const Vec3& hip_W, RenderOutput& out) = 0;
+  // The HIP is lost, or there is no frame: forget what belongs to an unbroken motion.
+  virtual void let_go() {}
+
+  // (5.8) where points carry a stiffness, else the renderer's own.
+  double stiffness_of(const Survey& survey) const {
+    return survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : stiffness_N_per_m_;
+  }
+
+  Neighbourhood near_;
+  const Kernels& kernels_;
+  const double reach_m_, stiffness_N_per_m_;
+  Vec3 proxy_W_ = Vec3::Zero();
+  Vec3 normal_W_ = Vec3::Zero();
+
+ private:
+  FrameOrder order_;
+  bool usable_ = false;  // the newest frame
+  bool placed_ = false;  // the proxy is
+};
+
+}  // namespace remote_touch

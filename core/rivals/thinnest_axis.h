@@ -1,0 +1,21 @@
+// Along which axis a cloud is thinnest: the smallest eigenvalue of a symmetric matrix, by cyclic Jacobi
+// rotations in plain double. Eigen's solver gives other last bits on other x86-64 levels.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/vector.h"
+
+namespace remote_touch {
+
+struct ThinnestAxis {
+  Vec3 axis = Vec3::UnitX();  // unit; which way it points means nothing
+  double smallest = 0;        // eigenvalue that belongs to it
+  double middle = 0;          // the next larger one: where both are equal the axis is one of many
+};
+
+// pre: symmetric and finite. A matrix whose off-diagonal elements change their signs together with a
+// coordinate gives the same axis with that coordinate's sign changed, bit for bit.
+ThinnestAxis thinnest_axis(const Eigen::Matrix3d& symmetric);
+
+}  // namespace remote_touch
