@@ -23,14 +23,16 @@ int corner(double coordinate) {
 
 }  // namespace
 
-void HeightFit::take(const PatchPoints& points) {
+void HeightFit::take(const PatchPoints& points, const Trend& trend) {
+  trend_ = trend;
   for (Sums& s : sums_) s.fill(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points.member[i]) continue;
     const PatchPlace& p = points.place[i];
     const int cu = static_cast<int>((p.u + kHalf) / kCell), cv = static_cast<int>((p.v + kHalf) / kCell);
     Sums& s = sums_[static_cast<std::size_t>((cv + 1) * kCorners + cu + 1)];
-    const Sums terms = {1, p.u, p.v, p.h, p.u * p.u, p.u * p.v, p.v * p.v, p.u * p.h, p.v * p.h, p.h * p.h};
+    const double h = PatchFrame::rounded(p.h - trend.height(p.u, p.v));
+    const Sums terms = {1, p.u, p.v, h, p.u * p.u, p.u * p.v, p.v * p.v, p.u * h, p.v * h, h * h};
     for (std::size_t m = 0; m < kMoments; ++m) s[m] += terms[m];
   }
   for (int j = 1; j < kCorners; ++j) {
@@ -147,6 +149,9 @@ void HeightFit::fit(double sigma, HeightMap& map) const {
         continue;
       }
       choose(i, j, std::max(sigma, kLeastNoise), node);
+      const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
+      node.height += trend_.height(u, v);
+      node.slope_u += trend_.slope_u(u, v), node.slope_v += trend_.slope_v(u, v);
       const double around = count(2 * i, 2 * j, 2);
       node.covered = node.known && around >= 1 && 3 * around >= typical;
     }

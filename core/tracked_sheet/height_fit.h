@@ -6,6 +6,7 @@
 
 #include "core/tracked_sheet/height_map.h"
 #include "core/tracked_sheet/patch_points.h"
+#include "core/tracked_sheet/trend.h"
 
 namespace remote_touch {
 
@@ -22,8 +23,8 @@ struct PlaneFit {
 class HeightFit {
  public:
   HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
-  // The members of points, which all lie on the map's square.
-  void take(const PatchPoints& points);
+  // The members of points, which all lie on the map's square, less the trend: planes are fitted to the rest.
+  void take(const PatchPoints& points, const Trend& trend = {});
 
   // Half sides of windows in contact radii are rounded to cells.
   PlaneFit plane_around(double u, double v, double half_side) const;
@@ -47,6 +48,7 @@ class HeightFit {
   static PlaneFit plane(const Sums& sums, double u, double v);
   void choose(int i, int j, double sigma, HeightMap::Node& node) const;
 
+  Trend trend_;
   std::vector<Sums> sums_;  // at each corner of cells, of all points with smaller u and v
 };
 

@@ -20,6 +20,7 @@ double HeightProfile::most() const {
 HeightProfile HeightProfile::smoothed(double sigma) const {
   HeightProfile result = *this;
   const int half = std::max(1, static_cast<int>(std::round(1.2 * sigma / kBin)));
+  result.window_ = 1.5 * (2 * half + 1);
   std::array<double, 1025> sums{};
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < bins_; ++i)
@@ -53,13 +54,14 @@ double HeightProfile::valley_from(double height, int direction) const {
   if (bins_ == 0) return 0;
   const int start = std::clamp(static_cast<int>((height + half_range_) / kBin), 0, bins_ - 1);
   const double peak = count(start);
+  constexpr double kSure = 4, kShareOfPeak = 0.15;
   double least = peak;
   int where = start;
   for (int b = start; b >= 0 && b < bins_; b += direction) {
     if (count(b) < least) least = count(b), where = b;
-    const double chance = 3 * std::sqrt(0.1 * (least + 1));  // counts are means over several bins
-    if (where != start && count(b) > 2 * least + 0.15 * peak + chance)
-      return std::abs(centre(where) - height);
+    if (where == start) continue;
+    const double chance = kSure * std::sqrt((least + 1) / window_);
+    if (count(b) > least + kShareOfPeak * peak + chance) return std::abs(centre(where) - height);
   }
   return 2 * half_range_;
 }

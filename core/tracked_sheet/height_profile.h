@@ -35,6 +35,7 @@ class HeightProfile {
 
  private:
   double half_range_ = 0;
+  double window_ = 1;  // how many bins a count is the mean of
   int bins_ = 0;
   std::array<double, 1024> count_{};
 };

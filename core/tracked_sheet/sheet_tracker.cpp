@@ -101,7 +101,7 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   }
   points_.member.assign(points_.place.size(), 1);
   sheet_ = points_.place;
-  fit_.take(points_);
+  fit_.take(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
   fit_.fit(0.3 * sigma_, map_);
 }
 
@@ -133,7 +133,7 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
 }
 
 void SheetTracker::fit_map(double weight_of_new_noise) {
-  fit_.take(points_);
+  fit_.take(points_, fit_trend(points_, std::max(sigma_, kUntouched)));
   fit_.fit(sigma_, map_);
   sigma_ += weight_of_new_noise * (fit_.noise() - sigma_);
 }
