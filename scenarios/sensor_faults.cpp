@@ -210,7 +210,8 @@ FaultySensor::Seen FaultySensor::across_the_view(const PointCloud& cloud) const 
     else
       seen.places.append({across.dot(p), 0, other.dot(p)});
     seen.hole_radius.push_back(settings_.hole_radius_m / (cloud.image ? p.z() : 1));
-    if (cloud.is_measured(i)) seen.measured.push_back(static_cast<std::uint32_t>(i));
+    if (cloud.is_measured(i) && (!cloud.image || p.z() > 0))
+      seen.measured.push_back(static_cast<std::uint32_t>(i));
   }
   return seen;
 }

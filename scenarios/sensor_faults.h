@@ -12,8 +12,9 @@
 
 namespace remote_touch {
 
-// Applied in this order; a point can meet several. "Along the view" is along one direction for all points; in
-// a cloud with an image layout along the ray of each, as a distance from the camera.
+// Applied in this order; a point can meet several, but an outlier does not fly. "Along the view" is along one
+// direction for all points; in a cloud with an image layout along the ray of each, as a distance from the
+// camera.
 struct SensorFaults {
   Vec3 view{0, -1, 0};      // the way the sensor looks; any length
   double repeat_share = 0;  // frames that show the one before them

@@ -16,6 +16,7 @@
 #include "runners/experiment.h"
 #include "runners/frame_stream.h"
 #include "runners/json_parameters.h"
+#include "runners/live/session_file.h"
 #include "runners/simulation.h"
 #include "scenarios/camera_scene.h"
 #include "scenarios/moving_shape.h"
@@ -542,6 +543,31 @@ TEST(SensorFaults, TheSectionSurvivesARoundTripCompletely) {
   for (const Parameter& p : list) EXPECT_TRUE(json.contains(p.name)) << p.name;
   EXPECT_EQ(json["dropout_share"], 0.5);
   EXPECT_FALSE(Json::parse(Experiment::load("fig4.12").to_json()).contains("faults"));
+}
+
+// The recorded frames have them already. What is asked for then comes on top, and the session still ends.
+TEST(SensorFaults, ALiveSessionRunsAgainWithoutThem) {
+  const TestFolder folder("sensor_faults_test");
+  const std::string file = (folder / "session.h5").string();
+  const SensorView view{{64, 2, 60, 60, 31.5, 0.5}, 0.001, 30, false, RigidTransform::Identity()};
+  SessionWriter session(file, view, RigidTransform::Identity(),
+                        {{"config", Experiment::load("fig4.16", {"faults.dropout_share=0.5"}).to_json()}});
+  SensorFrame frame;
+  frame.depth.assign(128, 500);
+  session.append(frame, 0, 0);
+  LiveTick tick;
+  tick.taken = 0;
+  session.append(tick);
+  session.finish();
+
+  const Experiment again = Experiment::load(file);
+  EXPECT_FALSE(Json::parse(again.to_json()).contains("faults"));
+  EXPECT_EQ(measured(again.build_scenario(scenes::kernels())->cloud(0)), 128u);
+  const auto worse = Experiment::load(file, {"faults.dropout_share=1"}).build_scenario(scenes::kernels());
+  EXPECT_EQ(measured(worse->cloud(0)), 0u);
+  EXPECT_EQ(worse->frame_count(), 1);
+  EXPECT_TRUE(worse->ends());
+  EXPECT_EQ(worse->arrives_s(0), 0);
 }
 
 TEST(SensorFaults, RefusesWhatIsNone) {
