@@ -198,7 +198,7 @@ std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) con
 }
 
 std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenario) const {
-  return trajectory_.blueprint->build(scenario);
+  return trajectory_.blueprint->build(scenario.without_faults());
 }
 
 std::vector<FixtureValues> Experiment::fixture_values() const {

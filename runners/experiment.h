@@ -55,6 +55,7 @@ class Experiment {
 
   // As the sensor shows it: with its faults.
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;
+  // The same hand whatever the faults, so that what they do is seen by itself.
   std::unique_ptr<Trajectory> build_trajectory(const Scenario& scenario) const;
   // switches: where a task sets and the processing of frames reads which fixtures count; without a task there
   // are none to set.

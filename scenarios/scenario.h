@@ -29,6 +29,8 @@ class Scenario {
   virtual double captured_s(int frame) const { return frame / frame_rate_hz(); }
   // No frame follows the last, where else a camera would go on and see what it saw: a recorded live session.
   virtual bool ends() const { return false; }
+  // The scene as a hand finds its way in it, whatever a sensor makes of it.
+  virtual const Scenario& without_faults() const { return *this; }
 
   // When the frame comes out of the sensor, where that is not when it was captured: it was late, or a
   // recorded live session tells when the renderer got it, infinite where it never did.

@@ -45,6 +45,7 @@ class FaultySensor final : public Scenario {
   int frame_count() const override;
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }
+  const Scenario& without_faults() const override { return *scenario_; }
   std::optional<double> arrives_s(int frame) const override;
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
     return scenario_->fixtures_off(seen(frame));

@@ -35,7 +35,10 @@ const Case kCases[] = {{"fig4.11", {"duration_s=2"}},
                        {"fig6.3", {"renderer.contact_rule=voxels"}},
                        {"fig4.16", {"duration_s=0.5", "depth_pipeline.sigma_f_m=0.01", "renderer.name=tool"}},
                        {"fig7.5", {"duration_s=2.4", "scenario.frame_rate_hz=5"}},
-                       {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}}};
+                       {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}},
+                       {"rocking-plane", {"duration_s=1", "scenario.shape=ripple"}},
+                       {"sliding-ridge", {"duration_s=1", "scenario.shape=sphere", "scenario.tilt_deg=9"}},
+                       {"faulty-lift", {"faults.shear_s=0.01", "scenario.truth=moving"}}};
 
 TEST(Determinism, EveryInstructionSet) {
   for (const Case& c : kCases) {

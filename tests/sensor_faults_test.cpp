@@ -529,6 +529,20 @@ TEST(SensorFaults, ARunWithEverythingEnds) {
   EXPECT_NE(once.proxy_m, simulate(Experiment::load("fig4.12", {"scenario.truth=moving"}), {}).proxy_m);
 }
 
+// Its path is planned in what the camera would have seen.
+TEST(SensorFaults, TheHandIsThatOfTheBareScenario) {
+  for (const char* name : {"fig4.12", "fig4.16"}) {
+    const Experiment plain = Experiment::load(name),
+                     blind = Experiment::load(name, {"faults.dropout_share=1", "faults.repeat_share=1"});
+    const auto scene = plain.build_scenario(scenes::kernels());
+    const auto dark = blind.build_scenario(scenes::kernels());
+    const auto hand = plain.build_trajectory(*scene), same = blind.build_trajectory(*dark);
+    EXPECT_EQ(hand->duration_s(), same->duration_s());
+    for (int tick = 0; tick < 900; tick += 50)
+      EXPECT_EQ(hand->at(0.001 * tick).position_W, same->at(0.001 * tick).position_W) << name;
+  }
+}
+
 // --- the section of an experiment ---
 
 TEST(SensorFaults, TheSectionSurvivesARoundTripCompletely) {
