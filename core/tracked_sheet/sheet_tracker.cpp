@@ -22,6 +22,12 @@ double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
 }
 
+// What of a measurement is not its standard error: nearly all of a large one, nothing of a small one.
+double surely(double x, double error) {
+  const double square = x * x;
+  return square > 0 ? square / (square + 4 * error * error) * x : 0;
+}
+
 }  // namespace
 
 SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels)
@@ -109,10 +115,8 @@ void SheetTracker::recentre(const Vec3& middle_W) {
 double SheetTracker::predicted_shift(double interval_s) const {
   if (age_ == 0 || !(interval_s_ > 0)) return 0;
   const double ratio = interval_s / interval_s_;
-  double change = age_ >= 2 ? shift_ - shift_before_ : 0;
-  const double square = change * change;
-  if (square > 0) change *= square / (square + 8 * shift_error_ * shift_error_);
-  return shift_ * ratio + change * ratio * ratio;
+  const double change = age_ >= 2 ? shift_ - shift_before_ : 0;
+  return shift_ * ratio + surely(change, 1.5 * shift_error_) * ratio * ratio;
 }
 
 // Which points belong to the sheet that the map predicts: those within its noise, and nearer to it than to
@@ -190,19 +194,23 @@ double SheetTracker::clearance(const Vec3& p_W) const {
   return p.h - map_.height(p.u, p.v);
 }
 
-// How far a proxy must go along the normal not to be in the sheet.
+// Points without their noise lie elsewhere when they are seen from another place: how far a proxy must then
+// go along the normal not to be in the sheet.
 double SheetTracker::way_out(const Vec3& proxy_W) const {
   const PatchPlace p = patch().place(proxy_W);
   const double now = clearance(proxy_W);
-  return map_.covers(p.u, p.v) && std::isfinite(now) ? std::max(0.0, contact_distance(p) - now) : 0;
+  if (!changes_points() || !map_.covers(p.u, p.v) || !std::isfinite(now)) return 0;
+  return std::max(0.0, contact_distance(p) - now);
 }
 
 // A proxy that the sheet holds back keeps its clearance; a free one is moved only out of a sheet that swept
-// over it. In contact radii, along the normal.
+// over it, and no further than the sheet moved. In contact radii, along the normal.
 double SheetTracker::carry(const ProxyPlace& proxy, double clearance_before) const {
-  if (!proxy.pressing) return way_out(proxy.p_W);
-  const double moved = clearance_before - clearance(proxy.p_W);
-  return std::isfinite(moved) ? moved : 0;
+  const double now = clearance(proxy.p_W), moved = clearance_before - now;
+  if (!std::isfinite(moved)) return 0;
+  if (proxy.pressing) return moved;
+  const PatchPlace p = patch().place(proxy.p_W);
+  return map_.covers(p.u, p.v) ? std::clamp(contact_distance(p) - now, 0.0, std::max(0.0, moved)) : 0;
 }
 
 // Where the sheet was nowhere seen before.
@@ -218,8 +226,8 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   const Vec3 ahead = 0.5 * (proxy.p_W - last_proxy_W_);
   last_proxy_W_ = proxy.p_W;
   if (!tracks_ || is_of_other_surface(proxy)) return look_afresh(proxy.p_W);
-  const double before = clearance(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
+  const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
   region_.frame.move_along_normal(predicted_shift(interval_s));
   if (!follow(proxy.p_W)) {
@@ -236,7 +244,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   return update;
 }
 
-// From how the clearance of a resting point changed, of which as much as is not noise.
+// From how the clearance of a resting point changed.
 double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, double interval_s) {
   const double moved = clearance_before - clearance(proxy_W);
   if (!std::isfinite(moved) || !(interval_s > 0)) return 0;
@@ -246,8 +254,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
   shift_error_ = std::max(1.5 * map_.nearest_node(p.u, p.v).error, 0.003);  // of two heights
   interval_s_ = interval_s;
   ++age_;
-  const double square = moved * moved;
-  return square / (square + 4 * shift_error_ * shift_error_) * moved * unit_m_ / interval_s;
+  return surely(shift_, shift_error_) * unit_m_ / interval_s;
 }
 
 bool SheetTracker::must_look_again(const Vec3& proxy_W) const {

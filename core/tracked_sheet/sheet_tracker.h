@@ -45,6 +45,8 @@ class SheetTracker {
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
   // The proxy has left the middle of the patch.
   bool must_look_again(const Vec3& proxy_W) const;
+  // Gives a missing sheet up: what the newest frame shows is all there is. No allocation.
+  SheetUpdate look_afresh(const Vec3& proxy_W);
   // The newest frame's points around the proxy's new place. No allocation.
   SheetUpdate look_again(const ProxyPlace& proxy);
 
@@ -65,7 +67,6 @@ class SheetTracker {
   bool follow(const Vec3& proxy_W);
   double find_members(const PatchPlace& proxy);
   void fit_map(double weight_of_new_noise);
-  SheetUpdate look_afresh(const Vec3& proxy_W);
   double clearance(const Vec3& p_W) const;
   double way_out(const Vec3& proxy_W) const;
   double carry(const ProxyPlace& proxy, double clearance_before) const;

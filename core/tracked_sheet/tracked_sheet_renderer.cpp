@@ -1,6 +1,7 @@
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace remote_touch {
@@ -37,7 +38,9 @@ std::string conflict(const TrackedSheetParameters& p) {
 
 TrackedSheetRenderer::TrackedSheetRenderer(const TrackedSheetParameters& p, double haptic_rate_hz,
                                            const Kernels& kernels)
-    : proxy_(p.proxy, haptic_rate_hz, kernels), tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
+    : longest_hold_frames_(p.sheet.bridged_frames),
+      proxy_(p.proxy, haptic_rate_hz, kernels),
+      tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
 
 void TrackedSheetRenderer::reserve(std::size_t points) {
   proxy_.reserve(points);
@@ -52,9 +55,12 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
     update = tracker_.on_frame(frame.points, proxy_place(), interval_s);
   else
     update.points = tracker_.keep(frame.points);
-  if (update.points) {  // else the sheet is missing: what was shown stays
+  if (update.points) {
     shown_ = std::move(update.points);
     captured_s_ = frame.captured_s, has_frame_ = true;
+    held_until_s_ = std::numeric_limits<double>::infinity();
+  } else if (std::isinf(held_until_s_)) {  // the sheet is missing: what was shown stays for a while
+    held_until_s_ = frame.arrives_s + longest_hold_frames_ * interval_s;
   }
   proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
                   {update.carry_m, update.velocity_m_per_s, update.normal_W});
@@ -66,6 +72,9 @@ RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s
   if (!placed_ && has_frame_ && device.position_W.allFinite()) {
     placed_ = true;
     show(tracker_.look_again({device.position_W, false}));
+  } else if (time_s >= held_until_s_) {
+    held_until_s_ = std::numeric_limits<double>::infinity();
+    show(tracker_.look_afresh(proxy_.proxy_W()));
   } else if (placed_ && tracker_.must_look_again(proxy_.proxy_W())) {
     show(tracker_.look_again(proxy_place()));
   }

@@ -7,6 +7,7 @@
 // the proxy, with the measured velocity in (4.15).
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "core/proxy_renderer.h"
@@ -35,10 +36,12 @@ class TrackedSheetRenderer final : public Renderer {
   ProxyPlace proxy_place() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
   void show(const SheetUpdate& update);
 
+  const int longest_hold_frames_;
   ProxyRenderer proxy_;
   SheetTracker tracker_;
   std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
   double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
+  double held_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the proxy is where the HIP was
 };
