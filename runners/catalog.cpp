@@ -112,7 +112,7 @@ const RendererEntry kRenderers[] = {
     renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three, HeldBy::points,
                                              "3-DOF point cloud proxy, chapters 4 and 5"),
     renderer<TrackedSheetRenderer, TrackedSheetParameters>(
-        "tracked-sheet", Freedoms::three, HeldBy::points,
+        "tracked-sheet", Freedoms::three, HeldBy::sheet,
         "3-DOF proxy on a sheet that is tracked and denoised"),
     renderer<PenaltyRenderer, PenaltyParameters>("penalty", Freedoms::three, HeldBy::nothing,
                                                  "a rival: direct rendering, a spring and no proxy"),

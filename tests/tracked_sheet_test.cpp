@@ -112,6 +112,16 @@ TEST(TrackedSheet, AVanishedSheetLetsGoAfterOneFrameMore) {
               paper, 0.002);
 }
 
+// Its cells lie along the world's axes, so a turned scene is not answered to the last bit; but alike.
+TEST(TrackedSheet, ALeaningPlaneIsHeldLikeALevelOne) {
+  for (const double tilt_deg : {0.0, 20.0, 40.0}) {
+    const Trace trace =
+        run("parallel-sheets", {kSheet, "scenario.sheets=1", setting("scenario.tilt_deg", tilt_deg),
+                                setting("scenario.noise_sigma_m", 0.6 * kRc)});
+    EXPECT_NEAR(trace.signed_distance_m.back(), kRc, 0.15 * kRc) << tilt_deg;
+  }
+}
+
 // 5.6: a fixture of 2 cm on a noisy cloud keeps the proxy 2.5 cm away.
 TEST(TrackedSheet, FixturesKeepTheirDistance) {
   const std::string fixture = R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])";

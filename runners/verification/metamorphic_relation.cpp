@@ -102,11 +102,13 @@ bool add_stiffness_column(Variation& run) {
 
 template <int kAxis>
 bool mirror_axis(Variation& run) {
+  if (run.axes_matter) return false;
   mirror(run, kAxis);
   return true;
 }
 
 bool move(Variation& run) {
+  if (run.axes_matter) return false;
   RigidTransform motion = RigidTransform::Identity();
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);

@@ -19,6 +19,7 @@ struct Variation {
   UnitChange units = {};                         // of the renderer's parameters
   bool until_velocity = false;                   // compared until either run has estimated a surface velocity
   double reach_m = 0;                            // the renderer's largest length
+  bool axes_matter = false;                      // to the renderer: the world's, for its cells
   bool order_matters = false;                    // to the renderer: of points in rows and columns
   std::optional<double> stiffness_N_per_m = {};  // of the renderer, where it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // to be given to it instead
