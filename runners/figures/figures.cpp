@@ -15,6 +15,7 @@ constexpr FigureEntry kFigures[] = {
     {"4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12},
     {"4.13", "5396 lifts, noise against acceleration: which popped through", figure_4_13},
     {"4.13-replicated", "the same with 20 lifts a cell: probability of pop-through", figure_4_13_replicated},
+    {"4.13-tracked", "the pop-through map under a tracked sheet, beside the paper's", figure_4_13_tracked},
     {"bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds},
     {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14},
     {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15},

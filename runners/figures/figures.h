@@ -86,6 +86,7 @@ Figure figure_4_11(const Laboratory& laboratory);
 Figure figure_4_12(const Laboratory& laboratory);
 Figure figure_4_13(const Laboratory& laboratory);
 Figure figure_4_13_replicated(const Laboratory& laboratory);
+Figure figure_4_13_tracked(const Laboratory& laboratory);
 Figure figure_4_14(const Laboratory& laboratory);
 Figure figure_4_16(const Laboratory& laboratory);
 Figure figure_4_16_recorded(const Laboratory& laboratory);

@@ -47,6 +47,31 @@ Table map_table(const std::string& name, const SweepResult& result) {
   return table;
 }
 
+Table region_table(const std::string& name, const Table& map) {
+  constexpr double kNoise[] = {0, 0.5, 1, 1.5, 2, 3.001}, kAcceleration[] = {0, 300, 600, 898, 1150, 1e9};
+  const auto &x = numbers(map, "noise"), &y = numbers(map, "acceleration"),
+             &survived = numbers(map, "survived");
+  // A node on an edge belongs to the region above it, whatever its last bit.
+  constexpr double kEdge = 1e-9;
+  std::vector<double> noise, acceleration, success;
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 5; ++column) {
+      double sum = 0, count = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const bool in_column = x[i] + kEdge >= kNoise[column] && x[i] + kEdge < kNoise[column + 1];
+        const bool in_row = y[i] + kEdge >= kAcceleration[row] && y[i] + kEdge < kAcceleration[row + 1];
+        if (in_column && in_row) sum += survived[i], ++count;
+      }
+      noise.push_back(kNoise[column]), acceleration.push_back(kAcceleration[row]);
+      success.push_back(sum / count);
+    }
+  Table table{name, "success by region"};
+  table.add("noise_from", "r_c", "lower edge of the region", noise);
+  table.add("acceleration_from", "r_c/s^2", "lower edge of the region", acceleration);
+  table.add("survived", "1", "share of lifts that did not pop through", success);
+  return table;
+}
+
 Table survivors(const std::string& name, const Table& map) {
   const auto &x = numbers(map, "noise"), &y = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
@@ -66,6 +91,12 @@ void add_bound(Table& table, const std::string& column, const std::string& meani
 
 double printed_bound(double noise_m) {
   return bound_acceleration(kLift, printed_thickness().at(noise_m), printed_normal_error().at(noise_m));
+}
+
+Table bound_table() {
+  Table table = noise_table("bound", "bound on pop-through");
+  add_bound(table, "printed", "(4.25) with (4.23) and (4.24) as printed", printed_bound);
+  return table;
 }
 
 Panel map_panel(const std::string& title, std::vector<Curve> curves) {

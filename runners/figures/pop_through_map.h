@@ -25,12 +25,18 @@ Table map_table(const std::string& name, const SweepResult& result);
 // The cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 
+// Share of lifts that survived in 5 x 5 regions of a map: acceleration from 0, 300, 600, 898, 1150 r_c/s^2,
+// and in each noise from 0, 0.5, 1, 1.5, 2 r_c.
+Table region_table(const std::string& name, const Table& map);
+
 // Noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);
 // Noise in r_c against a bound in r_c/s^2, as a column of a table that begins with noise.
 void add_bound(Table& table, const std::string& column, const std::string& meaning,
                const std::function<double(double noise_m)>& bound_m_per_s2);
 double printed_bound(double noise_m);  // (4.25) with (4.23), (4.24), m/s^2
+
+Table bound_table();  // that, named "bound"
 
 // A map's panel: x noise, y acceleration, the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
