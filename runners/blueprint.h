@@ -65,9 +65,9 @@ enum class Freedoms { three, six };
 
 // What a renderer is held by: all points of a cloud, the regions of those with r_f above 0 alone, the
 // triangles between neighbours in an organised frame, for which the order of the points matters, a sheet that
-// is fitted to points in cells along the world's axes, so that a scene that is turned is answered alike and
-// not to the last bit, or nothing: it is pushed by points, and passes them when it is pressed deeper than
-// they push.
+// is fitted to points in cells along the world's axes, so that a scene that is turned or sent more often is
+// answered alike and not to the last bit, or nothing: it is pushed by points, and passes them when it is
+// pressed deeper than they push.
 enum class HeldBy { points, regions, mesh, sheet, nothing };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz

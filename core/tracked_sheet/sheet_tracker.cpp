@@ -15,8 +15,9 @@ namespace {
 constexpr double kNoisePart = 3.5;  // what lies further from a sheet than this many sigma is no noise of it
 constexpr double kThinnest = 0.5;   // half of a sheet without noise
 constexpr double kLost = 0.2, kDoubtful = 0.5;  // share of the members found again
-constexpr double kMiddle = 5;      // within this of the origin the patch shows all that the proxy touches
-constexpr double kTouching = 2.5;  // a proxy further away is held by something else
+constexpr double kMiddle = 5;  // within this of the origin the patch shows all that the proxy touches
+constexpr double kResolution = 0x1p-12;  // of places; what is less is no motion
+constexpr double kTouching = 2.5;        // a proxy further away is held by something else
 
 double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
@@ -68,10 +69,9 @@ void SheetTracker::start_anew(const Vec3& proxy_W) {
   sigma_ = found->sigma;
   gather(half_height());
   map_.set_plane(0, 0, 0, found->known + 1);
-  const PatchPlace proxy = patch().place(proxy_W);
   for (int ring = 0; ring < 4; ++ring) {
     map_.extend(3);
-    find_members(proxy);
+    find_members(patch().place(proxy_W));
     fit_map(1);
   }
 }
@@ -207,7 +207,7 @@ double SheetTracker::way_out(const Vec3& proxy_W) const {
 // over it, and no further than the sheet moved. In contact radii, along the normal.
 double SheetTracker::carry(const ProxyPlace& proxy, double clearance_before) const {
   const double now = clearance(proxy.p_W), moved = clearance_before - now;
-  if (!std::isfinite(moved)) return 0;
+  if (!(std::abs(moved) > kResolution)) return 0;
   if (proxy.pressing) return moved;
   const PatchPlace p = patch().place(proxy.p_W);
   return map_.covers(p.u, p.v) ? std::clamp(contact_distance(p) - now, 0.0, std::max(0.0, moved)) : 0;
@@ -246,8 +246,9 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
 
 // From how the clearance of a resting point changed.
 double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, double interval_s) {
-  const double moved = clearance_before - clearance(proxy_W);
+  double moved = clearance_before - clearance(proxy_W);
   if (!std::isfinite(moved) || !(interval_s > 0)) return 0;
+  if (std::abs(moved) <= kResolution) moved = 0;
   const PatchPlace p = patch().place(proxy_W);
   shift_before_ = age_ >= 1 ? shift_ : moved;
   shift_ = moved;

@@ -57,7 +57,7 @@ class Subject {
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = largest_length_m(parameters);
-    run.axes_matter = entry_.held_by == HeldBy::sheet;
+    run.fits_a_sheet = entry_.held_by == HeldBy::sheet;
     run.order_matters = entry_.held_by == HeldBy::mesh;
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;

@@ -102,13 +102,13 @@ bool add_stiffness_column(Variation& run) {
 
 template <int kAxis>
 bool mirror_axis(Variation& run) {
-  if (run.axes_matter) return false;
+  if (run.fits_a_sheet) return false;
   mirror(run, kAxis);
   return true;
 }
 
 bool move(Variation& run) {
-  if (run.axes_matter) return false;
+  if (run.fits_a_sheet) return false;
   RigidTransform motion = RigidTransform::Identity();
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);
@@ -223,6 +223,7 @@ void send_more_often(Variation& run, std::size_t first) {
 
 // A step to the side over bumps has a part along the normal, and (4.13) takes that for a motion of the cloud.
 bool double_rate(Variation& run) {
+  if (run.fits_a_sheet) return false;
   if (!run.scene.cloud_rests || run.scene.hip_rests) return false;
   send_more_often(run, 0);
   run.until_velocity = true;
@@ -230,6 +231,7 @@ bool double_rate(Variation& run) {
 }
 
 bool double_rate_at_rest(Variation& run) {
+  if (run.fits_a_sheet) return false;
   if (!run.scene.cloud_rests || !run.scene.hip_rests) return false;
   send_more_often(run, 1);
   return true;

@@ -16,10 +16,12 @@ struct Variation {
   MetamorphicScene scene;
   std::vector<RenderOutput> expected;  // of each tick
   const Kernels* kernels = nullptr;
-  UnitChange units = {};                         // of the renderer's parameters
-  bool until_velocity = false;                   // compared until either run has estimated a surface velocity
-  double reach_m = 0;                            // the renderer's largest length
-  bool axes_matter = false;                      // to the renderer: the world's, for its cells
+  UnitChange units = {};        // of the renderer's parameters
+  bool until_velocity = false;  // compared until either run has estimated a surface velocity
+  double reach_m = 0;           // the renderer's largest length
+  // By the renderer: the world's axes, for its cells, and the number of frames, for the noise it learns,
+  // matter.
+  bool fits_a_sheet = false;
   bool order_matters = false;                    // to the renderer: of points in rows and columns
   std::optional<double> stiffness_N_per_m = {};  // of the renderer, where it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // to be given to it instead
