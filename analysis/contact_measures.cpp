@@ -27,6 +27,16 @@ double mean_in_contact(const Trace& trace, Value&& value) {
   return count == 0 ? kNone : sum / count;
 }
 
+// The same of the distance itself, for the ticks with a force and a known truth.
+template <class Value>
+double mean_with_force(const Trace& trace, Value&& value) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]))
+      sum += value(trace.signed_distance_m[i]), ++count;
+  return count == 0 ? kNone : sum / count;
+}
+
 // Root mean square change of the force to the tick before, over those ticks that are updates or are not.
 double rms_force_change_N(const Trace& trace, bool at_updates) {
   double squares = 0, count = 0;
@@ -47,6 +57,17 @@ double height_sd_m(const Trace& trace) {
   const double mean = mean_height_m(trace);
   const double variance =
       mean_in_contact(trace, [mean](double height) { return (height - mean) * (height - mean); });
+  return std::isnan(variance) ? kNone : std::sqrt(variance);
+}
+
+double mean_distance_m(const Trace& trace) {
+  return mean_with_force(trace, [](double distance) { return distance; });
+}
+
+double distance_sd_m(const Trace& trace) {
+  const double mean = mean_distance_m(trace);
+  const double variance =
+      mean_with_force(trace, [mean](double distance) { return (distance - mean) * (distance - mean); });
   return std::isnan(variance) ? kNone : std::sqrt(variance);
 }
 

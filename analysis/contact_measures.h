@@ -11,6 +11,11 @@ namespace remote_touch {
 // standard deviation over them, m. NaN without any.
 double mean_height_m(const Trace& trace);
 double height_sd_m(const Trace& trace);
+// Distance of the centre to the true surface, over the ticks with a force and a known truth: mean and
+// standard deviation, m; NaN without any. Unlike the height it asks nothing about points, so that it compares
+// renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
+double mean_distance_m(const Trace& trace);
+double distance_sd_m(const Trace& trace);
 // Distance of the centre to the true surface in the last tick, m, negative behind it; NaN where it is not
 // known.
 double end_distance_m(const Trace& trace);

@@ -6,6 +6,7 @@
 
 #include "analysis/contact_measures.h"
 #include "analysis/contact_point.h"
+#include "analysis/passivity_measures.h"
 
 namespace remote_touch {
 
@@ -35,12 +36,19 @@ constexpr Measure kMeasures[] = {
     {"non_finite_share", "1", "share of ticks with a number that is not finite", non_finite_share},
     {"mean_height", "m", "mean height of the rendered surface above the true one, in contact", mean_height_m},
     {"height_sd", "m", "standard deviation of that height", height_sd_m},
+    {"mean_distance", "m", "mean distance of the centre to the true surface, while there is force",
+     mean_distance_m},
+    {"distance_sd", "m", "standard deviation of that distance", distance_sd_m},
     {"end_distance", "m", "distance of the centre to the true surface in the last tick", end_distance_m},
     {"force_share", "1", "share of ticks with a force", force_share},
     {"last_force_time", "s", "time of the last tick with a force", last_force_time_s},
     {"rms_force_jump", "N", "rms change of the force at a frame update", rms_force_jump_N},
     {"force_noise", "N", "rms change of the force from tick to tick, without an update", force_noise_N},
     {"energy_injected", "J", "work that the rendered force does on the hand", energy_injected_J},
+    {"largest_energy_given", "J", "most work that the hand had got by any time", largest_energy_given_J},
+    {"mean_energy_per_update", "J", "mean work on the hand from one frame update to the next, with force",
+     mean_energy_per_update_J},
+    {"largest_energy_per_update", "J", "the largest of it", largest_energy_per_update_J},
 };
 
 }  // namespace

@@ -47,6 +47,25 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// A renderer that notes how long it takes to take a frame.
+class TimedFrames final : public Renderer {
+ public:
+  TimedFrames(Renderer& renderer, std::vector<double>* duration_s)
+      : renderer_(renderer), duration_s_(duration_s) {}
+  void on_frame(const Frame& frame) override {
+    StopWatch watch;
+    renderer_.on_frame(frame);
+    if (duration_s_) duration_s_->push_back(watch.lap_s());
+  }
+  RenderOutput step(const DeviceState& device, double time_s) override {
+    return renderer_.step(device, time_s);
+  }
+
+ private:
+  Renderer& renderer_;
+  std::vector<double>* duration_s_;
+};
+
 }  // namespace
 
 Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
@@ -57,6 +76,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto renderer = experiment.build_renderer(kernels, switches);
   FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
                      experiment.settings().delivery, experiment.settings().key, options.hash_frames);
+  TimedFrames timed(*renderer, options.frame_duration_s);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
 
@@ -68,7 +88,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     // Time is made from the tick's number, never added up.
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     if (trajectory->is_missed(time_s)) continue;
-    frames.deliver_until(time_s, *renderer);
+    frames.deliver_until(time_s, timed);
     const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);

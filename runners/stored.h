@@ -1,4 +1,4 @@
-// What comes with the program: experiments and sweeps of data/, compiled in.
+// What comes with the program: the JSON files of data/, compiled in.
 #pragma once
 
 #include <span>
@@ -13,6 +13,9 @@ struct StoredText {
 
 std::span<const StoredText> stored_experiments();
 std::span<const StoredText> stored_sweeps();
+// Renderers with their settings, and scenes, of the scorecard.
+std::span<const StoredText> stored_contenders();
+std::span<const StoredText> stored_scenes();
 
 // The text of that name, or of that file. kind: "an experiment's", for the InputError when there is neither.
 std::string stored_or_file(std::span<const StoredText> stored, const std::string& name_or_file,

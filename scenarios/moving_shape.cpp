@@ -98,6 +98,7 @@ PointCloud MovingShape::cloud(int frame) const {
     const Vec3 below(0, sheet * settings_.sheet_spacing_m, 0);
     for (const Vec3& node_S : nodes_S_) cloud.append(pose.to_W(node_S - below));
   }
+  cloud.grid_columns = settings_.grid.columns;  // sheet after sheet, each whole rows
   add_noise(cloud, settings_.noise_sigma_m, noise(frame), kernels_);
   return cloud;
 }

@@ -54,6 +54,19 @@ TEST(ContactMeasures, HeightIsThatOfTheRenderedSurfaceOverTheTrueOne) {
   EXPECT_EQ(height_sd_m(trace_of({above})), 0);
 }
 
+TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
+  Tick near{0.004, 0.002}, far{0.008, std::numeric_limits<double>::infinity()}, silent{0.5, 0.1},
+      dark{kUnknown};
+  near.force_N = far.force_N = dark.force_N = {0, 1, 0};
+  far.state = ContactState::free;
+  const Trace trace = trace_of({near, silent, far, dark, near});
+  EXPECT_NEAR(mean_distance_m(trace), 0.016 / 3, 1e-15);
+  // Two of three 4 mm below the third: 4 mm sqrt(2/3 1/3).
+  EXPECT_NEAR(distance_sd_m(trace), 0.004 * std::sqrt(2.0) / 3, 1e-15);
+  EXPECT_TRUE(std::isnan(mean_distance_m(trace_of({silent, dark}))));
+  EXPECT_TRUE(std::isnan(distance_sd_m(trace_of({silent, dark}))));
+}
+
 TEST(ContactMeasures, TheEndIsTheLastTick) {
   EXPECT_EQ(end_distance_m(trace_of({{-0.01, 0.005}, {0.004, 0.005}})), 0.004);
   EXPECT_EQ(end_distance_m(trace_of({{0.01, 0.005}, {-0.004, 0.005}})), -0.004);
@@ -101,6 +114,8 @@ TEST(ContactMeasures, AreInTheTable) {
   for (const auto& [name, of] : std::vector<std::pair<std::string, double (*)(const Trace&)>>{
            {"mean_height", mean_height_m},
            {"height_sd", height_sd_m},
+           {"mean_distance", mean_distance_m},
+           {"distance_sd", distance_sd_m},
            {"end_distance", end_distance_m},
            {"force_share", force_share},
            {"last_force_time", last_force_time_s},

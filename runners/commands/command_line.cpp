@@ -87,6 +87,22 @@ void add_figure(Subcommands& commands) {
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
 }
 
+void add_scorecard(Subcommands& commands) {
+  auto [command, scorecard] = commands.add(
+      "scorecard", "renderers against each other over many scenes and noise levels: HDF5 and a page",
+      command_scorecard);
+  command->add_option("contenders", scorecard->contenders, "of the list (default: all)");
+  command->add_option("--scene", scorecard->scenes, "of the list (default: all)");
+  command->add_option("-o,--output", scorecard->folder, "the folder to write into, or to go on with")
+      ->required();
+  command
+      ->add_option("--seeds", scorecard->seeds, "runs of each scene and noise level, each with its own noise")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--threads", scorecard->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+}
+
 void add_compare(Subcommands& commands) {
   auto [command, compare] = commands.add(
       "compare", "two results side by side: 0 same, 1 regressed, 2 could not compare", command_compare);
@@ -212,8 +228,8 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.add_flag("-q,--quiet", line.quiet, "no progress");
   std::function<int()> act;
   Subcommands commands{app, line, act};
-  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_compare,
-                         add_baseline, add_repro_and_verify, add_live})
+  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,
+                         add_compare, add_baseline, add_repro_and_verify, add_live})
     add(commands);
   try {
     app.parse(argc, argv);

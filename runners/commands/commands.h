@@ -53,6 +53,14 @@ struct SweepRequest {
 };
 int command_sweep(const CommandLine& line, const SweepRequest& request);
 
+struct ScorecardRequest {
+  std::vector<std::string> contenders, scenes;  // empty: all
+  std::string folder;
+  int seeds = 20;
+  int threads = 0;  // 0: as OpenMP decides
+};
+int command_scorecard(const CommandLine& line, const ScorecardRequest& request);
+
 struct MergeRequest {
   std::vector<std::string> shards;
   std::string output;

@@ -8,6 +8,7 @@
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
 #include "runners/json_parameters.h"
+#include "runners/scorecard/contest.h"
 #include "runners/sweep.h"
 #include "runners/tools/loaded_spheres.h"
 #include "runners/tools/mesh_file.h"
@@ -78,6 +79,30 @@ bool describe_sweep(const std::string& name) {
   return false;
 }
 
+bool describe_contender(const std::string& name) {
+  for (const Contender& contender : chosen_contenders({})) {
+    if (name != contender.name) continue;
+    std::printf("%s: a contender of the scorecard: %s\n%s\n", name.c_str(), contender.title.c_str(),
+                parse_json(contender.renderer, name).dump(2).c_str());
+    return true;
+  }
+  return false;
+}
+
+bool describe_scene(const std::string& name) {
+  for (const ContestScene& scene : chosen_scenes({})) {
+    if (name != scene.name) continue;
+    std::printf("%s: a scene of the scorecard: %s\n%s\n", name.c_str(), scene.title.c_str(),
+                parse_json(scene.experiment, name).dump(2).c_str());
+    std::printf("Noise: %s\nSuccess: %s\n", scene.noise.empty() ? "its own" : scene.noise.c_str(),
+                scene.meaning.c_str());
+    for (const Bound& bound : scene.success)
+      std::printf("Bound: %s within %g .. %g\n", bound.measure.c_str(), bound.at_least, bound.at_most);
+    return true;
+  }
+  return false;
+}
+
 // A built-in tool or a mesh file in metres: what was made of it, as the renderers do by default.
 bool describe_tool(const std::string& name) {
   const GeneratedTool* built_in = find_generated_tool(name);
@@ -101,6 +126,8 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);
   found |= describe_sweep(name);
+  found |= describe_contender(name);
+  found |= describe_scene(name);
   if (name == "run") {
     std::puts("run: what an experiment says beside its parts");
     print_run_settings();

@@ -5,6 +5,7 @@
 #include "runners/commands/commands.h"
 #include "runners/experiment.h"
 #include "runners/figures/figures.h"
+#include "runners/scorecard/contest.h"
 #include "runners/sweep.h"
 
 namespace remote_touch {
@@ -29,6 +30,10 @@ int command_list(const CommandLine&, const ListRequest&) {
     row(stored.name, Experiment::load(stored.name).settings().title);
   std::puts("sweeps");
   for (const auto& stored : stored_sweeps()) row(stored.name, Sweep::load(stored.name).title());
+  std::puts("contenders");
+  for (const Contender& contender : chosen_contenders({})) row(contender.name.c_str(), contender.title);
+  std::puts("scenes");
+  for (const ContestScene& scene : chosen_scenes({})) row(scene.name.c_str(), scene.title);
   std::puts("figures");
   for (const auto& entry : figures()) row(entry.name, entry.summary);
   std::puts("measures");

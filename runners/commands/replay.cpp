@@ -3,16 +3,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "analysis/result_file.h"
 #include "analysis/sweep_file.h"
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
 #include "runners/input_hashes.h"
-#include "runners/provenance.h"
-#include "runners/simulation.h"
-#include "runners/sweep.h"
+#include "runners/sweep_replay.h"
 
 namespace remote_touch {
 
@@ -82,22 +79,17 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
                      "allowed 0 to " + std::to_string(result.replicates - 1));
   require_writable(request.output);
 
-  const Experiment experiment = sweep.experiment(cell, request.replicate);
   Progress progress("replay", line.quiet);
   SimulationOptions options;
   options.kernels = line.kernels;
   options.stop = line.stop;
-  options.hash_frames = true;
   options.progress = [&](double share) { progress.update(share); };
-  const std::string inputs = input_hashes(experiment.inputs());
-  const Trace trace = simulate(experiment, options);
-  const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
-                              request.cell + " --replicate " + std::to_string(request.replicate);
-  const std::string sum = write_trace(
-      request.output, trace, provenance(experiment.to_json(), command, line.kernels->isa, inputs), {});
-  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
-  if (agrees(sweep, result, result.run(cell, request.replicate), trace)) return kDone;
-  print_origin(stored, sweep, experiment);
+  const std::size_t run = result.run(cell, request.replicate);
+  const Replay replay = replay_run(stored, sweep, run, options, request.output);
+  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), replay.trace.length(),
+              replay.digest.c_str());
+  if (agrees(sweep, result, run, replay.trace)) return kDone;
+  print_origin(stored, sweep, replay.experiment);
   return kCheckFailed;
 }
 

@@ -1,0 +1,173 @@
+#include "runners/scorecard/contest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "core/input_error.h"
+#include "runners/json_parameters.h"
+#include "runners/stored.h"
+
+namespace remote_touch {
+
+namespace {
+
+Json read_object(const std::string& json, const std::string& label,
+                 std::initializer_list<const char*> parts) {
+  Json object = parse_json(json, label);
+  if (!object.is_object()) throw InputError(label, "not an object; allowed {...}");
+  std::string known;
+  for (const char* part : parts) known.append(known.empty() ? "" : ", ").append(part);
+  for (const auto& item : object.items())
+    if (std::find(parts.begin(), parts.end(), item.key()) == parts.end())
+      throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
+  return object;
+}
+
+std::string text_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_string())
+    throw InputError(label + ": " + part, "missing; allowed a text");
+  return found->get<std::string>();
+}
+
+std::string object_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_object())
+    throw InputError(label + ": " + part, "missing; allowed {...}");
+  return found->dump();
+}
+
+Better better_of(const Json& word, const std::string& label) {
+  if (word == "larger") return Better::larger;
+  if (word == "smaller") return Better::smaller;
+  if (word == "near_zero") return Better::near_zero;
+  if (word == "reported") return Better::reported;
+  throw InputError(label + " = " + word.dump(), "allowed larger, smaller, near_zero, reported");
+}
+
+Bound bound_of(const Json& json, const std::string& label) {
+  Bound bound;
+  read_parameters(json,
+                  {{"measure", &bound.measure, 0, 0, "what is bounded"},
+                   {"at_least", &bound.at_least, -1e12, 1e12, "lower end"},
+                   {"at_most", &bound.at_most, -1e12, 1e12, "upper end"}},
+                  label, false);
+  return bound;
+}
+
+// Of data/, or of a table in a test.
+template <class Item, class Read>
+std::vector<Item> chosen(std::span<const StoredText> stored, const std::vector<std::string>& names,
+                         const char* kind, Read&& read) {
+  std::string known;
+  for (const StoredText& text : stored) known.append(known.empty() ? "" : ", ").append(text.name);
+  std::vector<Item> items;
+  std::set<std::string> taken;
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(stored.begin(), stored.end(), [&](const StoredText& text) { return name == text.name; });
+    if (found == stored.end()) throw InputError(std::string(kind) + " " + name, "unknown; allowed " + known);
+    if (!taken.insert(name).second)
+      throw InputError(std::string(kind) + " " + name, "comes twice; allowed once");
+    items.push_back(read(name, found->json));
+  }
+  if (!names.empty()) return items;
+  for (const StoredText& text : stored) items.push_back(read(text.name, text.json));
+  return items;
+}
+
+// The measures of a scene's sweep: those of its bounds, those it names, and what a renderer did in every
+// tick.
+std::vector<std::string> measured(const ContestScene& scene) {
+  std::vector<std::string> names;
+  const auto add = [&names](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Bound& bound : scene.success) add(bound.measure);
+  for (const ContestScene::Judged& judged : scene.measures) add(judged.measure);
+  add("mean_steps"), add("non_finite_share");
+  return names;
+}
+
+}  // namespace
+
+const std::vector<double>& scorecard_noise_m() {
+  static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
+  return levels;
+}
+
+Contender read_contender(const std::string& name, const std::string& json) {
+  const std::string label = "contender " + name;
+  const Json object = read_object(json, label, {"title", "renderer"});
+  return {name, text_of(object, "title", label), object_of(object, "renderer", label)};
+}
+
+ContestScene read_contest_scene(const std::string& name, const std::string& json) {
+  const std::string label = "scene " + name;
+  const Json object = read_object(json, label, {"title", "experiment", "noise", "measures", "success"});
+  ContestScene scene{
+      name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
+  if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
+  const Json measures = parse_json(object_of(object, "measures", label), label);
+  for (const auto& item : measures.items())
+    scene.measures.push_back({item.key(), better_of(item.value(), label + ": measures." + item.key())});
+  const std::string rule = label + ": success";
+  const Json success = read_object(object_of(object, "success", label), rule, {"meaning", "bounds"});
+  scene.meaning = text_of(success, "meaning", rule);
+  const auto bounds = success.find("bounds");
+  if (bounds == success.end() || !bounds->is_array() || bounds->empty())
+    throw InputError(rule + ".bounds", "missing; allowed a list of {\"measure\", \"at_least\", \"at_most\"}");
+  for (const Json& bound : *bounds) scene.success.push_back(bound_of(bound, rule + ".bounds"));
+  return scene;
+}
+
+Sweep ContestScene::sweep(const Contender& contender, int replicates) const {
+  const std::string label = "scene " + name + " with " + contender.name;
+  Json run = parse_json(experiment, label);
+  if (run.contains("renderer"))
+    throw InputError("scene " + name + ": experiment.renderer", "set; allowed none, contenders bring it");
+  run["renderer"] = parse_json(contender.renderer, label);
+  // A sweep needs an axis: where the scene has its own noise it is the seed, with the one value that is the
+  // default of all experiments.
+  const bool own_noise = noise.empty();
+  const Json levels = own_noise ? Json::array({1}) : Json(scorecard_noise_m());
+  return Sweep::from_json(Json{{"title", name + " with " + contender.name + ": " + title},
+                               {"experiment", run},
+                               {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
+                               {"replicates", replicates},
+                               {"measures", measured(*this)}}
+                              .dump(),
+                          label);
+}
+
+std::string configuration(const std::vector<Contender>& contenders, const std::vector<ContestScene>& scenes,
+                          int replicates) {
+  Json all = {{"replicates", replicates}, {"noise_sigma_m", scorecard_noise_m()}};
+  for (const Contender& contender : contenders)
+    all["contenders"][contender.name] = parse_json(contender.renderer, contender.name);
+  for (const ContestScene& scene : scenes) {
+    Json& json = all["scenes"][scene.name];
+    json["experiment"] = parse_json(scene.experiment, scene.name);
+    if (!scene.noise.empty()) json["noise"] = scene.noise;
+    for (const Bound& bound : scene.success) {
+      Json limits = {{"measure", bound.measure}};
+      if (std::isfinite(bound.at_least)) limits["at_least"] = bound.at_least;
+      if (std::isfinite(bound.at_most)) limits["at_most"] = bound.at_most;
+      json["success"].push_back(limits);
+    }
+  }
+  return all.dump();
+}
+
+std::vector<Contender> chosen_contenders(const std::vector<std::string>& names) {
+  return chosen<Contender>(stored_contenders(), names, "contender", read_contender);
+}
+
+std::vector<ContestScene> chosen_scenes(const std::vector<std::string>& names) {
+  return chosen<ContestScene>(stored_scenes(), names, "scene", read_contest_scene);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,31 @@
+// What renderers cost: wall clock of ticks and frames on this machine. Not the same twice, so kept apart from
+// all results.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/scorecard/contest_run.h"
+
+namespace remote_touch {
+
+struct Cost {
+  std::string scene, contender;
+  double tick_s = 0;   // mean of a tick
+  double frame_s = 0;  // mean of taking a frame; NaN without any
+};
+
+// One run on one thread, at the noise level of 0.6 r_c where there are levels: the faster of two.
+Cost measured_cost(const ContestSweep& sweep, const std::string& scene, const std::string& contender,
+                   const Kernels& kernels, const std::atomic<bool>* stop);
+
+// A JSON file beside the results, so that the page of a finished scorecard stays as it is. Empty for a file
+// that is not there or is none.
+void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs);
+std::vector<Cost> read_costs(const std::filesystem::path& file);
+const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& contender);
+
+}  // namespace remote_touch

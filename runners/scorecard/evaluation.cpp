@@ -1,0 +1,78 @@
+#include "runners/scorecard/evaluation.h"
+
+#include <omp.h>
+
+#include "runners/provenance.h"
+#include "runners/scorecard/passivity.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::vector<StoredSweep> read_all(const std::vector<ContestSweep>& sweeps) {
+  std::vector<StoredSweep> stored;
+  for (const ContestSweep& sweep : sweeps) stored.push_back(read_sweep(sweep.file));
+  return stored;
+}
+
+SceneScore score_of(const ContestScene& scene, const std::vector<StoredSweep>& stored) {
+  SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}};
+  for (const ContestScene::Judged& judged : scene.measures)
+    rules.measures.emplace_back(judged.measure, judged.better);
+  std::vector<SweepResult> results;
+  for (const StoredSweep& one : stored) results.push_back(one.result);
+  constexpr std::uint64_t kBootstrapKey = 1;
+  return score(rules, results, scene.noise.empty(), kBootstrapKey);
+}
+
+Scorecard empty_card(const std::vector<Contender>& contenders) {
+  Scorecard card;
+  for (const Contender& contender : contenders)
+    card.contenders.push_back(contender.name), card.contender_titles.push_back(contender.title);
+  return card;
+}
+
+// Costs that an earlier call measured stay as they are.
+std::vector<Cost> costs_of(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+                           const std::filesystem::path& file) {
+  std::vector<Cost> costs = read_costs(file);
+  bool is_new = false;
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  for (const ScenePlan& one : plan.scenes)
+    for (std::size_t c = 0; c < one.sweeps.size(); ++c) {
+      const std::string& contender = plan.contest.contenders[c].name;
+      if (find_cost(costs, one.scene.name, contender)) continue;
+      costs.push_back(measured_cost(one.sweeps[c], one.scene.name, contender, kernels, stop));
+      is_new = true;
+    }
+  omp_set_num_threads(threads);
+  if (is_new) write_costs(file, costs);
+  return costs;
+}
+
+}  // namespace
+
+ScorecardPage evaluate(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+                       const std::function<void(std::size_t, std::size_t)>& progress) {
+  const std::filesystem::path& folder = plan.contest.folder;
+  ScorecardPage page{
+      empty_card(plan.contest.contenders), plan.contest.replicates, {}, plan.skipped, {}, {}, {}};
+  for (const ScenePlan& one : plan.scenes) {
+    progress(page.card.scenes.size(), plan.scenes.size());
+    const std::vector<StoredSweep> stored = read_all(one.sweeps);
+    page.card.scenes.push_back(score_of(one.scene, stored));
+    page.failures.emplace_back();
+    for (std::size_t c = 0; c < stored.size(); ++c)
+      page.failures.back().push_back(
+          trace_failure(one.sweeps[c], stored[c], one.scene.success, folder, kernels, stop));
+    if (one.scene.name != kPassivityScene) continue;
+    page.audit = empty_card(plan.laws);
+    page.audit->scenes.push_back(score_of(one.scene, read_all(plan.audit)));
+  }
+  page.costs = costs_of(plan, kernels, stop, folder / "costs.json");
+  page.origin = "remote-touch " + version();
+  return page;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,28 @@
+// A typical failure of each contender in each scene, run again as a full trace.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/kernels.h"
+#include "runners/scorecard/contest_run.h"
+
+namespace remote_touch {
+
+struct FailureTrace {
+  std::size_t level = 0;  // of noise: the lowest with a failure
+  int replicate = 0;
+  std::string file;     // from the scorecard's folder
+  std::string command;  // to be given in that folder
+};
+
+// Of the failures at the lowest noise level that has some, the one in the middle, replayed into
+// FOLDER/traces/NAME.h5 unless it is there. None where every run succeeded.
+std::optional<FailureTrace> trace_failure(const ContestSweep& sweep, const StoredSweep& stored,
+                                          const std::vector<Bound>& success,
+                                          const std::filesystem::path& folder, const Kernels& kernels,
+                                          const std::atomic<bool>* stop);
+
+}  // namespace remote_touch

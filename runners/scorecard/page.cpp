@@ -1,0 +1,132 @@
+#include "runners/scorecard/page.h"
+
+#include <string>
+
+#include "runners/scorecard/noise_plot.h"
+#include "runners/scorecard/page_tables.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kStyle = R"(
+body{font:15px/1.4 system-ui,sans-serif;max-width:1250px;margin:1.5em auto;padding:0 1em;color:#222}
+h2{margin:1.6em 0 .2em;border-top:1px solid #ddd;padding-top:.6em}
+table{border-collapse:collapse;margin:.5em 0;font-size:13px}
+th,td{border:1px solid #ddd;padding:2px 7px;text-align:right;font-weight:normal;vertical-align:top}
+th.name{text-align:left;white-space:nowrap}td.left{text-align:left}
+small{color:#777}code{font-size:11px}
+i{display:inline-block;width:10px;height:10px;border-radius:5px;margin-right:5px}
+td.best{background:#c8ecd2;font-weight:bold}td.worst{background:#f6cdc6}
+td.all{background:#eaf7ee}td.none{background:#fbe9e6}
+.scene{display:flex;flex-wrap:wrap;gap:0 1.5em;align-items:flex-start}
+svg{width:420px;height:190px;font-size:11px}svg text{fill:#555}.grid{stroke:#e4e4e4;fill:none}
+.line{fill:none;stroke-width:1.4;opacity:.75}.bar{stroke-width:1;opacity:.55;fill:none}
+)";
+
+std::string colours(std::size_t contenders) {
+  std::string css;
+  for (std::size_t c = 0; c < contenders; ++c) {
+    const std::string n = std::to_string(c), colour = contender_colour(c);
+    css += ".c" + n + " path{stroke:" + colour + "}.c" + n + " circle{fill:" + colour + "}.k" + n +
+           "{background:" + colour + "}\n";
+  }
+  return css;
+}
+
+// What has to be known to read the tables.
+std::string how_to_read(const ScorecardPage& page) {
+  return "<p>Each contender ran each scene with " + std::to_string(page.replicates) +
+         " seeds at each noise level, in units of the contact radius r_c = 5 mm (own: the scene has its own "
+         "noise). Noise is keyed by level and seed, not by contender: all met the same points in the same "
+         "frames. Lines are shares of successful runs with Wilson's 95 % intervals.</p>"
+         "<p><b>Success.</b> A proxy that is a ball rests r_c above a surface, one that is a point lies on it, "
+         "and with noise a little below. So that neither is favoured, a surface counts as held down to 0.5 r_c "
+         "below it; popped through means lost to the other side. Direct rendering has no proxy: its place is "
+         "the HIP itself, and where a scene presses deeper than 0.5 r_c it is lost. What is held has to be felt too: "
+         "a force in the last 0.1 s.</p>"
+         "<p><b>Best and worst</b> are marked only where the paired difference to the next contender, run by "
+         "run over all noise levels, has a 95 % interval without zero (shares: Agresti and Min; else the "
+         "percentile bootstrap with fixed keys); otherwise there is no difference that these runs show. The "
+         "intervals are not adjusted for how many comparisons there are. Means of measures are over the runs "
+         "that have a number: who is lost early has few, so read them beside the successes.</p>";
+}
+
+std::string scene_section(const ScorecardPage& page, std::size_t number) {
+  const SceneScore& scene = page.card.scenes[number];
+  return "<h2 id=\"" + escaped(scene.name) + "\">" + escaped(scene.name) + "</h2>\n<p>" +
+         escaped(scene.title) + ".<br>Success is " + escaped(scene.meaning) + ". <b>" +
+         escaped(verdict(page.card, scene)) + "</b></p>\n<div class=\"scene\">" +
+         noise_plot(scene, page.card.contenders) + "<div>" + measure_table(page, number) + "</div></div>\n" +
+         success_table(page, number) + level_tables(page, number) + "\n";
+}
+
+std::string costs_section(const ScorecardPage& page) {
+  if (page.costs.empty() || page.card.scenes.empty()) return "";
+  return "<h2 id=\"costs\">Costs</h2><p>Wall clock on the machine that made this page, one thread, one run of "
+         "each scene at 0.6 r_c, medians over the scenes. Not the same twice: in costs.json, outside of every "
+         "digest. Ticks include making the noise of the points that a renderer asks for. Proxy steps per tick "
+         "are the measure mean_steps of the sweeps in runs/.</p>" +
+         cost_table(page);
+}
+
+std::string audit_section(const ScorecardPage& page) {
+  if (!page.audit) return "";
+  return "<h2 id=\"audit\">Passivity</h2><p>A hand, a mass that a spring and a damper draw along closed cycles, "
+         "presses and slides on a plane at rest and is moved by the rendered force. In each cell the energy "
+         "that the hand got from the renderer in a cycle, and small from one frame update to the next while "
+         "there is force, in mJ: below 0 the renderer took energy, as one does, too, that loses the surface and is "
+         "pressed into it again. Red: above 0 for certain, green: below it. "
+         "v_plus and v_none are the sign of the velocity term of (4.15), minus where nothing is said; k_d3 is "
+         "a damper of 3 Ns/m in (4.16), and k_d_minus its printed sign.</p>" +
+         audit_table(*page.audit);
+}
+
+std::string skipped_section(const ScorecardPage& page) {
+  std::string text;
+  for (const auto& [name, why] : page.skipped)
+    text +=
+        "<p id=\"" + escaped(name) + "\"><b>Skipped: " + escaped(name) + "</b>, " + escaped(why) + "</p>\n";
+  return text;
+}
+
+std::string contents(const ScorecardPage& page) {
+  std::string text = "<p>";
+  for (const SceneScore& scene : page.card.scenes)
+    text += "<a href=\"#" + escaped(scene.name) + "\">" + escaped(scene.name) + "</a> ";
+  if (page.audit) text += "<a href=\"#audit\">passivity audit</a> ";
+  return text + "<a href=\"#costs\">costs</a></p>";
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (c == '"')
+      safe += "&quot;";
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+std::string html(const ScorecardPage& page) {
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Scorecard</title><style>" +
+      std::string(kStyle) + colours(page.card.contenders.size()) +
+      "</style></head><body>\n<h1>Scorecard of 3-DOF renderers</h1>\n" + how_to_read(page) + "\n";
+  text += skipped_section(page) + overview_table(page) + "\n" + contents(page) + "\n";
+  for (std::size_t i = 0; i < page.card.scenes.size(); ++i) text += scene_section(page, i);
+  text += audit_section(page) + "\n" + costs_section(page) + "\n<p><small>" + escaped(page.origin) +
+          "; everything simulated. Numbers: scorecard.h5; every run: runs/.</small></p></body></html>\n";
+  return text;
+}
+
+}  // namespace remote_touch

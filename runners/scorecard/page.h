@@ -1,0 +1,31 @@
+// The scorecard as one HTML page that needs nothing else: no scripts, no outside resources.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/scorecard.h"
+#include "runners/scorecard/costs.h"
+#include "runners/scorecard/failure_traces.h"
+
+namespace remote_touch {
+
+struct ScorecardPage {
+  Scorecard card;
+  int replicates = 0;
+  std::string origin;  // program and commit
+  // Scenes that could not be run here, and why.
+  std::vector<std::pair<std::string, std::string>> skipped;
+  std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and contender
+  std::vector<Cost> costs;
+  // The passivity scene with every force law, where it was run; its contenders are the laws.
+  std::optional<Scorecard> audit;
+};
+
+std::string html(const ScorecardPage& page);
+
+// The text with what HTML reads otherwise written out.
+std::string escaped(const std::string& text);
+
+}  // namespace remote_touch
