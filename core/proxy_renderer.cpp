@@ -21,6 +21,10 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
       velocity_(parameters.longest_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
 
+bool ProxyRenderer::is_newer(const Frame& frame) const {
+  return frame_index_ < 0 || frame.captured_s > frame_captured_s_;
+}
+
 // Whether the frame is newer than all before.
 bool ProxyRenderer::take(const Frame& frame) {
   if (!is_newer(frame)) {

@@ -32,7 +32,7 @@ class ProxyRenderer final : public Renderer {
   void carry(const Vec3& way_m);
   // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
-  bool is_newer(const Frame& frame) const { return frame_index_ < 0 || frame.captured_s > frame_captured_s_; }
+  bool is_newer(const Frame& frame) const;
   const Vec3& proxy_W() const { return proxy_W_; }
   bool in_contact() const { return in_contact_; }
   RenderOutput step(const DeviceState& device, double time_s) override;
