@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "core/kernels.h"
 #include "core/vector.h"
@@ -19,9 +20,12 @@ struct Ball {
 template <class T>
 class Room {
  public:
-  // What was stored is lost when the room grows.
-  void grow(std::size_t size) {
-    if (size > size_) numbers_ = std::make_unique_for_overwrite<T[]>(size), size_ = size;
+  // When the room grows the first ones that are to be kept stay, what else was stored is lost.
+  void grow(std::size_t size, std::size_t kept = 0) {
+    if (size <= size_) return;
+    auto more = std::make_unique_for_overwrite<T[]>(size);
+    for (std::size_t i = 0; i < kept; ++i) more[i] = numbers_[i];
+    numbers_ = std::move(more), size_ = size;
   }
   T* data() const { return numbers_.get(); }
   T& operator[](std::size_t i) const { return numbers_[i]; }

@@ -6,7 +6,10 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
+
+#include "tests/scenes.h"
 
 namespace remote_touch {
 namespace {
@@ -17,14 +20,15 @@ using Surface = double (*)(double u, double v);
 PatchPoints sampled(Surface surface, double sigma, unsigned seed, double spacing = 0.3) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;  // test data only: its bits need not be the same everywhere
-  PatchPoints points;
+  PatchPoints points(scenes::kernels());
+  points.reserve(4000);
   for (double v = -8.1; v <= 8.1; v += spacing)
     for (double u = -8.1; u <= 8.1; u += spacing) {
       const PatchPlace p{PatchFrame::rounded(u + sigma * normal(random)),
                          PatchFrame::rounded(v + sigma * normal(random)),
                          PatchFrame::rounded(surface(u, v) + sigma * normal(random))};
       if (!(p.u * p.u + p.v * p.v < 64)) continue;
-      points.place.push_back(p), points.member.push_back(1);
+      points.add(p, true);
     }
   return points;
 }
@@ -100,17 +104,22 @@ TEST(HeightFit, NoiseIsToldFromEdges) {
 
 // All sums are exact.
 TEST(HeightFit, TheOrderOfThePointsDoesNotMatter) {
-  PatchPoints points = sampled(ball, 1, 5);
+  const PatchPoints points = sampled(ball, 1, 5);
   const HeightMap one = fitted(points, 1);
   std::mt19937 random(1);
-  std::shuffle(points.place.begin(), points.place.end(), random);
-  const HeightMap other = fitted(points, 1);
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), random);
+  PatchPoints shuffled(scenes::kernels());
+  shuffled.reserve(points.size());
+  for (const std::size_t i : order) shuffled.add(points.place(i), true);
+  const HeightMap other = fitted(shuffled, 1);
   for (double u = -7; u <= 7; u += 0.5) EXPECT_EQ(one.height(u, 0.3 * u), other.height(u, 0.3 * u));
 }
 
 TEST(HeightFit, WhereThereAreNoPointsNothingIsKnown) {
   PatchPoints points = sampled(tilted, 0, 1);
-  for (std::size_t i = 0; i < points.size(); ++i) points.member[i] = points.place[i].u < 0;
+  for (std::size_t i = 0; i < points.size(); ++i) points.set_member(i, points.place(i).u < 0);
   HeightMap map = fitted(points, 0);
   EXPECT_TRUE(map.covers(-3, 0));
   EXPECT_FALSE(map.covers(2, 0));
@@ -131,8 +140,10 @@ TEST(HeightMap, MovesAsAPlane) {
 TEST(Trend, IsTheQuadraticOfLeastSquares) {
   const PatchPoints points = sampled(ball, 0.3, 11);
   std::vector<PatchPlace> near;
-  for (const PatchPlace& p : points.place)
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PatchPlace p = points.place(i);
     if (p.u * p.u + p.v * p.v <= kTrendRadius * kTrendRadius) near.push_back(p);
+  }
   Eigen::MatrixXd a(static_cast<Eigen::Index>(near.size()), 6);
   Eigen::VectorXd b(a.rows());
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
@@ -155,8 +166,9 @@ TEST(Trend, NoiseHasNoCurvature) {
 }
 
 TEST(Trend, FewPointsHaveNone) {
-  PatchPoints points;
-  for (int i = 0; i < 20; ++i) points.place.push_back({0.1 * i, 0.01 * i * i, 1}), points.member.push_back(1);
+  PatchPoints points(scenes::kernels());
+  points.reserve(20);
+  for (int i = 0; i < 20; ++i) points.add({0.1 * i, 0.01 * i * i, 1}, true);
   for (const double c : fit_trend(points, 0.01).c) EXPECT_EQ(c, 0);
 }
 

@@ -36,7 +36,8 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   gathered.reserve(frame->size(), true, true);
   frame->gather(region.around(), scenes::kernels(), gathered);
   gathered.finish();
-  PatchPoints points;
+  PatchPoints points(scenes::kernels());
+  points.reserve(gathered.size());
   points.take(gathered, region);
   ASSERT_GT(points.size(), 100u);
   SheetSearch shown;
@@ -44,7 +45,7 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   const auto room = std::make_shared<GatheredPoints>();
   room->reserve(frame->size(), true, true);
   shown.start(region, frame, room);
-  for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place[i], gathered, points.source[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place(i), gathered, points.source(i));
   shown.finish();
   for (int i = 0; i < 200; ++i) {
     // Radii between two points' distances: shown places are rounded to a micrometre.
@@ -61,7 +62,7 @@ TEST(SheetSearch, InsideTheRegionOnlyWhatWasAddedIsThere) {
   const std::shared_ptr<const NeighbourSearch> frame = make_search(scenes::flat_grid(100));
   const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), kUnit), 8, 4};
   const auto room = std::make_shared<GatheredPoints>();
-  room->reserve(frame->size(), false, false);
+  room->reserve(frame->size(), true, true);
   SheetSearch shown;
   shown.reserve(frame->size(), false, false);
   shown.start(region, frame, room);
@@ -83,10 +84,9 @@ TEST(PatchFrame, PlacesComeBack) {
 }
 
 TEST(StrayPoints, ASecondSheetIsASurfaceAndScatteredPointsAreNot) {
-  PatchPoints points;
-  const auto add = [&](double u, double v, double h, bool member) {
-    points.place.push_back({u, v, h}), points.member.push_back(member);
-  };
+  PatchPoints points(scenes::kernels());
+  points.reserve(4000);
+  const auto add = [&](double u, double v, double h, bool member) { points.add({u, v, h}, member); };
   for (double v = -6; v < 6; v += 0.3)
     for (double u = -6; u < 6; u += 0.3) {
       add(u, v, 0, true);

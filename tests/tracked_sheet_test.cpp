@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "analysis/contact_measures.h"
 #include "analysis/measures.h"
+#include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/simulation.h"
 
 namespace remote_touch {
@@ -132,6 +134,51 @@ TEST(TrackedSheet, FixturesKeepTheirDistance) {
     EXPECT_NEAR(trace.signed_distance_m.back(), 0.025, 0.002) << sigma;
     EXPECT_GT(trace.force(trace.length() - 1).y(), 5) << sigma;
   }
+}
+
+// The frame without points has no fixtures either: the proxy stays where the fixture held it.
+TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
+  const Trace trace =
+      run("vanishing-plane",
+          {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_frame=-1",
+           "scenario.empty_frame=20", setting("scenario.noise_sigma_m", 0.3 * kRc), "duration_s=1",
+           R"(trajectory={"name": "press", "start_m": [0, 0.06, 0], "depth_m": -0.01, "per_frame": false})"});
+  double least = 1, most = 0, least_force = 1e9;
+  for (std::size_t i = 600; i < trace.length(); ++i) {
+    least = std::min(least, trace.signed_distance_m[i]), most = std::max(most, trace.signed_distance_m[i]);
+    least_force = std::min(least_force, trace.force(i).y());
+  }
+  EXPECT_NEAR(least, 0.025, 0.002);
+  EXPECT_NEAR(most, 0.025, 0.002);
+  EXPECT_GT(least_force, 5);
+}
+
+// The proxy among the points of a noisy plane around a place, after 20 frames.
+Vec3 resting_place(const Vec3& around) {
+  TrackedSheetRenderer renderer({}, 1000, kernels_for(best_isa()));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> off(-0.5, 0.5);
+  const auto coarse = [](double x) { return std::round(x * 0x1p24) * 0x1p-24; };  // sums are exact
+  RenderOutput out;
+  for (int frame = 0; frame < 20; ++frame) {
+    PointCloud cloud;
+    for (int i = 0; i < 60 * 60; ++i)
+      cloud.append(around + Vec3(coarse(0.0015 * (i % 60 - 30) + 0.002 * off(random)),
+                                 coarse(0.004 * off(random)),
+                                 coarse(0.0015 * (i / 60 - 30) + 0.002 * off(random))));
+    renderer.reserve(cloud.size());
+    renderer.on_frame({frame, frame / 30.0, frame / 30.0, make_search(cloud)});
+    for (int tick = 0; tick < 33; ++tick)
+      out = renderer.step({around + Vec3(0, frame < 2 ? 0.01 : -0.005, 0)}, (frame + 0.03 * tick) / 30);
+  }
+  return out.proxy_W - around;
+}
+
+TEST(TrackedSheet, WhereTheWorldHasItsOriginDoesNotMatter) {
+  const Vec3 here = resting_place(Vec3::Zero());
+  EXPECT_NEAR(here.y(), kRc, 0.2 * kRc);
+  for (const Vec3& there : {Vec3(0.03125, 0, 0.015625), Vec3(0.5, 0.25, -1)})
+    EXPECT_LT((resting_place(there) - here).norm(), 1e-9) << there.transpose();
 }
 
 }  // namespace

@@ -31,6 +31,14 @@
   std::size_t deepest_region(const NearRegions& near, std::size_t count);                                    \
   LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,              \
                                   double motion, double alike, double most);                                 \
+  std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, const PatchColumns& to);      \
+  void heights_above(const PatchColumns& places, std::size_t count, const HeightGrid& grid, double* above);  \
+  PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const double* height,             \
+                            const NearPlane& near);                                                          \
+  void height_bins(const PatchColumns& places, std::size_t count, const double* height, double u, double v,  \
+                   double reach, const HeightBins& bins, std::int32_t* bin);                                 \
+  QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* member, std::size_t count, \
+                                  double radius);                                                            \
   void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out);                           \
   void filter_depth(const RowBand& band, const PointPlanes& in, float* change);                              \
   void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2], \

@@ -18,10 +18,7 @@ class RivalRenderer : public Renderer {
  protected:
   // reach: points as near as that matter to the method, m.
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
-      : near_(reach_m, kernels),
-        kernels_(kernels),
-        reach_m_(reach_m),
-        stiffness_N_per_m_(stiffness_N_per_m) {}
+      : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 
   // The newest frame, when it is taken. Returns false where the method can do nothing with it: until the next
   // one the answers are those without a frame.
@@ -40,7 +37,7 @@ class RivalRenderer : public Renderer {
 
   Neighbourhood near_;
   const Kernels& kernels_;
-  const double reach_m_, stiffness_N_per_m_;
+  const double stiffness_N_per_m_;
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
 

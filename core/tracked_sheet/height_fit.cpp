@@ -27,8 +27,8 @@ void HeightFit::take(const PatchPoints& points, const Trend& trend) {
   trend_ = trend;
   for (Sums& s : sums_) s.fill(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points.member[i]) continue;
-    const PatchPlace& p = points.place[i];
+    if (!points.is_member(i)) continue;
+    const PatchPlace p = points.place(i);
     const int cu = static_cast<int>((p.u + kHalf) / kCell), cv = static_cast<int>((p.v + kHalf) / kCell);
     Sums& s = sums_[static_cast<std::size_t>((cv + 1) * kCorners + cu + 1)];
     const double h = PatchFrame::rounded(p.h - trend.height(p.u, p.v));

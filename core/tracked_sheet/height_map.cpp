@@ -13,23 +13,33 @@ const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
   return node(along(u), along(v));
 }
 
-// A corner between nodes gets the mean of their planes.
+// A corner between nodes gets the mean of their planes, of those that are known.
 void HeightMap::fill_cells() {
-  for (int j = 0; j < kCorners; ++j)
-    for (int i = 0; i < kCorners; ++i) {
-      const double u = i * kCell - kHalf, v = j * kCell - kHalf;
-      double sum = 0;
-      int count = 0;
-      for (int b = j / 2; b <= (j + 1) / 2; ++b)
-        for (int a = i / 2; a <= (i + 1) / 2; ++a) {
-          const Node& n = node(a, b);
-          if (!n.known) continue;
-          sum += n.height + n.slope_u * (u - node_at(a)) + n.slope_v * (v - node_at(b));
-          ++count;
-        }
-      corner_[static_cast<std::size_t>(j * kCorners + i)] =
-          count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  struct Mean {
+    double sum = 0, count = 0;
+    void add(const Node& n, double du, double dv) {
+      const double height = n.height + n.slope_u * du + n.slope_v * dv;
+      sum += n.known ? height : 0, count += n.known ? 1 : 0;
     }
+    double value() const { return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN(); }
+  };
+  constexpr double kUp = kCell, kDown = -kCell;  // from the nodes before and behind
+  for (int j = 0; j < kCorners; ++j) {
+    const bool between = j % 2 != 0;
+    const Node *low = &node(0, j / 2), *high = &node(0, (j + 1) / 2);
+    double* corner = &corner_[static_cast<std::size_t>(j * kCorners)];
+    for (int a = 0; a < kNodes; ++a) {
+      Mean at;
+      at.add(low[a], 0, between ? kUp : 0);
+      if (between) at.add(high[a], 0, kDown);
+      corner[2 * a] = at.value();
+      if (a + 1 == kNodes) break;
+      Mean beside;
+      beside.add(low[a], kUp, between ? kUp : 0), beside.add(low[a + 1], kDown, between ? kUp : 0);
+      if (between) beside.add(high[a], kUp, kDown), beside.add(high[a + 1], kDown, kDown);
+      corner[2 * a + 1] = beside.value();
+    }
+  }
 }
 
 void HeightMap::set_plane(double height, double slope_u, double slope_v, double radius) {
@@ -78,8 +88,8 @@ void HeightMap::add_plane(double height, double slope_u, double slope_v) {
 }
 
 double HeightMap::height(double u, double v) const {
-  const double x = std::clamp((u + kHalf) / kCell, 0.0, kCells - 1e-9);
-  const double y = std::clamp((v + kHalf) / kCell, 0.0, kCells - 1e-9);
+  const double x = std::clamp((u + kHalf) / kCell, 0.0, kLast);
+  const double y = std::clamp((v + kHalf) / kCell, 0.0, kLast);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double fu = x - i, fv = y - j;
   const double* c = &corner_[static_cast<std::size_t>(j * kCorners + i)];

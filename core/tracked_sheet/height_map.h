@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/kernels.h"
 #include "core/tracked_sheet/patch_frame.h"
 
 namespace remote_touch {
@@ -40,6 +41,8 @@ class HeightMap {
 
   // NaN where the map knows nothing. Beyond its border: that of the nearest place on it.
   double height(double u, double v) const;
+  // The same, for kernels.
+  HeightGrid grid() const { return {corner_.data(), kCells, kHalf, 1 / kCell, kLast}; }
   // Of the cells; NaN likewise.
   struct Slopes {
     double u, v;
@@ -51,6 +54,7 @@ class HeightMap {
 
  private:
   static constexpr int kCorners = kCells + 1;
+  static constexpr double kLast = kCells - 1e-9;
   std::array<Node, kNodes * kNodes> nodes_;
   std::array<double, kCorners * kCorners> corner_;
 };

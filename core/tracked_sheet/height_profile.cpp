@@ -7,9 +7,13 @@ namespace remote_touch {
 
 void HeightProfile::clear(double half_range) {
   const int half = static_cast<int>(std::ceil(std::min(half_range, kLargestRange) / kBin));
-  bins_ = std::min(2 * half, static_cast<int>(count_.size()));
+  bins_ = std::min(2 * half, kMostBins);
   half_range_ = 0.5 * bins_ * kBin;
-  std::fill_n(count_.begin(), bins_, 0.0);
+  std::fill_n(count_.begin(), bins_ + 1, 0.0);
+}
+
+void HeightProfile::add_bins(const std::int32_t* bin, std::size_t number) {
+  for (std::size_t i = 0; i < number; ++i) count_[static_cast<std::size_t>(bin[i])] += 1;
 }
 
 double HeightProfile::most() const {
@@ -21,7 +25,8 @@ HeightProfile HeightProfile::smoothed(double sigma) const {
   HeightProfile result = *this;
   const int half = std::max(1, static_cast<int>(std::round(1.2 * sigma / kBin)));
   result.window_ = 1.5 * (2 * half + 1);
-  std::array<double, 1025> sums{};
+  std::array<double, kMostBins + 1> sums;
+  sums[0] = 0;
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < bins_; ++i)
       sums[static_cast<std::size_t>(i + 1)] = sums[static_cast<std::size_t>(i)] + result.count(i);

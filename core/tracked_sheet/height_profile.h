@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 namespace remote_touch {
 
@@ -17,6 +19,9 @@ class HeightProfile {
     const double bin = (height + half_range_) / kBin;
     if (bin >= 0 && bin < bins_) count_[static_cast<std::size_t>(bin)] += 1;  // NaN is neither
   }
+
+  // By numbers of bins; bins() is none.
+  void add_bins(const std::int32_t* bin, std::size_t number);
 
   int bins() const { return bins_; }
   double half_range() const { return half_range_; }
@@ -37,7 +42,8 @@ class HeightProfile {
   double half_range_ = 0;
   double window_ = 1;  // how many bins a count is the mean of
   int bins_ = 0;
-  std::array<double, 1024> count_{};
+  static constexpr int kMostBins = 1024;
+  std::array<double, kMostBins + 1> count_;  // of each bin, and behind the last of what is in none
 };
 
 }  // namespace remote_touch

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/kernels.h"
 #include "core/vector.h"
 
 namespace remote_touch {
@@ -33,11 +34,13 @@ class PatchFrame {
   Vec3 normal_W(double slope_u, double slope_v) const {
     return (n_W_ - slope_u * u_W_ - slope_v * v_W_).normalized();
   }
+  const Vec3& u_W() const { return u_W_; }
+  const Vec3& v_W() const { return v_W_; }
   double unit_m() const { return unit_m_; }
   void move_along_normal(double units) { origin_W_ += units * unit_m_ * n_W_; }
 
   // To a multiple of 2^-12, halves to even; x is below 2^39.
-  static double rounded(double x) { return (x + 0x1.8p40) - 0x1.8p40; }
+  static double rounded(double x) { return (x + kRoundsToPatchGrid) - kRoundsToPatchGrid; }
 
  private:
   Vec3 origin_W_ = Vec3::Zero(), n_W_ = Vec3::UnitY(), u_W_ = Vec3::UnitZ(), v_W_ = Vec3::UnitX();

@@ -1,17 +1,50 @@
 #include "core/tracked_sheet/patch_points.h"
 
+#include <algorithm>
+
 namespace remote_touch {
 
+void PatchPoints::reserve(std::size_t points) {
+  const std::size_t room = points + kLanes;  // the padding of gathered points is looked at too
+  for (Room<double>* column : {&u_, &v_, &h_, &residual_}) column->grow(room);
+  source_.grow(room), member_.grow(room), bin_.grow(room);
+}
+
 void PatchPoints::take(const GatheredPoints& gathered, const PatchRegion& region) {
-  place.clear(), source.clear();
-  const PointsView all = gathered.view();
-  for (std::size_t i = 0; i < gathered.size(); ++i) {
-    const PatchPlace p = region.frame.place(Vec3(all.x[i], all.y[i], all.z[i]));
-    if (!region.holds(p)) continue;  // nor where nothing was measured
-    place.push_back(p), source.push_back(static_cast<std::uint32_t>(i));
+  PatchAxes axes{};
+  const PatchFrame& frame = region.frame;
+  for (int k = 0; k < 3; ++k) {
+    axes.origin[k] = frame.origin_W()[k];
+    axes.u[k] = frame.u_W()[k], axes.v[k] = frame.v_W()[k], axes.n[k] = frame.normal_W()[k];
   }
-  member.assign(place.size(), 0);
-  residual.assign(place.size(), 0);
+  axes.unit_m = frame.unit_m(), axes.radius = region.radius, axes.half_height = region.half_height;
+  count_ = kernels_.points_of_patch(gathered.view(), axes, columns());
+  std::fill_n(member_.data(), count_, std::uint8_t{0});
+}
+
+void PatchPoints::add(const PatchPlace& place, bool is_member) {
+  u_[count_] = place.u, v_[count_] = place.v, h_[count_] = place.h;
+  member_[count_++] = is_member;
+}
+
+void PatchPoints::set_residuals(const HeightMap& map) {
+  kernels_.heights_above(columns(), count_, map.grid(), residual_.data());
+}
+
+HeightProfile PatchPoints::profile_near(const PatchPlace& place, double reach, double half_range) const {
+  HeightProfile profile(half_range);
+  const HeightBins bins{profile.half_range(), HeightProfile::kBin, profile.bins()};
+  kernels_.height_bins(columns(), count_, residual_.data(), place.u, place.v, reach, bins, bin_.data());
+  profile.add_bins(bin_.data(), count_);
+  return profile;
+}
+
+PlaneSums PatchPoints::sums_near(const NearPlane& plane) const {
+  return kernels_.sums_near_plane(columns(), count_, residual_.data(), plane);
+}
+
+QuadraticSums PatchPoints::sums_of_quadratic(double radius) const {
+  return kernels_.sums_of_quadratic(columns(), member_.data(), count_, radius);
 }
 
 }  // namespace remote_touch

@@ -3,26 +3,51 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "core/gathered_points.h"
+#include "core/tracked_sheet/height_map.h"
+#include "core/tracked_sheet/height_profile.h"
 #include "core/tracked_sheet/patch_region.h"
 
 namespace remote_touch {
 
 // Columns are allocated by reserve() alone.
-struct PatchPoints {
-  std::vector<PatchPlace> place;
-  std::vector<std::uint32_t> source;  // of each place, its row in the gathered points
-  std::vector<std::uint8_t> member;   // of the sheet
-  std::vector<double> residual;       // height above what the map predicts; NaN where it predicts nothing
-
-  void reserve(std::size_t points) {
-    place.reserve(points), source.reserve(points), member.reserve(points), residual.reserve(points);
-  }
-  std::size_t size() const { return place.size(); }
-  // Those of the region; no members yet.
+class PatchPoints {
+ public:
+  explicit PatchPoints(const Kernels& kernels) : kernels_(kernels) {}
+  void reserve(std::size_t points);
+  // The gathered points of a region; no members of the sheet yet. pre: reserve() for their frame.
   void take(const GatheredPoints& gathered, const PatchRegion& region);
+  // Or one after the other, as members or not; none of them has a source.
+  void clear() { count_ = 0; }
+  void add(const PatchPlace& place, bool is_member);
+  // How far each lies above what a map predicts; NaN where it predicts nothing.
+  void set_residuals(const HeightMap& map);
+
+  std::size_t size() const { return count_; }
+  PatchPlace place(std::size_t i) const { return {u_[i], v_[i], h_[i]}; }
+  // Its row in the gathered points.
+  std::uint32_t source(std::size_t i) const { return source_[i]; }
+  bool is_member(std::size_t i) const { return member_[i] != 0; }
+  void set_member(std::size_t i, bool member) { member_[i] = member; }
+  double residual(std::size_t i) const { return residual_[i]; }
+
+  // How many residuals, of points no farther than reach from a place along the patch, lie at which height.
+  HeightProfile profile_near(const PatchPlace& place, double reach, double half_range) const;
+  // Of the residuals near a plane.
+  PlaneSums sums_near(const NearPlane& plane) const;
+  // Of the members' heights.
+  QuadraticSums sums_of_quadratic(double radius) const;
+
+ private:
+  PatchColumns columns() const { return {u_.data(), v_.data(), h_.data(), source_.data()}; }
+
+  const Kernels& kernels_;
+  std::size_t count_ = 0;
+  Room<double> u_, v_, h_, residual_;
+  Room<std::uint32_t> source_;
+  Room<std::uint8_t> member_;
+  Room<std::int32_t> bin_;  // work of profile_near()
 };
 
 }  // namespace remote_touch

@@ -46,8 +46,10 @@ double profile_of_column(const PatchPoints& points, double half_range, HeightPro
   for (double radius = 2.5;; radius *= 1.4) {
     profile.clear(half_range);
     std::size_t count = 0;
-    for (const PatchPlace& p : points.place)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const PatchPlace p = points.place(i);
       if (p.u * p.u + p.v * p.v <= radius * radius) profile.add(p.h), ++count;
+    }
     if (count >= 30 || 1.4 * radius > HeightMap::kHalf) return count >= 3 ? radius : 0;
   }
 }
@@ -90,8 +92,8 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
     if (!std::isfinite(mode)) return {};
     const double top = mode + smooth.valley_from(mode, 1), bottom = mode - smooth.valley_from(mode, -1);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const PatchPlace& p = points.place[i];
-      points.member[i] = p.u * p.u + p.v * p.v <= radius * radius && p.h < top && p.h > bottom;
+      const PatchPlace p = points.place(i);
+      points.set_member(i, p.u * p.u + p.v * p.v <= radius * radius && p.h < top && p.h > bottom);
     }
     room.fit.take(points);
     const PlaneFit plane = room.fit.plane_around(0, 0, radius);

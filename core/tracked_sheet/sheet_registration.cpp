@@ -7,24 +7,12 @@ namespace remote_touch {
 
 namespace {
 
-bool is_near(const PatchPlace& p, const PatchPlace& proxy) {
-  const double du = p.u - proxy.u, dv = p.v - proxy.v;
-  return du * du + dv * dv <= kRegistrationReach * kRegistrationReach;
-}
-
 // The plane of least squares through the residuals that lie within reach of the one before.
 SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const SheetShift& before,
                    double reach) {
   constexpr double kSteepest = 0.5, kFewest = 12;
-  double n = 0, su = 0, sv = 0, se = 0, uu = 0, uv = 0, vv = 0, ue = 0, ve = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PatchPlace& p = points.place[i];
-    const double off = points.residual[i] - before.height - before.slope_u * p.u - before.slope_v * p.v;
-    if (!(std::abs(off) <= reach) || !is_near(p, proxy)) continue;
-    const double e = PatchFrame::rounded(points.residual[i]);
-    n += 1, su += p.u, sv += p.v, se += e;
-    uu += p.u * p.u, uv += p.u * p.v, vv += p.v * p.v, ue += p.u * e, ve += p.v * e;
-  }
+  const auto [n, su, sv, se, uu, uv, vv, ue, ve] = points.sums_near(
+      {proxy.u, proxy.v, kRegistrationReach, before.height, before.slope_u, before.slope_v, reach});
   if (n < 3) return before;
   const double mu = su / n, mv = sv / n, me = se / n;
   const double cuu = uu - n * mu * mu, cuv = uv - n * mu * mv, cvv = vv - n * mv * mv;
@@ -39,21 +27,10 @@ SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const She
 
 }  // namespace
 
-void set_residuals(PatchPoints& points, const HeightMap& map) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points.residual[i] = points.place[i].h - map.height(points.place[i].u, points.place[i].v);
-}
-
-HeightProfile profile_near(const PatchPoints& points, const PatchPlace& proxy, double half_range) {
-  HeightProfile profile(half_range);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (is_near(points.place[i], proxy)) profile.add(points.residual[i]);
-  return profile;
-}
-
 SheetShift register_sheet(const PatchPoints& points, const HeightProfile& profile, const PatchPlace& proxy,
                           double gate, double half_range, double sigma) {
-  const HeightProfile now = profile_near(points, proxy, half_range).smoothed(std::max(0.3, sigma));
+  const HeightProfile now =
+      points.profile_near(proxy, kRegistrationReach, half_range).smoothed(std::max(0.3, sigma));
   SheetShift shift{profile.shift_of(now, gate), 0, 0};
   for (const double narrow : {1.0, 0.5, 0.5})
     shift = refined(points, proxy, shift, std::max(narrow, 3 * sigma));

@@ -15,14 +15,8 @@ struct SheetShift {
 // Points farther than this from the proxy, along the patch, have no part in finding the shift.
 inline constexpr double kRegistrationReach = 6;
 
-// What the map predicts, taken from every point's height. Makes points.residual.
-void set_residuals(PatchPoints& points, const HeightMap& map);
-
-// Residuals near the proxy.
-HeightProfile profile_near(const PatchPoints& points, const PatchPlace& proxy, double half_range);
-
 // The profile tells the shift within the gate, a robust plane through the residuals the rest. profile: of the
-// frame before. After set_residuals().
+// frame before. After points.set_residuals().
 SheetShift register_sheet(const PatchPoints& points, const HeightProfile& profile, const PatchPlace& proxy,
                           double gate, double half_range, double sigma);
 

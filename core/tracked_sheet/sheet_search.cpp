@@ -7,9 +7,10 @@ namespace remote_touch {
 
 void SheetSearch::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
   for (Columns* c : {&added_, &sorted_}) {
-    c->x.grow(points), c->y.grow(points), c->z.grow(points), c->index.grow(points);
-    if (with_radius) c->radius.grow(points);
-    if (with_stiffness) c->stiffness.grow(points);
+    c->x.grow(points, count_), c->y.grow(points, count_), c->z.grow(points, count_);
+    c->index.grow(points, count_);
+    if (with_radius) c->radius.grow(points, frame_ && has_fixture_radius() ? count_ : 0);
+    if (with_stiffness) c->stiffness.grow(points, frame_ && has_stiffness() ? count_ : 0);
   }
   cell_of_.grow(points);
 }
@@ -74,8 +75,8 @@ void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoint
   const PointsView all = room_->view();
   for (std::size_t i = 0; i < room_->size(); ++i) {
     if (region_.holds(region_.frame.place(Vec3(all.x[i], all.y[i], all.z[i])))) continue;
-    out.add({all.x + i, all.y + i, all.z + i, all.radius ? all.radius + i : nullptr,
-             all.stiffness ? all.stiffness + i : nullptr, room_->index() + i, 0, 1},
+    out.add({all.x + i, all.y + i, all.z + i, has_fixture_radius() ? all.radius + i : nullptr,
+             has_stiffness() ? all.stiffness + i : nullptr, room_->index() + i, 0, 1},
             ball, kernels);
   }
 }

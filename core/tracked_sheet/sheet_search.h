@@ -10,11 +10,13 @@
 
 namespace remote_touch {
 
-// Filled anew for every frame; without allocating where reserve() gave it room for the frame's points.
+// Filled anew for every frame; without allocating where reserve() gave it room for the frame's points. What
+// it shows stays when it gets more room.
 class SheetSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
-  // Begins with no points in the region. room: for points of the frame while gather() runs.
+  // Begins with no points in the region. room: for points of the frame while gather() runs, with radius and
+  // stiffness whether the frame has them or not.
   void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
              std::shared_ptr<GatheredPoints> room);
   // A point of the frame, by its row in what was gathered of it, at the place that it is shown at.

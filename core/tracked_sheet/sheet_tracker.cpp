@@ -32,10 +32,11 @@ double surely(double x, double error) {
 }  // namespace
 
 SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels)
-    : s_(settings), unit_m_(contact_radius_m), kernels_(kernels) {}
+    : s_(settings), unit_m_(contact_radius_m), kernels_(kernels), points_(kernels) {}
 
 void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
-  for (auto& room : {gathered_, room_}) room->reserve(points, with_radius, with_stiffness);
+  gathered_->reserve(points, with_radius, with_stiffness);
+  room_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
   points_.reserve(points);
   sheet_.reserve(points);
@@ -99,14 +100,13 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   const PatchFrame before = patch();
   const Vec3 normal_W = steep < kTooSteep ? before.normal_W(slopes.u, slopes.v) : before.normal_W();
   region_.frame = PatchFrame(before.world({p.u, p.v, height}), normal_W, unit_m_);
-  points_.place.clear();
+  points_.clear();
   for (const PatchPlace& q : sheet_) {
     const PatchPlace moved = patch().place(before.world(q));
-    if (moved.u * moved.u + moved.v * moved.v < region_.radius * region_.radius)
-      points_.place.push_back(moved);
+    if (moved.u * moved.u + moved.v * moved.v < region_.radius * region_.radius) points_.add(moved, true);
   }
-  points_.member.assign(points_.place.size(), 1);
-  sheet_ = points_.place;
+  sheet_.clear();
+  for (std::size_t i = 0; i < points_.size(); ++i) sheet_.push_back(points_.place(i));
   fit_.take(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
   fit_.fit(0.3 * sigma_, map_);
 }
@@ -122,16 +122,17 @@ double SheetTracker::predicted_shift(double interval_s) const {
 // Which points belong to the sheet that the map predicts: those within its noise, and nearer to it than to
 // another sheet. Returns their number.
 double SheetTracker::find_members(const PatchPlace& proxy) {
-  set_residuals(points_, map_);
-  const HeightProfile smooth =
-      profile_near(points_, proxy, region_.half_height).smoothed(std::max(0.2, 0.5 * sigma_));
+  points_.set_residuals(map_);
+  const HeightProfile smooth = points_.profile_near(proxy, kRegistrationReach, region_.half_height)
+                                   .smoothed(std::max(0.2, 0.5 * sigma_));
   const double most = half_thickness(sigma_);
   const double up = std::min(most, smooth.valley_from(0, 1)),
                down = std::min(most, smooth.valley_from(0, -1));
   double count = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    points_.member[i] = points_.residual[i] <= up && points_.residual[i] >= -down;  // NaN is none
-    count += points_.member[i];
+    const bool is_member = points_.residual(i) <= up && points_.residual(i) >= -down;  // NaN is none
+    points_.set_member(i, is_member);
+    count += is_member;
   }
   return count;
 }
@@ -146,12 +147,14 @@ void SheetTracker::fit_map(double weight_of_new_noise) {
 bool SheetTracker::follow(const Vec3& proxy_W) {
   const double before = static_cast<double>(sheet_.size());
   const double first = age_ >= 1 ? s_.gate_m : s_.first_gate_m;
+  double tried_m = 0;
   for (const double gate_m : {first, s_.first_gate_m, s_.widest_gate_m}) {
+    if (gate_m <= tried_m) continue;
+    tried_m = gate_m;
     const double gate = gate_m / unit_m_;
-    if (gate_m < first) continue;
     gather(half_height() + gate);
     const PatchPlace proxy = patch().place(proxy_W);
-    set_residuals(points_, map_);
+    points_.set_residuals(map_);
     const SheetShift shift = register_sheet(points_, profile_, proxy, gate, region_.half_height, sigma_);
     const HeightMap before_it = map_;
     map_.add_plane(shift.height, shift.slope_u, shift.slope_v);
@@ -169,13 +172,15 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
 
 // From which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
 double SheetTracker::contact_distance(const PatchPlace& proxy) const {
+  if (missed_ > 0) return held_distance_;
   const PointsView all = gathered_->view();
   if (!all.radius) return 1;
   double nearest = 4, radius = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!points_.member[i]) continue;
-    const double du = points_.place[i].u - proxy.u, dv = points_.place[i].v - proxy.v, d2 = du * du + dv * dv;
-    const double r = all.radius[points_.source[i]] / unit_m_;
+    if (!points_.is_member(i)) continue;
+    const PatchPlace p = points_.place(i);
+    const double du = p.u - proxy.u, dv = p.v - proxy.v, d2 = du * du + dv * dv;
+    const double r = all.radius[points_.source(i)] / unit_m_;
     if (d2 < nearest || (d2 == nearest && r > radius)) nearest = d2, radius = r;
   }
   return 1 + radius;
@@ -221,11 +226,14 @@ SheetUpdate SheetTracker::look_afresh(const Vec3& proxy_W) {
 
 SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
                                    double interval_s) {
+  const Vec3 ahead = last_proxy_W_ ? Vec3(0.5 * (proxy.p_W - *last_proxy_W_)) : Vec3::Zero();
+  last_proxy_W_ = proxy.p_W;
+  // From the frame before, whose points are still there.
+  const bool goes_on = tracks_ && !is_of_other_surface(proxy);
+  const double held = goes_on ? contact_distance(patch().place(proxy.p_W)) : 1;
   newest_ = std::move(frame);
   make_room();
-  const Vec3 ahead = 0.5 * (proxy.p_W - last_proxy_W_);
-  last_proxy_W_ = proxy.p_W;
-  if (!tracks_ || is_of_other_surface(proxy)) return look_afresh(proxy.p_W);
+  if (!goes_on) return look_afresh(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
   const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
@@ -233,6 +241,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   if (!follow(proxy.p_W)) {
     if (!proxy.pressing || ++missed_ > s_.bridged_frames) return look_afresh(proxy.p_W);
     region_.frame = unmoved;
+    held_distance_ = held;
     return {nullptr, Vec3::Zero(), 0, Vec3::Zero()};
   }
   missed_ = 0;
@@ -259,7 +268,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
 }
 
 bool SheetTracker::must_look_again(const Vec3& proxy_W) const {
-  if (!newest_) return false;
+  if (!newest_ || missed_ > 0) return false;  // where the sheet is missing there is nothing to be seen
   if (!tracks_) return (proxy_W - looked_from_W_).norm() > unit_m_;
   const PatchPlace p = patch().place(proxy_W);
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
@@ -289,24 +298,24 @@ std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
   const double most = kNoisePart * sigma_;
   SheetSearch& shown = *shown_[present_ ^= 1];
   if (!clean) shown.start(region_, newest_, room_);
-  set_residuals(points_, map_);
-  profile_ = profile_near(points_, proxy, region_.half_height + 2).smoothed(0.1);
+  points_.set_residuals(map_);
+  profile_ = points_.profile_near(proxy, kRegistrationReach, region_.half_height + 2).smoothed(0.1);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!points_.member[i] || !std::isfinite(points_.residual[i])) continue;
-    PatchPlace p = points_.place[i];
-    p.h = PatchFrame::rounded(p.h - std::clamp(points_.residual[i], -most, most));
+    if (!points_.is_member(i) || !std::isfinite(points_.residual(i))) continue;
+    PatchPlace p = points_.place(i);
+    p.h = PatchFrame::rounded(p.h - std::clamp(points_.residual(i), -most, most));
     sheet_.push_back(p);
-    if (!clean) shown.add(p, *gathered_, points_.source[i]);
+    if (!clean) shown.add(p, *gathered_, points_.source(i));
   }
   strays_.count(points_, region_, sigma_, fit_.typical_density());
   const double clearance = proxy.h - map_.height(proxy.u, proxy.v);
   double nearest = 0.7 * clearance;
   nearest = nearest > 0 ? nearest * nearest : 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (points_.member[i]) continue;
-    const PatchPlace& p = points_.place[i];
+    if (points_.is_member(i)) continue;
+    const PatchPlace p = points_.place(i);
     if (!strays_.is_surface(p)) continue;
-    if (!clean) shown.add(p, *gathered_, points_.source[i]);
+    if (!clean) shown.add(p, *gathered_, points_.source(i));
     const double du = p.u - proxy.u, dv = p.v - proxy.v, dh = p.h - proxy.h;
     nearer_stray_ |= du * du + dv * dv + dh * dh < nearest;
   }

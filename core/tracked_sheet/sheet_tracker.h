@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/tracked_sheet/height_fit.h"
 #include "core/tracked_sheet/height_map.h"
@@ -51,8 +52,6 @@ class SheetTracker {
   SheetUpdate look_again(const ProxyPlace& proxy);
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
-  bool tracks() const { return tracks_; }
-  double noise_sigma_m() const { return sigma_ * unit_m_; }
 
  private:
   static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is left as it is
@@ -94,8 +93,10 @@ class SheetTracker {
   double sigma_ = 0;
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
   int age_ = 0, missed_ = 0;  // shifts measured; frames without the sheet
+  double held_distance_ = 1;  // of the proxy from the sheet when it was last seen
   bool nearer_stray_ = false;
-  Vec3 looked_from_W_ = Vec3::Zero(), last_proxy_W_ = Vec3::Zero();
+  Vec3 looked_from_W_ = Vec3::Zero();
+  std::optional<Vec3> last_proxy_W_;  // when the frame before came
 };
 
 }  // namespace remote_touch

@@ -28,8 +28,8 @@ void StrayPoints::count(const PatchPoints& points, const PatchRegion& region, do
   least_ = std::max(kFewest + 1, kFairShare * 9 * per_unit_area);
   std::fill_n(counts_.begin(), side_ * side_ * layers_, std::uint16_t{0});
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points.member[i]) continue;
-    const PatchPlace& p = points.place[i];
+    if (points.is_member(i)) continue;
+    const PatchPlace p = points.place(i);
     std::uint16_t& c =
         counts_[static_cast<std::size_t>((layer(p.h) * side_ + column(p.v)) * side_ + column(p.u))];
     if (c < 60000) ++c;

@@ -53,29 +53,19 @@ double share_to_keep(const double a[kTerms][kTerms], const double c[kTerms], dou
 
 Trend fit_trend(const PatchPoints& points, double sigma) {
   constexpr double kFewest = 30;
-  // Powers u^a v^b with a + b <= 4, and h times those with a + b <= 2.
   // Factors are multiples of 2^-12 below 2^6, so sums of up to 2^17 of their products are exact.
-  double power[5][5] = {}, with_h[3][3] = {};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PatchPlace& p = points.place[i];
-    if (!points.member[i] || p.u * p.u + p.v * p.v > kTrendRadius * kTrendRadius) continue;
-    const double uu = PatchFrame::rounded(p.u * p.u), uv = PatchFrame::rounded(p.u * p.v),
-                 vv = PatchFrame::rounded(p.v * p.v);
-    power[0][0] += 1, power[1][0] += p.u, power[0][1] += p.v;
-    power[2][0] += uu, power[1][1] += uv, power[0][2] += vv;
-    power[3][0] += uu * p.u, power[2][1] += uu * p.v, power[1][2] += vv * p.u, power[0][3] += vv * p.v;
-    power[4][0] += uu * uu, power[3][1] += uu * uv, power[2][2] += uu * vv, power[1][3] += uv * vv,
-        power[0][4] += vv * vv;
-    with_h[0][0] += p.h, with_h[1][0] += p.u * p.h, with_h[0][1] += p.v * p.h;
-    with_h[2][0] += uu * p.h, with_h[1][1] += uv * p.h, with_h[0][2] += vv * p.h;
-  }
+  const QuadraticSums sums = points.sums_of_quadratic(kTrendRadius);
   Trend trend;
-  if (power[0][0] < kFewest) return trend;
+  if (sums.power[0] < kFewest) return trend;
+  // Degrees of u and v in each term; products of the same degree follow each other, the powers of u falling.
   constexpr int of_u[kTerms] = {0, 1, 0, 2, 1, 0}, of_v[kTerms] = {0, 0, 1, 0, 1, 2};
   double a[kTerms][kTerms], b[kTerms];
   for (int i = 0; i < kTerms; ++i) {
-    b[i] = with_h[of_u[i]][of_v[i]];
-    for (int j = 0; j < kTerms; ++j) a[i][j] = power[of_u[i] + of_u[j]][of_v[i] + of_v[j]];
+    b[i] = sums.with_h[i];
+    for (int j = 0; j < kTerms; ++j) {
+      const int v = of_v[i] + of_v[j], degree = of_u[i] + of_u[j] + v;
+      a[i][j] = sums.power[degree * (degree + 1) / 2 + v];
+    }
   }
   if (!solve(a, b)) return trend;
   const double keep = share_to_keep(a, b, sigma);
