@@ -1,5 +1,7 @@
 #include "tests/benchmarks/checked_benchmark.h"
 
+#include <time.h>
+
 #include <memory>
 
 namespace remote_touch::benchmarks {
@@ -33,6 +35,12 @@ void add(const std::string& name, const std::function<bool()>& is_right,
 
 bool mismatch_seen() {
   return mismatch;
+}
+
+double cpu_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
 }  // namespace remote_touch::benchmarks

@@ -22,4 +22,7 @@ void add(const std::string& name, const std::function<bool()>& is_right,
 // Whether any answer differed so far.
 bool mismatch_seen();
 
+// Of this thread, for what is short against the time for which others may have the machine.
+double cpu_ns();
+
 }  // namespace remote_touch::benchmarks

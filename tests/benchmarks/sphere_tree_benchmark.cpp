@@ -2,7 +2,6 @@
 // Every answer is compared with a plain loop over all pairs, ticks also with those of the slowest instruction
 // set level, bit for bit, before anything is timed.
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -217,13 +216,6 @@ bool ride_right(const SphereTool& tool, const Course& course, const Kernels& ker
     touching += deep_m > -kSettled_m ? 1 : 0;
   }
   return touching > 0;
-}
-
-// Of this thread, for a tick is short against the time for which others may have the machine.
-double cpu_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
 // Every ride is the same, so the least time of a tick among many rides is that of the work.

@@ -1,0 +1,252 @@
+// The renderers proxy and tracked-sheet on the same lifts, 4.3.2, from no noise to 3 contact radii: the CPU
+// time of a frame and of a tick while the HIP presses. Checked before anything is timed: every output is the
+// same on all instruction set levels, bit for bit; without noise those of the tracked sheet are the proxy's,
+// on a cloud at rest bit for bit; and with the noise that it is to stand it ends above the cloud.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/tracked_sheet/tracked_sheet_renderer.h"
+#include "scenarios/moving_lift.h"
+#include "tests/benchmarks/checked_benchmark.h"
+
+namespace remote_touch::benchmarks {
+namespace {
+
+constexpr double kRc_m = 0.005;  // r_c, as the renderers have it by default
+constexpr int kFrameRate_hz = 30, kTickRate_hz = 1000;
+constexpr int kFrames = 26;
+constexpr int kPressFrame = 15;  // from it on the HIP is below the cloud
+constexpr double kPressDepth_m = 0.03;
+constexpr int kFirstTimedFrame = 2;         // the two before begin a track
+constexpr double kStandsNoise_rc = 2;       // up to here the sheet may not pop through
+constexpr double kLeastHeight_rc = -0.5;    // of its proxy above the cloud, in the end
+constexpr double kMotionStep_rc = 0x1p-12;  // of the places in core/tracked_sheet/patch_frame.h
+
+// --- a lift, and what is answered on it ---
+
+struct Lift {
+  double noise_rc;
+  MovingLift motion;
+  std::vector<std::shared_ptr<const NeighbourSearch>> points;  // of each frame
+};
+
+Lift made(double noise_rc, MovingLift::Settings settings) {
+  settings.noise_sigma_m = noise_rc * kRc_m;
+  Lift lift{noise_rc, MovingLift(settings, NoiseKey{5}, kernels_for(best_isa())), {}};
+  for (int f = 0; f < kFrames; ++f) lift.points.push_back(make_search(lift.motion.cloud(f)));
+  return lift;
+}
+
+Lift lift_with_noise(double noise_rc) {
+  return made(noise_rc, {.acceleration_m_per_s2 = 1.5});
+}
+
+Lift cloud_at_rest() {
+  return made(0, {.start_velocity_m_per_s = 0, .acceleration_m_per_s2 = 0});
+}
+
+double time_of(int tick) {
+  return static_cast<double>(tick) / kTickRate_hz;
+}
+
+// The first tick that is not before the frame.
+int first_tick_of(int frame) {
+  return (frame * kTickRate_hz + kFrameRate_hz - 1) / kFrameRate_hz;
+}
+
+Frame frame_of(const Lift& lift, int f) {
+  const double time_s = static_cast<double>(f) / kFrameRate_hz;
+  return {f, time_s, time_s, lift.points[static_cast<std::size_t>(f)]};
+}
+
+// It rests until the next frame.
+DeviceState device_at(const Lift& lift, int f) {
+  if (f < kPressFrame) return {Vec3::Zero()};
+  return {Vec3(0, lift.motion.surface_height(0, 0, frame_of(lift, f).captured_s) - kPressDepth_m, 0)};
+}
+
+struct Contender {
+  std::string name;
+  std::unique_ptr<Renderer> (*renderer)(const Kernels& kernels);
+};
+
+const Contender kProxy{"proxy", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
+                         return std::make_unique<ProxyRenderer>(ProxyParameters{}, kTickRate_hz, kernels);
+                       }};
+const Contender kSheet{"tracked-sheet", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
+                         return std::make_unique<TrackedSheetRenderer>(TrackedSheetParameters{}, kTickRate_hz,
+                                                                       kernels);
+                       }};
+
+std::vector<RenderOutput> answers(const Lift& lift, const Contender& contender, const Kernels& kernels) {
+  std::vector<RenderOutput> outputs;
+  const std::unique_ptr<Renderer> renderer = contender.renderer(kernels);
+  for (int f = 0; f < kFrames; ++f) {
+    renderer->on_frame(frame_of(lift, f));
+    for (int tick = first_tick_of(f); tick < first_tick_of(f + 1); ++tick)
+      outputs.push_back(renderer->step(device_at(lift, f), time_of(tick)));
+  }
+  return outputs;
+}
+
+// --- are they right? ---
+
+std::uint64_t bits(double x) {
+  return std::bit_cast<std::uint64_t>(x);
+}
+std::array<std::uint64_t, 3> bits(const Vec3& v) {
+  return {bits(v.x()), bits(v.y()), bits(v.z())};
+}
+// Names every member, so that one more does not compile until it is compared too.
+auto bits(const RenderOutput& out) {
+  const auto& [proxy, force, slave, state, normal, velocity, nearest, carried, steps, converged, contacts,
+               frame, status, tool, guidance] = out;
+  return std::tuple(bits(proxy), bits(force), bits(slave), state, bits(normal), bits(velocity), bits(nearest),
+                    bits(carried), steps, converged, contacts, frame, status, tool.has_value(),
+                    guidance.has_value());
+}
+
+bool same_bits(const std::vector<RenderOutput>& a, const std::vector<RenderOutput>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const RenderOutput& p, const RenderOutput& q) { return bits(p) == bits(q); });
+}
+
+bool levels_agree(const Lift& lift, const Contender& contender) {
+  const std::vector<RenderOutput> slowest = answers(lift, contender, kernels_for(Isa::x86_64));
+  const auto agrees = [&](const Kernels* level) {
+    return same_bits(answers(lift, contender, *level), slowest);
+  };
+  const std::vector<const Kernels*> all = levels();
+  return std::all_of(all.begin(), all.end(), agrees);
+}
+
+bool proxy_right(const Lift& lift) {
+  return levels_agree(lift, kProxy);
+}
+
+std::vector<RenderOutput> best_answers(const Lift& lift, const Contender& contender) {
+  return answers(lift, contender, kernels_for(best_isa()));
+}
+
+// While it moves only nearly: the sheet's motion is measured in steps of kMotionStep_rc, and before the
+// touch.
+bool nearly_same(const RenderOutput& p, const RenderOutput& q) {
+  return (p.proxy_W - q.proxy_W).norm() < kMotionStep_rc * kRc_m && p.state == q.state &&
+         p.contact_count == q.contact_count && p.frame_index == q.frame_index && p.status == q.status;
+}
+
+bool is_the_proxy_without_noise(const Lift& lift) {
+  const Lift at_rest = cloud_at_rest();
+  const std::vector<RenderOutput> proxy = best_answers(lift, kProxy), sheet = best_answers(lift, kSheet);
+  return same_bits(best_answers(at_rest, kSheet), best_answers(at_rest, kProxy)) &&
+         std::equal(sheet.begin(), sheet.end(), proxy.begin(), proxy.end(), nearly_same);
+}
+
+bool ends_above(const Lift& lift) {
+  const Vec3 proxy_W = best_answers(lift, kSheet).back().proxy_W;
+  const double end_s = time_of(first_tick_of(kFrames) - 1);
+  return lift.motion.signed_distance(proxy_W, end_s) > kLeastHeight_rc * kRc_m;
+}
+
+bool sheet_right(const Lift& lift) {
+  return levels_agree(lift, kSheet) && (lift.noise_rc > 0 || is_the_proxy_without_noise(lift)) &&
+         (lift.noise_rc > kStandsNoise_rc || ends_above(lift));
+}
+
+// --- their times ---
+
+// Of each frame, and of all ticks between it and the next. Every lift is the same, so the least time among
+// many is that of the work; it is kept from one repetition to the next.
+struct LeastTimes {
+  std::array<double, kFrames> frame_ns, ticks_ns;
+  LeastTimes() {
+    frame_ns.fill(std::numeric_limits<double>::infinity());
+    ticks_ns = frame_ns;
+  }
+};
+
+void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& least) {
+  for (int f = 0; f < kFrames; ++f) {
+    const auto i = static_cast<std::size_t>(f);
+    const Frame frame = frame_of(lift, f);
+    const DeviceState device = device_at(lift, f);
+    const double start_ns = cpu_ns();
+    renderer.on_frame(frame);
+    const double taken_ns = cpu_ns();
+    for (int tick = first_tick_of(f); tick < first_tick_of(f + 1); ++tick) {
+      const RenderOutput out = renderer.step(device, time_of(tick));
+      benchmark::DoNotOptimize(&out);
+    }
+    least.ticks_ns[i] = std::min(least.ticks_ns[i], cpu_ns() - taken_ns);
+    least.frame_ns[i] = std::min(least.frame_ns[i], taken_ns - start_ns);
+  }
+}
+
+// What the ticks whose time is told do.
+void count_work(benchmark::State& state, const std::vector<RenderOutput>& outputs) {
+  double steps = 0, in_contact = 0;
+  const auto first = static_cast<std::size_t>(first_tick_of(kPressFrame));
+  for (std::size_t i = first; i < outputs.size(); ++i) {
+    steps += outputs[i].steps;
+    in_contact += outputs[i].state == ContactState::contact ? 1 : 0;
+  }
+  const auto ticks = static_cast<double>(outputs.size() - first);
+  state.counters["steps"] = steps / ticks;
+  state.counters["in_contact"] = in_contact / ticks;
+}
+
+void time_lifts(benchmark::State& state, const Lift& lift, const Contender& contender, LeastTimes& least) {
+  const Kernels& kernels = kernels_for(best_isa());
+  for (auto _ : state) {
+    state.PauseTiming();
+    const std::unique_ptr<Renderer> renderer = contender.renderer(kernels);
+    state.ResumeTiming();
+    time_lift(lift, *renderer, least);
+  }
+  const auto sum = [](const auto& ns, int first) {
+    return std::accumulate(ns.begin() + first, ns.end(), 0.0);
+  };
+  const int ticks = first_tick_of(kFrames) - first_tick_of(kPressFrame);
+  state.counters["frame_ns"] = sum(least.frame_ns, kFirstTimedFrame) / (kFrames - kFirstTimedFrame);
+  state.counters["tick_ns"] = sum(least.ticks_ns, kPressFrame) / ticks;
+  count_work(state, answers(lift, contender, kernels));
+}
+
+void add_lift(const std::shared_ptr<const Lift>& lift, const Contender& contender,
+              bool (*is_right)(const Lift&)) {
+  char noise[16];
+  std::snprintf(noise, sizeof noise, "%g", lift->noise_rc);
+  const auto least = std::make_shared<LeastTimes>();
+  add(
+      "sheet_lift/" + contender.name + "/" + noise + "/" + kernels_for(best_isa()).isa,
+      [=] { return is_right(*lift); },
+      [=, &contender](benchmark::State& state) { time_lifts(state, *lift, contender, *least); });
+}
+
+}  // namespace
+}  // namespace remote_touch::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace remote_touch::benchmarks;
+  for (const double noise_rc : {0.0, 0.2, 0.6, 1.0, 2.0, 3.0}) {
+    const auto lift = std::make_shared<const Lift>(lift_with_noise(noise_rc));
+    add_lift(lift, kProxy, proxy_right);
+    add_lift(lift, kSheet, sheet_right);
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return mismatch_seen() ? 1 : 0;
+}
