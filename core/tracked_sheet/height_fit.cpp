@@ -43,6 +43,7 @@ void HeightFit::take(const PatchPoints& points, const Trend& trend) {
       for (std::size_t m = 0; m < kMoments; ++m) row[m] += s[m], s[m] = row[m] + under[m];
     }
   }
+  density_ = median_density();
 }
 
 HeightFit::Sums HeightFit::window(int cu, int cv, int half) const {
@@ -108,7 +109,7 @@ double HeightFit::noise() const {
   return std::sqrt(*place / kOfMean);
 }
 
-double HeightFit::typical_density() const {
+double HeightFit::median_density() const {
   std::array<double, HeightMap::kNodes * HeightMap::kNodes> counts;
   std::size_t some = 0;
   for (int j = 0; j <= kCells; j += 2)

@@ -36,7 +36,7 @@ class HeightFit {
   // Goldenshluger and Nemirovski 1997). Windows too narrow to tell a height at all have no say.
   void fit(double sigma, HeightMap& map) const;
   // Members in a square of one contact radius, the median over where there are any.
-  double typical_density() const;
+  double typical_density() const { return density_; }
 
  private:
   static constexpr int kCorners = HeightMap::kCells + 1;
@@ -48,7 +48,10 @@ class HeightFit {
   static PlaneFit plane(const Sums& sums, double u, double v);
   void choose(int i, int j, double sigma, HeightMap::Node& node) const;
 
+  double median_density() const;
+
   Trend trend_;
+  double density_ = 0;
   std::vector<Sums> sums_;  // at each corner of cells, of all points with smaller u and v
 };
 

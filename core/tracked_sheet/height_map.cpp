@@ -54,6 +54,7 @@ void HeightMap::set_plane(double height, double slope_u, double slope_v, double 
 
 void HeightMap::extend(int rings) {
   for (int ring = 0; ring < rings; ++ring) {
+    if (std::all_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.known; })) break;
     const auto before = nodes_;
     for (int j = 0; j < kNodes; ++j)
       for (int i = 0; i < kNodes; ++i) {

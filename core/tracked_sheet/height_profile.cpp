@@ -39,17 +39,26 @@ HeightProfile HeightProfile::smoothed(double sigma) const {
   return result;
 }
 
+// All shifts together, bin by bin, so that empty bins cost nothing.
 double HeightProfile::shift_of(const HeightProfile& other, double reach) const {
   constexpr double kNearness = 0.1;  // so much less counts what is at the end of the reach
-  const int most = static_cast<int>(std::round(reach / kBin)), offset = (other.bins_ - bins_) / 2;
+  const int most = std::min(static_cast<int>(std::round(reach / kBin)), kMostBins);
+  const int offset = (other.bins_ - bins_) / 2;
+  std::array<double, 2 * kMostBins + 1> products;
+  std::fill_n(products.begin(), 2 * most + 1, 0.0);
+  for (int b = 0; b < bins_; ++b) {
+    const double here = count(b);
+    if (here == 0) continue;
+    const int middle = b + offset;  // the same height in the other
+    for (int k = std::max(-most, -middle); k <= std::min(most, other.bins_ - 1 - middle); ++k)
+      products[static_cast<std::size_t>(most + k)] += here * other.count(middle + k);
+  }
   double best = -1;
   int at = 0;
   for (int step = 0; step <= 2 * most; ++step) {
     const int k = step % 2 == 0 ? step / 2 : -(step + 1) / 2;
-    double sum = 0;
-    const int first = std::max(0, -(offset + k)), last = std::min(bins_, other.bins_ - offset - k);
-    for (int b = first; b < last; ++b) sum += count(b) * other.count(b + offset + k);
-    sum *= 1 - kNearness * (k * k) / (most * most + 1.0);
+    const double sum =
+        products[static_cast<std::size_t>(most + k)] * (1 - kNearness * (k * k) / (most * most + 1.0));
     if (sum > best) best = sum, at = k;
   }
   return at * kBin;

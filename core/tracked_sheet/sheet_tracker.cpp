@@ -270,6 +270,8 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
 bool SheetTracker::must_look_again(const Vec3& proxy_W) const {
   if (!newest_ || missed_ > 0) return false;  // where the sheet is missing there is nothing to be seen
   if (!tracks_) return (proxy_W - looked_from_W_).norm() > unit_m_;
+  const double near_m = 0.999 * kMiddle * unit_m_;  // no place is farther off along the patch than in space
+  if ((proxy_W - patch().origin_W()).squaredNorm() < near_m * near_m) return false;
   const PatchPlace p = patch().place(proxy_W);
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
 }
