@@ -6,8 +6,9 @@
 namespace remote_touch {
 
 namespace {
-// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready.
-constexpr double kSpareMargin_m = 0.010;
+// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who asks
+// for more than a proxy needs asks once a frame.
+constexpr double kSpareMargin_m = 0.010, kLargestOfProxy_m = 0.025;
 // Far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
 }  // namespace
@@ -87,7 +88,8 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   const double reach = ball.radius + kLargestNormal * sigma_m_ + kRounding_m;
   if (std::abs(ball.centre.y() - height_m_) > reach) return;
-  if (!made_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + kSpareMargin_m}, kernels);
+  const double spare_m = ball.radius <= kLargestOfProxy_m ? kSpareMargin_m : 0;
+  if (!made_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
   out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
 }
 

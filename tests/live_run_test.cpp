@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <regex>
 #include <string>
 
 #include "analysis/digest.h"
@@ -35,10 +36,13 @@ const char* const kTool = R"({
                                             [0.05, 0.01, 0, 0, 0, 0, 1]]}})";
 
 TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
+  const std::string tracked =
+      std::regex_replace(std::string(kProxy), std::regex("\"proxy\""), "\"tracked-sheet\"");
   const struct {
     const char* name;
     std::string experiment;
-  } cases[] = {{"3-DOF", kProxy}, {"6-DOF voxels", kTool}, {"sphere tree", "fig7.4"}};
+  } cases[] = {
+      {"3-DOF", kProxy}, {"tracked sheet", tracked}, {"6-DOF voxels", kTool}, {"sphere tree", "fig7.4"}};
   for (const auto& [name, experiment] : cases) {
     const TestFolder folder("live_run");
     const std::filesystem::path file = folder / "session.h5";
