@@ -14,7 +14,7 @@ inline constexpr int kPassivityCycles = 3;  // in a run of that scene
 // The contender with each combination of those of its renderer's parameters that decide about energy: without
 // and with a damper k_d (4.16), its sign where there is one, and the sign of the velocity term of (4.15)
 // where a velocity is estimated. Named CONTENDER, then what differs from the contender's own:
-// "proxy+k_d3+plus". The contender itself is the first.
+// "proxy+v_plus+k_d3". The contender itself is the first.
 std::vector<Contender> force_laws_of(const Contender& contender);
 
 }  // namespace remote_touch
