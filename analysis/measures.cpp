@@ -62,8 +62,9 @@ double popped_through(const Trace& trace) {
 }
 
 double largest_penetration_m(const Trace& trace) {
-  double deepest = 0;
-  for (const double distance : trace.signed_distance_m) deepest = std::max(deepest, -distance);  // NaN loses
+  double deepest = std::numeric_limits<double>::quiet_NaN();
+  for (const double distance : trace.signed_distance_m)
+    if (!std::isnan(distance)) deepest = std::fmax(deepest, std::max(0.0, -distance));  // NaN loses
   return deepest;
 }
 

@@ -11,7 +11,7 @@ namespace remote_touch {
 // 1 when the proxy's centre ended below the true surface, else 0.
 double popped_through(const Trace& trace);
 // How far the centre was at most behind the true surface, m; 0 when never. Ticks without a known truth do not
-// count.
+// count; NaN without any other.
 double largest_penetration_m(const Trace& trace);
 // The smallest distance of the slave's command to the true surface, m, over the ticks with a known truth; NaN
 // without any. With a uniform radius a fixture is violated by r_f + r_c less this.

@@ -1,6 +1,7 @@
 #include "analysis/scorecard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "analysis/paired_bootstrap.h"
@@ -25,6 +26,26 @@ PairedValues by_level(const SweepResult& sweep, Value&& value) {
   return values;
 }
 
+// Of the levels without noise: are all replicates the same run, to the last bit of every measure? A scene's
+// own noise is not known to be none, its numbers tell.
+Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m) {
+  Repeats repeats;
+  const auto same = [&](std::size_t a, std::size_t b) {
+    const auto equal = [&](const Column& measure) {
+      const auto& values = std::get<std::vector<double>>(measure.values);
+      return values[a] == values[b] || (std::isnan(values[a]) && std::isnan(values[b]));
+    };
+    return sweep.state[a] == sweep.state[b] &&
+           std::all_of(sweep.measures.begin(), sweep.measures.end(), equal);
+  };
+  for (std::size_t level = 0; level < sweep.cell_count(); ++level) {
+    bool all = !(noise_m[level] > 0);
+    for (int k = 1; k < sweep.replicates; ++k) all = all && same(sweep.run(level, 0), sweep.run(level, k));
+    repeats.push_back(all);
+  }
+  return repeats;
+}
+
 std::vector<Share> shares(const PairedValues& success) {
   std::vector<Share> list;
   for (const auto& level : success) {
@@ -46,17 +67,24 @@ std::string units_of(const SweepResult& sweep, const std::string& measure) {
   return "1";
 }
 
+// Who loses the surface early has a short and quiet run: where a measure is judged, only successes count.
 JudgedMeasure judged(const std::string& name, Better better, const std::vector<SweepResult>& sweeps,
+                     const std::vector<PairedValues>& won, const std::vector<Repeats>& repeats,
                      std::uint64_t key) {
   JudgedMeasure measure{name, units_of(sweeps.front(), name), better};
   std::vector<PairedValues> values;
-  for (const SweepResult& sweep : sweeps) {
-    const std::vector<double>& all = sweep.measure(name);
-    values.push_back(by_level(sweep, [&](std::size_t run) { return all[run]; }));
+  for (std::size_t c = 0; c < sweeps.size(); ++c) {
+    const std::vector<double>& all = sweeps[c].measure(name);
+    values.push_back(by_level(sweeps[c], [&](std::size_t run) { return all[run]; }));
+    if (better != Better::reported)
+      for (std::size_t i = 0; i < won[c].size(); ++i)
+        for (std::size_t k = 0; k < won[c][i].size(); ++k)
+          if (won[c][i][k] == 0) values.back()[i][k] = kNone;
     measure.at_level.emplace_back();
-    for (const auto& level : values.back()) measure.at_level.back().push_back(bootstrap_mean({level}, key));
+    for (const auto& level : distinct(values.back(), repeats[c]))
+      measure.at_level.back().push_back(bootstrap_mean({level}, key));
   }
-  measure.standing = standing(values, better, false, key);
+  measure.standing = standing(values, better, false, key, repeats);
   return measure;
 }
 
@@ -67,15 +95,17 @@ SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps
   SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
   if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
   std::vector<PairedValues> won;
+  std::vector<Repeats> repeats;
   for (const SweepResult& sweep : sweeps) {
     const std::vector<bool> success = successes(sweep, rules.success);
     won.push_back(by_level(sweep, [&](std::size_t run) { return success[run] ? 1.0 : 0.0; }));
-    scene.success.push_back(shares(won.back()));
+    repeats.push_back(repeats_of(sweep, scene.noise_m));
+    scene.success.push_back(shares(distinct(won.back(), repeats.back())));
     scene.success_overall.push_back(sum_of(scene.success.back()));
   }
-  scene.standing = standing(won, Better::larger, true, key);
+  scene.standing = standing(won, Better::larger, true, key, repeats);
   for (const auto& [name, better] : rules.measures)
-    scene.measures.push_back(judged(name, better, sweeps, key));
+    scene.measures.push_back(judged(name, better, sweeps, won, repeats, key));
   return scene;
 }
 
@@ -104,7 +134,8 @@ Table success_table(const Scorecard& card) {
   table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender)};
   table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
   table.columns.push_back(counts("successes", "successful runs", events));
-  table.columns.push_back(counts("runs", "runs", runs));
+  table.columns.push_back(
+      counts("runs", "runs; those that are one and the same run, as without noise, count once", runs));
   table.add("share", "1", "share of successful runs", share);
   table.add("low", "1", "lower end of the interval", low);
   table.add("high", "1", "upper end of the interval", high);
@@ -125,7 +156,10 @@ Table measure_table(const Scorecard& card) {
           runs.push_back(static_cast<std::int32_t>(one.pairs));
           mean.push_back(one.mean), low.push_back(one.low), high.push_back(one.high);
         }
-  Table table{"measures", "means with 95 % intervals of the bootstrap"};
+  Table table{
+      "measures",
+      "means with 95 % intervals of the bootstrap: of a measure that is judged over the successful runs, "
+      "of one that is reported over all"};
   table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender),
                    texts("measure", "measure", measure), texts("units", "unit of the measure", units)};
   table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
@@ -136,8 +170,7 @@ Table measure_table(const Scorecard& card) {
   return table;
 }
 
-// 1, 2, ... in the order of each standing, and who stands out: 1 best, -1 worst, 0 told apart from nobody
-// next to it.
+// 1, 2, ... in the order of each standing, and who stands out: 1 best, -1 worst of all, 0 neither.
 Table standing_table(const Scorecard& card) {
   std::vector<std::string> scene, contender, measure;
   std::vector<std::int32_t> place, mark, top;
@@ -162,8 +195,8 @@ Table standing_table(const Scorecard& card) {
                    texts("measure", "success or measure", measure),
                    counts("place", "place in the order, 1 the best", place),
                    texts("contender", "contender", contender),
-                   counts("mark", "1: best, -1: worst, told apart from the next one", mark),
-                   counts("at_the_top", "1: not told apart from the first", top)};
+                   counts("mark", "1: best, -1: worst, told apart from all others", mark),
+                   counts("at_the_top", "1: the first, and whom it is not shown to be better than", top)};
   return table;
 }
 
@@ -195,7 +228,7 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
 }  // namespace
 
 Figure scorecard_figure(const Scorecard& card) {
-  Figure figure{"scorecard",
+  Figure figure{kScorecardFigure,
                 "Scorecard of 3-DOF renderers",
                 "Share of successful runs over noise, scene by scene. Every contender met the same noise.",
                 {success_table(card), measure_table(card), standing_table(card)}};

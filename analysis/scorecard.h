@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// A share of runs with Wilson's interval.
+// A share of runs with Wilson's interval; runs that are one and the same (Repeats) count once.
 struct Share {
   int events = 0, runs = 0;
   double share = 0, low = 0, high = 1;
@@ -22,7 +22,8 @@ struct Share {
 struct JudgedMeasure {
   std::string name, units;
   Better better = Better::reported;
-  // Over all noise levels; the means have their bootstrap intervals.
+  // Over all noise levels; the means have their bootstrap intervals. Judged measures are those of successful
+  // runs, and two contenders are compared where both succeeded. Reported ones are those of all runs.
   Standing standing = {};
   // Of each contender at each noise level.
   std::vector<std::vector<MeanDifference>> at_level = {};
@@ -53,6 +54,8 @@ struct SceneRules {
 // measure.
 SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
                  std::uint64_t key);
+
+inline constexpr const char* kScorecardFigure = "scorecard";  // the name of this:
 
 // The tables of a result file: success, measures and standings, one row for each scene, contender, and level
 // or measure; and the curves of every scene's panel.

@@ -15,20 +15,31 @@ enum class Better { larger, smaller, near_zero, reported };  // reported: neithe
 // noise with every contender; NaN where there is none.
 using PairedValues = std::vector<std::vector<double>>;
 
+// Of the levels of one contender: are its replicates one run, done again and again, as without noise? Then
+// they count once. Empty: at no level.
+using Repeats = std::vector<bool>;
+PairedValues distinct(const PairedValues& values, const Repeats& repeats);
+
+// With fewer there is no verdict about a measure that is no event. Shares have their intervals' width.
+inline constexpr std::int64_t kLeastPairs = 3;
+
 struct Standing {
-  std::vector<std::size_t> order;    // contenders, the best first; those without any value at the end
-  std::size_t placed = 0;            // so many of them have a value
+  std::vector<std::size_t> order;    // contenders, the best first by their own means; without a place last
+  std::size_t placed = 0;            // so many of them have kLeastPairs values; of an event, any
   std::vector<MeanDifference> mean;  // of each contender, with its interval
-  // The interval of the paired difference to the next one in the order excludes zero: of the first, and of
-  // the last that is placed.
+  // The intervals of the paired differences to all others that are placed lie on the side that the order
+  // claims: of the first, and of the last that is placed.
   bool has_best = false, has_worst = false;
-  // Those at the top, the first among them, that the first is not told apart from.
+  // The first, and those that the pairs do not show it to be better than.
   std::vector<std::size_t> at_the_top;
 };
 
 // event: values are 0 and 1, and the difference of two shares has Agresti and Min's interval, for a bootstrap
-// of few equal pairs has none. Other measures are compared over the pairs in which both have a number, which
-// favours who has none in hard runs: read them beside the share of successes. near_zero compares magnitudes.
-Standing standing(const std::vector<PairedValues>& contenders, Better better, bool event, std::uint64_t key);
+// of few equal pairs has none. Other measures are compared over the pairs in which both have a number, and
+// not with fewer than kLeastPairs: give no number where a run did not do what the measure is about. A level
+// that is one run of both contenders is one pair. near_zero compares magnitudes. repeats: of each contender;
+// empty: of none.
+Standing standing(const std::vector<PairedValues>& contenders, Better better, bool event, std::uint64_t key,
+                  const std::vector<Repeats>& repeats = {});
 
 }  // namespace remote_touch

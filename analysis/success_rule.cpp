@@ -21,6 +21,7 @@ long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds
   std::vector<Failure> failures;
   for (int replicate = 0; replicate < result.replicates; ++replicate) {
     const std::size_t run = result.run(cell, replicate);
+    if (result.state[run] == RunState::failed) failures.emplace_back(bounds.size(), 0, run);
     if (result.state[run] != RunState::done) continue;
     for (std::size_t i = 0; i < bounds.size(); ++i) {
       const double value = result.measure(bounds[i].measure)[run];

@@ -22,7 +22,7 @@ struct Bound {
 std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds);
 
 // The run in the middle of those of a cell that were no success, by the measure of the first bound that they
-// break: a typical failure. -1: there is none.
+// break, runs that ended with an error last: a typical failure. -1: there is none.
 long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds, std::size_t cell);
 
 }  // namespace remote_touch

@@ -26,12 +26,13 @@ void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) co
 }
 
 FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
-                         const NoiseKey& key, bool hash_frames)
+                         const NoiseKey& key, bool hash_frames, bool made_points)
     : scenario_(scenario),
       processing_(std::move(processing)),
       delivery_(delivery),
       key_(key),
-      hash_frames_(hash_frames) {}
+      hash_frames_(hash_frames),
+      made_points_(made_points) {}
 
 bool FrameStream::exists(int frame) const {
   if (frame < scenario_.frame_count()) return true;
@@ -78,6 +79,8 @@ void FrameStream::fill(Frame& frame) const {
                      scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
   else
     frame.points = scenario_.points(seen(frame.index));
+  if (made_points_ && !dynamic_cast<const CloudSearch*>(frame.points.get()))
+    frame.points = make_search(scenario_.cloud(seen(frame.index)));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {

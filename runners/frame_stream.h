@@ -38,9 +38,10 @@ class FrameStream {
  public:
   // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
   // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
-  // frame is made for newest_hash().
+  // frame is made for newest_hash(). With made_points frames come with every point made, which are the same
+  // points, so that nobody pays for the noise of those that he asks for.
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
-              const NoiseKey& key, bool hash_frames);
+              const NoiseKey& key, bool hash_frames, bool made_points = false);
 
   // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
   // Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture rule
@@ -65,7 +66,7 @@ class FrameStream {
   FrameProcessing processing_;
   Delivery delivery_;
   NoiseKey key_;
-  bool hash_frames_;
+  bool hash_frames_, made_points_;
   int next_ = 0;  // to be sent
   std::vector<OnTheWay> on_the_way_;
   std::uint64_t hash_ = 0;

@@ -1,11 +1,22 @@
 #include "runners/provenance.h"
 
+#include <fstream>
+
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
 
 namespace remote_touch {
 
 std::string version() {
   return REMOTE_TOUCH_VERSION;
+}
+
+std::string cpu_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t value = line.find(": ");
+    if (line.starts_with("model name") && value != std::string::npos) return line.substr(value + 2);
+  }
+  return {};
 }
 
 TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,

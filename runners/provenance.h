@@ -7,7 +7,8 @@
 
 namespace remote_touch {
 
-std::string version();  // "0.1.0"
+std::string version();   // "0.1.0"
+std::string cpu_name();  // as the system tells it; empty where it does not
 
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON.
 // isa may be empty: then it is left out, for results that several machines made together. inputs: as

@@ -75,7 +75,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto switches = std::make_shared<FixtureSwitches>();
   const auto renderer = experiment.build_renderer(kernels, switches);
   FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
-                     experiment.settings().delivery, experiment.settings().key, options.hash_frames);
+                     experiment.settings().delivery, experiment.settings().key, options.hash_frames,
+                     options.made_points);
   TimedFrames timed(*renderer, options.frame_duration_s);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);

@@ -17,6 +17,7 @@ struct SimulationOptions {
   std::function<void(double share)> progress;       // called about a hundred times
   std::vector<double>* step_duration_s = nullptr;   // wall clock of each tick, where wanted
   std::vector<double>* frame_duration_s = nullptr;  // and of what the renderer does with each frame
+  bool made_points = false;  // frames come with every point made: durations without the making of noise
   bool hash_frames = false;  // make every point of every frame for the trace's frame_hash, else 0
 };
 

@@ -11,7 +11,9 @@
 #include <ostream>
 #include <set>
 
+#include "analysis/digest.h"
 #include "runners/json_parameters.h"
+#include "runners/scorecard/contest_plan.h"
 #include "runners/scorecard/passivity.h"
 #include "runners/simulation.h"
 #include "scenarios/recording_part.h"
@@ -106,6 +108,38 @@ TEST(Contest, WhatIsWrongInAFileIsNamed) {
   with_renderer.experiment = R"({"renderer": {"name": "proxy"}})";
   EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "contenders bring it");
   EXPECT_HAS(refusal([] { read_contender("y", R"({"title": "t"})"); }), "contender y: renderer: missing");
+}
+
+TEST(Contest, RunsNoSeedThatParametersWereFixedWith) {
+  const Contender proxy = chosen_contenders({"proxy"}).front();
+  for (const ContestScene& scene : chosen_scenes({"flat-press", "camera"})) {
+    const Sweep sweep = scene.sweep(proxy, 2);
+    for (std::size_t cell = 0; cell < sweep.plan().cell_count(); ++cell)
+      EXPECT_GT(sweep.experiment(cell, 1).settings().key.seed, 40u) << scene.name;
+  }
+  ContestScene tuned = chosen_scenes({"flat-press"}).front();
+  tuned.experiment = R"({"seed": 1})";
+  EXPECT_HAS(refusal([&] { tuned.sweep(proxy, 2); }), "experiment.seed");
+}
+
+TEST(Contest, CostsAreThoseOfTheSamePoints) {
+  const ContestScene scene = chosen_scenes({"flat-slide"}).front();
+  for (const Contender& contender : chosen_contenders({})) {
+    Json json = parse_json(beginning(scene.sweep(contender, 2)).to_json(), "run");
+    json["duration_s"] = 0.3;
+    const Experiment run = Experiment::from_json(std::move(json));
+    SimulationOptions made;
+    made.made_points = true;
+    EXPECT_EQ(digest(simulate(run).columns()), digest(simulate(run, made).columns())) << contender.name;
+  }
+}
+
+TEST(Contest, TheAuditsOwnForceLawsAreTheScenesSweeps) {
+  const ContestPlan plan =
+      plan_of({chosen_contenders({"proxy", "penalty"}), chosen_scenes({kPassivityScene}), 2, "card"});
+  std::set<std::string> names;
+  for (const ContestSweep& sweep : plan.sweeps()) EXPECT_TRUE(names.insert(sweep.name).second) << sweep.name;
+  EXPECT_EQ(names.size(), plan.laws.size());
 }
 
 TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {

@@ -252,6 +252,23 @@ TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
                                         std::bit_cast<std::uint64_t>(recorder.frames.back().captured_s)));
 }
 
+TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
+  MovingLift::Settings settings;
+  settings.grid = {4, 4, 0.0015, 0, 0}, settings.noise_sigma_m = 0.001;
+  settings.rise_frames = 2, settings.acceleration_frames = 0;
+  const MovingLift lift(settings, {1}, scenes::kernels());
+  for (const bool made : {false, true}) {
+    FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, false, made);
+    Recorder recorder;
+    for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
+    const Frame& last = recorder.frames.back();
+    const auto* stored = dynamic_cast<const CloudSearch*>(last.points.get());
+    ASSERT_EQ(stored != nullptr, made);
+    if (!made) continue;
+    EXPECT_EQ(fingerprint(stored->cloud()), fingerprint(lift.cloud(lift.frame_count() - 1)));
+  }
+}
+
 TEST(FrameStream, TheHashChangesWithTheFixtures) {
   const Walk rest(1);
   const auto plain = hashes(rest, {}), small = hashes(rest, everywhere(0.02)),

@@ -37,6 +37,9 @@ TEST(Measures, PopThroughIsJudgedAtTheEnd) {
   EXPECT_EQ(popped_through(trace_of({{0.005}, {-1e-9}})), 1);
   EXPECT_EQ(popped_through(Trace()), 0);
   EXPECT_EQ(largest_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(largest_penetration_m(trace_of({{unknown}, {0.005}, {unknown}})), 0);
+  EXPECT_TRUE(std::isnan(largest_penetration_m(trace_of({{unknown}, {unknown}}))));
 }
 
 TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {

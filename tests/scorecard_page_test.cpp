@@ -49,14 +49,56 @@ ScorecardPage page_of(const Scorecard& card) {
 TEST(Score, CountsSuccessesAndTellsWhoStandsOut) {
   const Scorecard card = two_scenes();
   const SceneScore& scene = card.scenes[0];
-  EXPECT_EQ(scene.success[0][0].events, 10);
+  EXPECT_EQ(scene.success[0][0].events, 1);  // without noise, ten times the same run
+  EXPECT_EQ(scene.success[0][0].runs, 1);
   EXPECT_EQ(scene.success[0][1].events, 9);
-  EXPECT_EQ(scene.success_overall[0].events, 19);
-  EXPECT_EQ(scene.success_overall[0].runs, 20);
+  EXPECT_EQ(scene.success_overall[0].events, 10);
+  EXPECT_EQ(scene.success_overall[0].runs, 11);
   EXPECT_EQ(scene.success_overall[1].events, 0);
   EXPECT_EQ(verdict(card, scene), "Best: one. Worst: two.");
   EXPECT_EQ(verdict(card, card.scenes[1]), "No difference between any.");
   EXPECT_TRUE(std::isnan(card.scenes[1].noise_m.at(0)));
+}
+
+// Three noise levels of three runs: end_distance, and last_force_time where it is the same in all.
+SweepResult timed(const std::vector<double>& depth, double last_s) {
+  SweepResult result = sweep_of(depth, {0, 0.001, 0.005});
+  result.measures.push_back({"time", "s", "", std::vector<double>(depth.size(), last_s), 1, {}});
+  return result;
+}
+
+TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
+  // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 1.5 against 1 where both
+  // hold.
+  SweepResult held = timed({1, 1, 1, 1.1, 1, 1.2, 1, 1.1, 1}, 2);
+  SweepResult lost = timed({1, -1, -1, 1.1, -1.1, -1, 1, -1, -1.3}, 0.1);
+  auto& time = std::get<std::vector<double>>(lost.measures[1].values);
+  time[0] = time[3] = time[6] = 2.5;
+  SceneRules rules = kRules;
+  rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
+  const SceneScore scene = score(rules, {held, lost}, false, 1);
+  const Standing& judged = scene.measures[0].standing;
+  EXPECT_EQ(judged.mean[1].pairs, 3);
+  EXPECT_EQ(judged.mean[1].mean, 2.5);
+  EXPECT_EQ(judged.order.front(), 0u);
+  EXPECT_TRUE(judged.has_best);
+  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 1);
+  EXPECT_EQ(scene.measures[1].standing.mean[1].pairs, 9);
+  time[6] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[6] = -1;
+  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].standing.has_best);  // two pairs are left
+}
+
+TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
+  const SweepResult same = sweep_of(std::vector<double>(9, 1), {0, 0.001, 0.005});
+  const SceneScore scene = score(kRules, {same, same}, false, 1);
+  EXPECT_EQ(scene.success[0][0].runs, 1);
+  EXPECT_EQ(scene.success[0][1].runs, 3);
+  EXPECT_EQ(scene.success_overall[0].runs, 7);
+  EXPECT_EQ(scene.measures[0].at_level[0][0].pairs, 1);
+  EXPECT_EQ(score(kRules, {same}, true, 1).success_overall.size(), 1u);
+  SweepResult differ = same;
+  std::get<std::vector<double>>(differ.measures[0].values)[2] = 1 + 1e-15;
+  EXPECT_EQ(score(kRules, {differ}, false, 1).success[0][0].runs, 3);
 }
 
 TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
@@ -74,12 +116,42 @@ TEST(ScorecardPage, HasEverySceneAndNeedsNothingElse) {
   const std::string text = html(page_of(two_scenes()));
   for (const char* part :
        {"<h2 id=\"flat &lt;&amp;&gt;\">", "a &quot;plane&quot;", "<h2 id=\"own-noise\">", "Skipped: absent",
-        "no &lt;recording&gt;", "10/10", "9/10", "0/10", "href=\"traces/x.h5\"",
+        "no &lt;recording&gt;", "1/1", "9/10", "0/10", "seed 301", "seeds 1 to 40", "href=\"traces/x.h5\"",
         "remote-touch replay runs/x.h5 --cell 1", "Best: one. Worst: two.", "No difference between any."})
     EXPECT_HAS(text, part);
   for (const char* part : {"<script", "http", "src=", "nan", "inf"})
     EXPECT_FALSE(contains(text, part)) << part;
   EXPECT_EQ(text, html(page_of(two_scenes())));
+}
+
+TEST(ScorecardPage, AnErrorIsShownAsTheFailureThatItIs) {
+  ScorecardPage page = page_of(two_scenes());
+  page.failures[0][1] = FailureTrace{1, 3, {}, {}, "cannot <be> run"};
+  EXPECT_HAS(html(page), "error at 1, run 3: cannot &lt;be&gt; run");
+}
+
+TEST(Costs, WhatWasNotMeasuredIsNotSorted) {
+  ScorecardPage page = page_of(two_scenes());
+  const double none = std::nan("");
+  page.costs = {{"own-noise", "one", none, none},
+                {"own-noise", "two", 3e-5, 1e-4},
+                {"flat <&>", "one", 1e-5, 1e-4},
+                {"flat <&>", "two", 2e-5, none}};
+  const std::string table = cost_table(page);
+  EXPECT_HAS(table, "two</th><td>2</td><td>-</td><td>20</td><td>-</td>");
+}
+
+TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
+  const TestFolder folder("costs");
+  const TextAttributes here = {{"sources", "s"}, {"isa", "i"}, {"cpu", "c"}},
+                       other = {{"sources", "s"}, {"isa", "i"}, {"cpu", "d"}};
+  write_costs(folder / "costs.json", {{"a", "b", 1e-5, std::nan("")}}, here);
+  const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
+  ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].tick_s, 1e-5);
+  EXPECT_TRUE(std::isnan(costs[0].frame_s));
+  EXPECT_TRUE(read_costs(folder / "costs.json", other).empty());
+  EXPECT_TRUE(read_costs(folder / "none.json", here).empty());
 }
 
 }  // namespace

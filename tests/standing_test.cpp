@@ -58,6 +58,56 @@ TEST(Standings, OfEventsFewFlipsAreNoDifference) {
   EXPECT_EQ(success.at_the_top, (std::vector<std::size_t>{2, 1}));
 }
 
+TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
+  // The first has numbers only where it is easy, so its own mean is the best, and every pair says otherwise.
+  const PairedValues early = {{1, 1.1, 0.9, 1}, std::vector<double>(4, kNan)};
+  const PairedValues all = {{0.5, 0.6, 0.4, 0.5}, {3, 3.1, 2.9, 3}};
+  const Standing result = standing({early, all}, Better::smaller, false, 1);
+  EXPECT_EQ(result.order.front(), 0u);
+  EXPECT_FALSE(result.has_best || result.has_worst);
+  EXPECT_EQ(result.at_the_top.size(), 2u);
+}
+
+TEST(Standings, TheBestIsApartFromAllOthers) {
+  // The third is behind the second, but met only the two runs in which it is as good as the first.
+  const PairedValues first(1, {1, 1, 1, 1, 1, 1}), second(1, {2, 2.1, 2, 2.1, 2, 2.1}),
+      third(1, {kNan, kNan, kNan, 1, 0.9, 9});
+  const Standing result = standing({first, second, third}, Better::smaller, false, 1);
+  EXPECT_EQ(result.order, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_FALSE(result.has_best);
+  EXPECT_EQ(result.at_the_top, (std::vector<std::size_t>{0, 2}));
+  const Standing reverse = standing({first, second, third}, Better::larger, false, 1);
+  EXPECT_EQ(reverse.order, (std::vector<std::size_t>{2, 1, 0}));
+  EXPECT_FALSE(reverse.has_worst);
+}
+
+TEST(Standings, TooFewCommonPairsAreNoVerdict) {
+  const PairedValues one(1, {1, 1, 1, 1, 1}), other(1, {kNan, kNan, 2, 2, 2}), rest(1, {3, 3, kNan, 3, 3});
+  EXPECT_TRUE(standing({one, other}, Better::smaller, false, 1).has_best);
+  const Standing apart = standing({other, rest}, Better::smaller, false, 1);
+  EXPECT_FALSE(apart.has_best || apart.has_worst);
+  const PairedValues lucky(1, {0, 0, kNan, kNan, kNan});
+  EXPECT_EQ(standing({one, lucky, other}, Better::smaller, false, 1).placed, 2u);
+  // A pair alone in its level is not certain because it is alone.
+  const PairedValues nought(3, {0, 0}), scattered = {{kNan, 1}, {5, kNan}, {-0.5, kNan}};
+  EXPECT_FALSE(standing({nought, scattered}, Better::smaller, false, 1).has_best);
+}
+
+TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
+  // Level 0 is one run 20 times; of the rest, nothing shows a difference.
+  PairedValues up(2, std::vector<double>(20, 1)), down = up;
+  down[0].assign(20, 0);
+  const std::vector<Repeats> both(2, {true, false}), one = {{true, false}, {false, false}};
+  EXPECT_TRUE(standing({up, down}, Better::larger, true, 1).has_best);
+  const Standing events = standing({up, down}, Better::larger, true, 1, both);
+  EXPECT_FALSE(events.has_best);
+  EXPECT_EQ(events.mean[0].pairs, 21);
+  EXPECT_TRUE(standing({up, down}, Better::larger, true, 1, one).has_best);  // the other's runs differ
+  const PairedValues low(1, std::vector<double>(20, 1)), high(1, std::vector<double>(20, 2));
+  EXPECT_TRUE(standing({low, high}, Better::smaller, false, 1).has_best);
+  EXPECT_EQ(standing({low, high}, Better::smaller, false, 1, {{true}, {true}}).placed, 0u);
+}
+
 TEST(Standings, NearZeroIsAboutMagnitudes) {
   const PairedValues low(1, {-5, -4, -6, -5}), high(1, {1, 2, 1, 2});
   EXPECT_EQ(standing({low, high}, Better::near_zero, false, 1).order.front(), 1u);

@@ -49,5 +49,13 @@ TEST(SuccessRule, TheTypicalFailureIsTheOneInTheMiddle) {
   EXPECT_EQ(typical_failure(sweep, kBounds, 1), 8);  // of -4, -3, -2 and no number the second
 }
 
+TEST(SuccessRule, ErrorsAreFailuresBehindAllOthers) {
+  SweepResult sweep = sweep_of({0, 0, 0, 0, 0, -4, -2, 0, 0, 0}, std::vector<double>(10, 2.5));
+  sweep.state[2] = RunState::failed;
+  EXPECT_EQ(typical_failure(sweep, kBounds, 0), 2);
+  sweep.state[7] = RunState::failed;
+  EXPECT_EQ(typical_failure(sweep, kBounds, 1), 6);  // of -4, -2 and an error the second
+}
+
 }  // namespace
 }  // namespace remote_touch

@@ -5,6 +5,7 @@
 #include "analysis/column_source.h"
 #include "analysis/fingerprint.h"
 #include "analysis/result_file.h"
+#include "analysis/scorecard.h"
 #include "analysis/sweep_file.h"
 #include "analysis/tick_hashes.h"
 #include "analysis/whole_file.h"
@@ -85,7 +86,11 @@ class Repro {
 
  private:
   Repro(const CommandLine& line, const Hdf5Reader& result)
-      : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {}
+      : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {
+    if (kind_ == "figure" && of("figure") == kScorecardFigure)
+      throw InputError(file_, "is a scorecard, which " + of("command") +
+                                  " -o FOLDER makes again; allowed a file of its runs/");
+  }
 
   // A replay's command is that of its sweep, and then its own.
   void print_command() const {
@@ -110,7 +115,10 @@ class Repro {
 
   // From the configuration alone.
   void print_detour() const {
-    comment("its command no longer makes this configuration (another file, or another default)");
+    if (of("command").starts_with("remote-touch scorecard "))
+      comment("it is of a scorecard, " + of("command") + " -o FOLDER; alone:");
+    else
+      comment("its command no longer makes this configuration (another file, or another default)");
     std::vector<std::string> words = {"remote-touch", kind_ == "sweep" ? "sweep" : "run", "again.json", "-o",
                                       "again.h5"};
     add_shard(words);

@@ -2,12 +2,15 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
+#include "analysis/hdf5_reader.h"
 #include "analysis/result_file.h"
 #include "analysis/whole_file.h"
 #include "core/input_error.h"
 #include "runners/commands/commands.h"
 #include "runners/commands/progress.h"
+#include "runners/json_parameters.h"
 #include "runners/provenance.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/simulation.h"
@@ -23,6 +26,25 @@ void make_folders(const std::filesystem::path& folder) {
     if (failure)
       throw InputError((folder / part).string(),
                        "cannot be made (" + failure.message() + "); allowed a writable folder");
+  }
+}
+
+// What a folder's scorecard has, this one must have too: its page and result are replaced.
+void require_all_of(const std::filesystem::path& file, const ContestPlan& plan) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return;
+  const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
+                                  false);  // broken: not an object
+  const Json wanted =
+      Json::parse(configuration(plan.contest.contenders, plan.contest.scenes, plan.contest.replicates));
+  for (const char* kind : {"contenders", "scenes"}) {
+    if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
+      throw InputError(file.string(), "is no scorecard, and would be replaced; allowed another folder");
+    for (const auto& item : stored[kind].items())
+      if (!wanted[kind].contains(item.key()))
+        throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
+                                            ", and would be replaced; allowed those and others too, or "
+                                            "another folder");
   }
 }
 
@@ -68,6 +90,7 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
       {chosen_contenders(request.contenders), chosen_scenes(request.scenes), request.seeds, request.folder});
   const std::vector<ContestSweep> sweeps = plan.sweeps();
   require_same_contest(sweeps);
+  require_all_of(std::filesystem::path(request.folder) / "scorecard.h5", plan);
   make_folders(request.folder);
   try {
     Progress progress("scorecard", line.quiet);

@@ -129,11 +129,13 @@ Sweep ContestScene::sweep(const Contender& contender, int replicates) const {
   Json run = parse_json(experiment, label);
   if (run.contains("renderer"))
     throw InputError("scene " + name + ": experiment.renderer", "set; allowed none, contenders bring it");
+  if (run.contains("seed"))
+    throw InputError("scene " + name + ": experiment.seed", "set; allowed none, the scorecard has its own");
   run["renderer"] = parse_json(contender.renderer, label);
-  // A sweep needs an axis: where the scene has its own noise it is the seed, with the one value that is the
-  // default of all experiments.
+  run["seed"] = kScorecardSeed;
+  // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
   const bool own_noise = noise.empty();
-  const Json levels = own_noise ? Json::array({1}) : Json(scorecard_noise_m());
+  const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
   return Sweep::from_json(Json{{"title", name + " with " + contender.name + ": " + title},
                                {"experiment", run},
                                {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
@@ -145,7 +147,10 @@ Sweep ContestScene::sweep(const Contender& contender, int replicates) const {
 
 std::string configuration(const std::vector<Contender>& contenders, const std::vector<ContestScene>& scenes,
                           int replicates) {
-  Json all = {{"replicates", replicates}, {"noise_sigma_m", scorecard_noise_m()}};
+  Json all = {{"replicates", replicates},
+              {"noise_sigma_m", scorecard_noise_m()},
+              {"seed", kScorecardSeed},
+              {"tuned_seeds", {1, kLastTunedSeed}}};
   for (const Contender& contender : contenders)
     all["contenders"][contender.name] = parse_json(contender.renderer, contender.name);
   for (const ContestScene& scene : scenes) {

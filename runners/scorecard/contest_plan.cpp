@@ -1,5 +1,7 @@
 #include "runners/scorecard/contest_plan.h"
 
+#include <algorithm>
+
 #include "runners/scorecard/passivity.h"
 #include "scenarios/recording_part.h"
 
@@ -8,7 +10,11 @@ namespace remote_touch {
 std::vector<ContestSweep> ContestPlan::sweeps() const {
   std::vector<ContestSweep> list;
   for (const ScenePlan& one : scenes) list.insert(list.end(), one.sweeps.begin(), one.sweeps.end());
-  list.insert(list.end(), audit.begin(), audit.end());
+  // A contender's own force law is in the audit too, and is the same file.
+  for (const ContestSweep& one : audit)
+    if (std::none_of(list.begin(), list.end(),
+                     [&](const ContestSweep& other) { return other.name == one.name; }))
+      list.push_back(one);
   return list;
 }
 

@@ -23,7 +23,7 @@ struct ContestPlan {
   // Scenes whose recording is not on this machine, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
 
-  std::vector<ContestSweep> sweeps() const;
+  std::vector<ContestSweep> sweeps() const;  // each once
 };
 
 // Resolves and checks every run. Throws InputError for what cannot be run.

@@ -7,6 +7,7 @@
 
 #include "analysis/whole_file.h"
 #include "runners/json_parameters.h"
+#include "runners/provenance.h"
 #include "runners/simulation.h"
 
 namespace remote_touch {
@@ -29,34 +30,53 @@ Cost measured_cost(const ContestSweep& sweep, const std::string& scene, const st
                    const Kernels& kernels, const std::atomic<bool>* stop) {
   constexpr std::size_t kLevel = 3;
   const std::size_t cell = std::min(kLevel, sweep.sweep.plan().cell_count() - 1);
-  Cost best{scene, contender, std::numeric_limits<double>::infinity(), 0};
-  for (int round = 0; round < 2; ++round) {
-    std::vector<double> ticks, frames;
-    SimulationOptions options;
-    options.kernels = &kernels, options.stop = stop;
-    options.step_duration_s = &ticks, options.frame_duration_s = &frames;
-    simulate(sweep.sweep.experiment(cell, 0), options);
-    if (mean(ticks) < best.tick_s) best.tick_s = mean(ticks), best.frame_s = mean(frames);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Cost best{scene, contender, kNone, kNone};
+  try {
+    for (int round = 0; round < 2; ++round) {
+      std::vector<double> ticks, frames;
+      SimulationOptions options;
+      options.kernels = &kernels, options.stop = stop, options.made_points = true;
+      options.step_duration_s = &ticks, options.frame_duration_s = &frames;
+      simulate(sweep.sweep.experiment(cell, 0), options);
+      if (!(mean(ticks) >= best.tick_s)) best.tick_s = mean(ticks), best.frame_s = mean(frames);
+    }
+  } catch (const std::exception&) {
+    return {scene, contender, kNone, kNone};  // the error is in the sweep's file
   }
   return best;
 }
 
-void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs) {
+TextAttributes cost_origin(const Kernels& kernels) {
+  TextAttributes origin = provenance("", "", kernels.isa);
+  std::erase_if(origin, [](const auto& one) { return one.first == "config" || one.first == "command"; });
+  origin.emplace_back("cpu", cpu_name());
+  return origin;
+}
+
+void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
+                 const TextAttributes& origin) {
   Json list = Json::array();
   for (const Cost& cost : costs)
     list.push_back({{"scene", cost.scene},
                     {"contender", cost.contender},
                     {"tick_s", number(cost.tick_s)},
                     {"frame_s", number(cost.frame_s)}});
-  const std::string text = list.dump(1) + "\n";
+  Json all = Json::object();
+  for (const auto& [name, value] : origin) all[name] = value;
+  all["costs"] = list;
+  const std::string text = all.dump(1) + "\n";
   write_whole_file(file, text.data(), text.size());
 }
 
-std::vector<Cost> read_costs(const std::filesystem::path& file) {
+std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
   std::ifstream in(file);
-  const Json list = Json::parse(in, nullptr, false);
+  const Json all = Json::parse(in, nullptr, false);
   std::vector<Cost> costs;
-  if (!list.is_array()) return costs;
+  if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
+  for (const char* name : {"sources", "isa", "cpu"})
+    if (all.value(name, Json()) != attribute(origin, name)) return costs;
+  const Json& list = all["costs"];
   const auto seconds = [](const Json& value) {
     return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
   };

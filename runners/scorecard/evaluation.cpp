@@ -25,6 +25,12 @@ SceneScore score_of(const ContestScene& scene, const std::vector<StoredSweep>& s
   return score(rules, results, scene.noise.empty(), kBootstrapKey);
 }
 
+// The audit is about all runs, those that are not passive first of all.
+ContestScene reported(ContestScene scene) {
+  for (ContestScene::Judged& judged : scene.measures) judged.better = Better::reported;
+  return scene;
+}
+
 Scorecard empty_card(const std::vector<Contender>& contenders) {
   Scorecard card;
   for (const Contender& contender : contenders)
@@ -32,22 +38,23 @@ Scorecard empty_card(const std::vector<Contender>& contenders) {
   return card;
 }
 
-// Costs that an earlier call measured stay as they are.
+// Costs that an earlier call measured stay as they are; written scene by scene.
 std::vector<Cost> costs_of(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                            const std::filesystem::path& file) {
-  std::vector<Cost> costs = read_costs(file);
-  bool is_new = false;
+  const TextAttributes origin = cost_origin(kernels);
+  std::vector<Cost> costs = read_costs(file, origin);
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  for (const ScenePlan& one : plan.scenes)
+  for (const ScenePlan& one : plan.scenes) {
+    const std::size_t before = costs.size();
     for (std::size_t c = 0; c < one.sweeps.size(); ++c) {
       const std::string& contender = plan.contest.contenders[c].name;
       if (find_cost(costs, one.scene.name, contender)) continue;
       costs.push_back(measured_cost(one.sweeps[c], one.scene.name, contender, kernels, stop));
-      is_new = true;
     }
+    if (costs.size() > before) write_costs(file, costs, origin);
+  }
   omp_set_num_threads(threads);
-  if (is_new) write_costs(file, costs);
   return costs;
 }
 
@@ -68,9 +75,10 @@ ScorecardPage evaluate(const ContestPlan& plan, const Kernels& kernels, const st
           trace_failure(one.sweeps[c], stored[c], one.scene.success, folder, kernels, stop));
     if (one.scene.name != kPassivityScene) continue;
     page.audit = empty_card(plan.laws);
-    page.audit->scenes.push_back(score_of(one.scene, read_all(plan.audit)));
+    page.audit->scenes.push_back(score_of(reported(one.scene), read_all(plan.audit)));
   }
   page.costs = costs_of(plan, kernels, stop, folder / "costs.json");
+  page.cpu = cpu_name();
   page.origin = "remote-touch " + version();
   return page;
 }

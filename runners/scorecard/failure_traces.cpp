@@ -33,6 +33,8 @@ std::optional<FailureTrace> trace_failure(const ContestSweep& sweep, const Store
     const long found = typical_failure(result, success, level);
     if (found < 0) continue;
     const auto run = static_cast<std::size_t>(found);
+    if (result.state[run] == RunState::failed)
+      return FailureTrace{level, result.replicate_of(run), {}, {}, result.error[run]};
     FailureTrace failure{level, result.replicate_of(run), "traces/" + sweep.name + ".h5", {}};
     failure.command = "remote-touch replay runs/" + sweep.name + ".h5 --cell " + cell_text(result, level) +
                       " --replicate " + std::to_string(failure.replicate) + " -o " + failure.file;

@@ -14,12 +14,14 @@ namespace remote_touch {
 struct FailureTrace {
   std::size_t level = 0;  // of noise: the lowest with a failure
   int replicate = 0;
-  std::string file;     // from the scorecard's folder
+  std::string file;     // from the scorecard's folder; empty: the run ended with an error and has no trace
   std::string command;  // to be given in that folder
+  std::string error = {};
 };
 
 // Of the failures at the lowest noise level that has some, the one in the middle, replayed into
-// FOLDER/traces/NAME.h5 unless it is there. None where every run succeeded.
+// FOLDER/traces/NAME.h5 unless it is there. An error where that is what is typical. None where every run
+// succeeded.
 std::optional<FailureTrace> trace_failure(const ContestSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,

@@ -36,20 +36,33 @@ std::string colours(std::size_t contenders) {
 
 // What has to be known to read the tables.
 std::string how_to_read(const ScorecardPage& page) {
-  return "<p>Each contender ran each scene with " + std::to_string(page.replicates) +
-         " seeds at each noise level, in units of the contact radius r_c = 5 mm (own: the scene has its own "
-         "noise). Noise is keyed by level and seed, not by contender: all met the same points in the same "
-         "frames. Lines are shares of successful runs with Wilson's 95 % intervals.</p>"
-         "<p><b>Success.</b> A proxy that is a ball rests r_c above a surface, one that is a point lies on it, "
-         "and with noise a little below. So that neither is favoured, a surface counts as held down to 0.5 r_c "
-         "below it; popped through means lost to the other side. Direct rendering has no proxy: its place is "
-         "the HIP itself, and where a scene presses deeper than 0.5 r_c it is lost. What is held has to be felt too: "
-         "a force in the last 0.1 s.</p>"
-         "<p><b>Best and worst</b> are marked only where the paired difference to the next contender, run by "
-         "run over all noise levels, has a 95 % interval without zero (shares: Agresti and Min; else the "
-         "percentile bootstrap with fixed keys); otherwise there is no difference that these runs show. The "
-         "intervals are not adjusted for how many comparisons there are. Means of measures are over the runs "
-         "that have a number: who is lost early has few, so read them beside the successes.</p>";
+  const std::string runs = std::to_string(page.replicates), seed = std::to_string(kScorecardSeed),
+                    tuned = std::to_string(kLastTunedSeed), pairs = std::to_string(kLeastPairs);
+  return "<p>Each contender ran each scene " + runs +
+         " times at each noise level, in units of the contact radius r_c = 5 mm (own: the scene has its own "
+         "noise). Noise is keyed by seed " +
+         seed +
+         ", level and number of the run, not by contender: all met the same points in the same frames. The "
+         "parameters of the tracked sheet were fixed with seeds 1 to " +
+         tuned +
+         ", which no run here has. Lines are shares of successful runs with Wilson's 95 % intervals. Where "
+         "there is no noise and all runs of a contender have the same numbers to the last bit, they count as one "
+         "run, in every share, mean and comparison.</p>"
+         "<p><b>Success.</b> A surface counts as held while the proxy is no deeper than 0.5 r_c below it; popped "
+         "through means lost to the other side. This does not ask the same of all: a proxy that is a ball rests "
+         "1 r_c above a surface and may sink by 1.5 r_c, one that is a point rests on it, with noise a little "
+         "below, and may sink by 0.5 r_c; the surface of metaballs lies higher than either. Direct rendering has "
+         "no proxy: its place is the HIP itself, and where a scene presses deeper than 0.5 r_c it is lost. What "
+         "is held has to be felt too: a force in the last 0.1 s or, where the path ends in the open, in a "
+         "quarter of the ticks.</p>"
+         "<p><b>Best and worst</b> are marked only where the paired differences to all others, run by run over "
+         "all noise levels, have 95 % intervals on the better, or the worse, side of zero (shares: Agresti and "
+         "Min; else the percentile bootstrap with fixed keys); otherwise these runs do not show it. A measure "
+         "that is judged is compared over the pairs of runs in which both succeeded, and with fewer than " +
+         pairs +
+         " such pairs there is no verdict; its means are over the successful runs of each, so who succeeds only "
+         "where it is easy has the mean of easy runs. A measure that is not judged has its mean over all runs "
+         "that have a number. The intervals are not adjusted for how many comparisons there are.</p>";
 }
 
 std::string scene_section(const ScorecardPage& page, std::size_t number) {
@@ -63,10 +76,11 @@ std::string scene_section(const ScorecardPage& page, std::size_t number) {
 
 std::string costs_section(const ScorecardPage& page) {
   if (page.costs.empty() || page.card.scenes.empty()) return "";
-  return "<h2 id=\"costs\">Costs</h2><p>Wall clock on the machine that made this page, one thread, one run of "
-         "each scene at 0.6 r_c, medians over the scenes. Not the same twice: in costs.json, outside of every "
-         "digest. Ticks include making the noise of the points that a renderer asks for. Proxy steps per tick "
-         "are the measure mean_steps of the sweeps in runs/.</p>" +
+  return "<h2 id=\"costs\">Costs</h2><p>Wall clock on " +
+         escaped(page.cpu.empty() ? "the machine that made this page" : page.cpu) +
+         ", one thread, one run of each scene at 0.6 r_c, medians over the scenes. Frames came with all their "
+         "points made: neither ticks nor frames contain the making of noise. Not the same twice: in costs.json, "
+         "outside of every digest. Proxy steps per tick are the measure mean_steps of the sweeps in runs/.</p>" +
          cost_table(page);
 }
 
@@ -76,7 +90,7 @@ std::string audit_section(const ScorecardPage& page) {
          "presses and slides on a plane at rest and is moved by the rendered force. In each cell the energy "
          "that the hand got from the renderer in a cycle, and small from one frame update to the next while "
          "there is force, in mJ: below 0 the renderer took energy, as one does, too, that loses the surface and is "
-         "pressed into it again. Red: above 0 for certain, green: below it. "
+         "pressed into it again. Red: its 95 % interval is above 0, green: below it; one run alone has none. "
          "v_plus and v_none are the sign of the velocity term of (4.15), minus where nothing is said; k_d3 is "
          "a damper of 3 Ns/m in (4.16), and k_d_minus its printed sign.</p>" +
          audit_table(*page.audit);

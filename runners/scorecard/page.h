@@ -21,6 +21,7 @@ struct ScorecardPage {
   std::vector<Cost> costs;
   // The passivity scene with every force law, where it was run; its contenders are the laws.
   std::optional<Scorecard> audit;
+  std::string cpu = {};  // that the costs were measured on
 };
 
 std::string html(const ScorecardPage& page);

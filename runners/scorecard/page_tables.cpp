@@ -60,15 +60,15 @@ std::string with_interval(const MeanDifference& mean, double factor) {
 const char* better_text(Better better) {
   switch (better) {
     case Better::larger:
-      return "larger is better";
+      return "larger is better, successes";
     case Better::smaller:
-      return "smaller is better";
+      return "smaller is better, successes";
     case Better::near_zero:
-      return "near zero is better";
+      return "near zero is better, successes";
     case Better::reported:
       break;
   }
-  return "not judged";
+  return "not judged, all runs";
 }
 
 std::string share_text(const Share& share) {
@@ -82,9 +82,18 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+// Where both were measured: no NaN may come between numbers that are sorted.
+void add_cost(double own_s, double other_s, std::vector<double>& ratio, std::vector<double>& own_us) {
+  if (!(std::isfinite(own_s) && std::isfinite(other_s) && own_s > 0 && other_s > 0)) return;
+  ratio.push_back(own_s / other_s), own_us.push_back(1e6 * own_s);
+}
+
 std::string failure_link(const FailureTrace& failure, const SceneScore& scene) {
-  return "<a href=\"" + escaped(failure.file) + "\">trace</a> at " +
-         level_text(scene.noise_m[failure.level]) + ": <code>" + escaped(failure.command) + "</code>";
+  const std::string level = level_text(scene.noise_m[failure.level]);
+  if (failure.file.empty())
+    return "error at " + level + ", run " + std::to_string(failure.replicate) + ": " + escaped(failure.error);
+  return "<a href=\"" + escaped(failure.file) + "\">trace</a> at " + level + ": <code>" +
+         escaped(failure.command) + "</code>";
 }
 
 }  // namespace
@@ -195,9 +204,8 @@ std::string cost_table(const ScorecardPage& page) {
       const Cost* own = find_cost(page.costs, scene.name, names[c]);
       const Cost* other = find_cost(page.costs, scene.name, reference);
       if (!own || !other) continue;
-      tick_ratio.push_back(own->tick_s / other->tick_s), tick.push_back(1e6 * own->tick_s);
-      if (own->frame_s > 0 && other->frame_s > 0)
-        frame_ratio.push_back(own->frame_s / other->frame_s), frame.push_back(1e6 * own->frame_s);
+      add_cost(own->tick_s, other->tick_s, tick_ratio, tick);
+      add_cost(own->frame_s, other->frame_s, frame_ratio, frame);
     }
     table += "<tr>" + contender_cell(page.card, c) + cell(number(median(tick_ratio))) +
              cell(number(median(frame_ratio))) + cell(number(median(tick))) + cell(number(median(frame))) +
