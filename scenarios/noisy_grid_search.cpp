@@ -6,8 +6,8 @@
 namespace remote_touch {
 
 namespace {
-// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who asks
-// for more than a proxy needs asks once a frame.
+// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who
+// asks for more than a proxy needs asks once a frame.
 constexpr double kSpareMargin_m = 0.010, kLargestOfProxy_m = 0.025;
 // Far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
