@@ -38,7 +38,7 @@ Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m)
     return sweep.state[a] == sweep.state[b] &&
            std::all_of(sweep.measures.begin(), sweep.measures.end(), equal);
   };
-  for (std::size_t level = 0; level < sweep.cell_count(); ++level) {
+  for (std::size_t level = 0; level < noise_m.size(); ++level) {
     bool all = !(noise_m[level] > 0);
     for (int k = 1; k < sweep.replicates; ++k) all = all && same(sweep.run(level, 0), sweep.run(level, k));
     repeats.push_back(all);

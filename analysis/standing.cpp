@@ -26,8 +26,8 @@ PairedValues differences(const PairedValues& a, const PairedValues& b, Better be
   return distinct(d, repeats);
 }
 
-// A single pair that is left of a level shows no spread: drawn from within its level it would be certain. All
-// those are drawn from together. A level that is one run is certain.
+// A single number that is left of a level shows no spread: drawn from within its level it would be certain.
+// All those are drawn from together. A level that is one run is certain.
 PairedValues with_lone_pairs_together(const PairedValues& d, const Repeats& repeats) {
   PairedValues groups(1);
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -87,7 +87,7 @@ Standing standing(const std::vector<PairedValues>& contenders, Better better, bo
   const auto repeats_of = [&](std::size_t c) { return c < repeats.size() ? repeats[c] : Repeats{}; };
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     const PairedValues values = distinct(contenders[c], repeats_of(c));
-    result.mean.push_back(bootstrap_mean(values, key));
+    result.mean.push_back(bootstrap_mean(with_lone_pairs_together(values, repeats_of(c)), key));
     bad.push_back(result.mean.back().pairs >= (event ? 1 : kLeastPairs)
                       ? mean_badness(values, better)
                       : std::numeric_limits<double>::infinity());

@@ -1,4 +1,4 @@
-// Contenders in order of a measure, and who at the ends of that order is told apart from the next one.
+// Contenders in order of a measure, and who at the ends of that order is told apart from all others.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,10 @@ using PairedValues = std::vector<std::vector<double>>;
 using Repeats = std::vector<bool>;
 PairedValues distinct(const PairedValues& values, const Repeats& repeats);
 
-// With fewer there is no verdict about a measure that is no event. Shares have their intervals' width.
-inline constexpr std::int64_t kLeastPairs = 3;
+// With fewer there is no verdict about a measure that is no event: of so many pairs without a difference all
+// differ to the same side, which no draw from them undoes, once in 32 times. Shares have their intervals'
+// width.
+inline constexpr std::int64_t kLeastPairs = 6;
 
 struct Standing {
   std::vector<std::size_t> order;    // contenders, the best first by their own means; without a place last

@@ -175,8 +175,8 @@ struct DiskColumns {
 // Rounds a number below 2^39 to a multiple of 2^-12 when it is added and taken away.
 inline constexpr double kRoundsToPatchGrid = 0x1.8p40;
 
-// The axes of a patch of surface in the world, core/tracked_sheet, and its cylinder about n. Lengths in units
-// of unit_m.
+// The axes of a patch of surface in the world, core/tracked_sheet, and its cylinder about n: radius and half
+// height in units of unit_m.
 struct PatchAxes {
   double origin[3], u[3], v[3], n[3];
   double unit_m, radius, half_height;
@@ -270,7 +270,7 @@ struct Kernels {
   LeftRegions (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept, double motion,
                                      double alike, double most);
   // The points that lie in a patch's cylinder, in order, their coordinates rounded to kRoundsToPatchGrid; NaN
-  // lies in none. Returns how many; the columns have room for all points.
+  // lies in none. Returns how many; the columns have room for padded_count.
   std::size_t (*points_of_patch)(const PointsView&, const PatchAxes&, const PatchColumns&);
   // How far each place lies above the heights, which are bilinear in each cell; beyond the border they are
   // those of the nearest place on it.

@@ -68,24 +68,25 @@ SweepResult timed(const std::vector<double>& depth, double last_s) {
 }
 
 TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
-  // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 1.5 against 1 where both
-  // hold.
-  SweepResult held = timed({1, 1, 1, 1.1, 1, 1.2, 1, 1.1, 1}, 2);
-  SweepResult lost = timed({1, -1, -1, 1.1, -1.1, -1, 1, -1, -1.3}, 0.1);
+  // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 2.5 where both hold.
+  std::vector<double> upper, at_times;
+  for (int i = 0; i < 18; ++i)
+    upper.push_back(1 + 0.01 * i), at_times.push_back(i % 3 == 0 ? 1 : -1 - 0.01 * i);
+  SweepResult held = timed(upper, 2), lost = timed(at_times, 0.1);
   auto& time = std::get<std::vector<double>>(lost.measures[1].values);
-  time[0] = time[3] = time[6] = 2.5;
+  for (std::size_t i = 0; i < 18; i += 3) time[i] = 2.5;
   SceneRules rules = kRules;
   rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
   const SceneScore scene = score(rules, {held, lost}, false, 1);
   const Standing& judged = scene.measures[0].standing;
-  EXPECT_EQ(judged.mean[1].pairs, 3);
+  EXPECT_EQ(judged.mean[1].pairs, 6);
   EXPECT_EQ(judged.mean[1].mean, 2.5);
   EXPECT_EQ(judged.order.front(), 0u);
   EXPECT_TRUE(judged.has_best);
-  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 1);
-  EXPECT_EQ(scene.measures[1].standing.mean[1].pairs, 9);
+  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 2);
+  EXPECT_EQ(scene.measures[1].standing.mean[1].pairs, 18);
   time[6] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[6] = -1;
-  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].standing.has_best);  // two pairs are left
+  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].standing.has_best);  // five pairs are left
 }
 
 TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
@@ -95,7 +96,8 @@ TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
   EXPECT_EQ(scene.success[0][1].runs, 3);
   EXPECT_EQ(scene.success_overall[0].runs, 7);
   EXPECT_EQ(scene.measures[0].at_level[0][0].pairs, 1);
-  EXPECT_EQ(score(kRules, {same}, true, 1).success_overall.size(), 1u);
+  const SweepResult own = sweep_of(std::vector<double>(9, 1), {1});
+  EXPECT_EQ(score(kRules, {own}, true, 1).success[0][0].runs, 1);
   SweepResult differ = same;
   std::get<std::vector<double>>(differ.measures[0].values)[2] = 1 + 1e-15;
   EXPECT_EQ(score(kRules, {differ}, false, 1).success[0][0].runs, 3);

@@ -60,8 +60,8 @@ TEST(Standings, OfEventsFewFlipsAreNoDifference) {
 
 TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
   // The first has numbers only where it is easy, so its own mean is the best, and every pair says otherwise.
-  const PairedValues early = {{1, 1.1, 0.9, 1}, std::vector<double>(4, kNan)};
-  const PairedValues all = {{0.5, 0.6, 0.4, 0.5}, {3, 3.1, 2.9, 3}};
+  const PairedValues early = {{1, 1.1, 0.9, 1, 1.1, 0.9}, std::vector<double>(6, kNan)};
+  const PairedValues all = {{0.5, 0.6, 0.4, 0.5, 0.6, 0.4}, {3, 3.1, 2.9, 3, 3.1, 2.9}};
   const Standing result = standing({early, all}, Better::smaller, false, 1);
   EXPECT_EQ(result.order.front(), 0u);
   EXPECT_FALSE(result.has_best || result.has_worst);
@@ -69,9 +69,11 @@ TEST(Standings, TheCommonPairsHaveToSayWhatTheOrderSays) {
 }
 
 TEST(Standings, TheBestIsApartFromAllOthers) {
-  // The third is behind the second, but met only the two runs in which it is as good as the first.
-  const PairedValues first(1, {1, 1, 1, 1, 1, 1}), second(1, {2, 2.1, 2, 2.1, 2, 2.1}),
-      third(1, {kNan, kNan, kNan, 1, 0.9, 9});
+  // The third is behind the second, but was seen in six runs, and in four of them as good as the first.
+  PairedValues first(1, std::vector<double>(12, 1)), second(1, std::vector<double>(12, 2)),
+      third(1, {1, 0.9, 9, 1, 0.9, 9});
+  third[0].resize(12, kNan);
+  second[0][1] = second[0][8] = 2.1;
   const Standing result = standing({first, second, third}, Better::smaller, false, 1);
   EXPECT_EQ(result.order, (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_FALSE(result.has_best);
@@ -82,15 +84,19 @@ TEST(Standings, TheBestIsApartFromAllOthers) {
 }
 
 TEST(Standings, TooFewCommonPairsAreNoVerdict) {
-  const PairedValues one(1, {1, 1, 1, 1, 1}), other(1, {kNan, kNan, 2, 2, 2}), rest(1, {3, 3, kNan, 3, 3});
+  const PairedValues one(1, std::vector<double>(10, 1)), other(1, {kNan, kNan, kNan, kNan, 2, 2, 2, 2, 2, 2}),
+      rest(1, {3, 3, 3, 3, 3, 3, 3, 3, kNan, kNan});
   EXPECT_TRUE(standing({one, other}, Better::smaller, false, 1).has_best);
   const Standing apart = standing({other, rest}, Better::smaller, false, 1);
   EXPECT_FALSE(apart.has_best || apart.has_worst);
-  const PairedValues lucky(1, {0, 0, kNan, kNan, kNan});
+  const PairedValues lucky(1, {0, 0, 0, 0, 0, kNan, kNan, kNan, kNan, kNan});
   EXPECT_EQ(standing({one, lucky, other}, Better::smaller, false, 1).placed, 2u);
   // A pair alone in its level is not certain because it is alone.
-  const PairedValues nought(3, {0, 0}), scattered = {{kNan, 1}, {5, kNan}, {-0.5, kNan}};
-  EXPECT_FALSE(standing({nought, scattered}, Better::smaller, false, 1).has_best);
+  const PairedValues nought(7, {0, 0}),
+      scattered = {{kNan, 1}, {5, kNan}, {-3, kNan}, {2, kNan}, {-1, kNan}, {-2, kNan}, {4, kNan}};
+  const Standing alone = standing({nought, scattered}, Better::smaller, false, 1);
+  EXPECT_FALSE(alone.has_best);
+  EXPECT_LT(alone.mean[1].low, alone.mean[1].high);
 }
 
 TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
@@ -109,13 +115,14 @@ TEST(Standings, ARunDoneAgainAndAgainCountsOnce) {
 }
 
 TEST(Standings, NearZeroIsAboutMagnitudes) {
-  const PairedValues low(1, {-5, -4, -6, -5}), high(1, {1, 2, 1, 2});
+  const PairedValues low(1, {-5, -4, -6, -5, -4, -6}), high(1, {1, 2, 1, 2, 1, 2});
   EXPECT_EQ(standing({low, high}, Better::near_zero, false, 1).order.front(), 1u);
   EXPECT_EQ(standing({low, high}, Better::smaller, false, 1).order.front(), 0u);
 }
 
 TEST(Standings, WhoHasNoNumberHasNoPlace) {
-  const PairedValues none(1, {kNan, kNan, kNan}), good(1, {1, 2, 1.5}), bad(1, {9, 10, 9.5});
+  const PairedValues none(1, std::vector<double>(6, kNan)), good(1, {1, 2, 1.5, 1, 2, 1.5}),
+      bad(1, {9, 10, 9.5, 9, 10, 9.5});
   const Standing result = standing({none, bad, good}, Better::smaller, false, 1);
   EXPECT_EQ(result.order, (std::vector<std::size_t>{2, 1, 0}));
   EXPECT_EQ(result.placed, 2u);

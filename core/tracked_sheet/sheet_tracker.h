@@ -93,7 +93,7 @@ class SheetTracker {
   double sigma_ = 0;
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
   int age_ = 0, missed_ = 0;  // shifts measured; frames without the sheet
-  double held_distance_ = 1;  // of the proxy from the sheet when it was last seen
+  double held_distance_ = 1;  // contact_distance() when the sheet was last seen
   bool nearer_stray_ = false;
   Vec3 looked_from_W_ = Vec3::Zero();
   std::optional<Vec3> last_proxy_W_;  // when the frame before came

@@ -29,19 +29,25 @@ void make_folders(const std::filesystem::path& folder) {
   }
 }
 
+// Without the scenes whose recording is not here.
+std::string configuration_of(const ContestPlan& plan) {
+  std::vector<ContestScene> scenes;
+  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
+  return configuration(plan.contest.contenders, scenes, plan.contest.replicates);
+}
+
 // What a folder's scorecard has, this one must have too: its page and result are replaced.
 void require_all_of(const std::filesystem::path& file, const ContestPlan& plan) {
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
   const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
                                   false);  // broken: not an object
-  const Json wanted =
-      Json::parse(configuration(plan.contest.contenders, plan.contest.scenes, plan.contest.replicates));
+  const Json wanted = Json::parse(configuration_of(plan));
   for (const char* kind : {"contenders", "scenes"}) {
     if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
       throw InputError(file.string(), "is no scorecard, and would be replaced; allowed another folder");
     for (const auto& item : stored[kind].items())
-      if (!wanted[kind].contains(item.key()))
+      if (!wanted.contains(kind) || !wanted[kind].contains(item.key()))
         throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
                                             ", and would be replaced; allowed those and others too, or "
                                             "another folder");
@@ -103,10 +109,8 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
                  [&](std::size_t done, std::size_t all) { after.update(done, all, 0, "scenes"); });
     const std::filesystem::path folder = request.folder;
     const Figure figure = scorecard_figure(page.card);
-    const std::string sum =
-        write_figure(folder / "scorecard.h5", figure,
-                     provenance(configuration(plan.contest.contenders, plan.contest.scenes, request.seeds),
-                                normalised(request), ""));
+    const std::string sum = write_figure(folder / "scorecard.h5", figure,
+                                         provenance(configuration_of(plan), normalised(request), ""));
     const std::string text = html(page);
     write_whole_file(folder / "index.html", text.data(), text.size());
     print(page.card);

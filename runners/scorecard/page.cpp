@@ -47,7 +47,7 @@ std::string how_to_read(const ScorecardPage& page) {
          tuned +
          ", which no run here has. Lines are shares of successful runs with Wilson's 95 % intervals. Where "
          "there is no noise and all runs of a contender have the same numbers to the last bit, they count as one "
-         "run, in every share, mean and comparison.</p>"
+         "run, in every share and mean, and in a comparison where that is so of both.</p>"
          "<p><b>Success.</b> A surface counts as held while the proxy is no deeper than 0.5 r_c below it; popped "
          "through means lost to the other side. This does not ask the same of all: a proxy that is a ball rests "
          "1 r_c above a surface and may sink by 1.5 r_c, one that is a point rests on it, with noise a little "
