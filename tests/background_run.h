@@ -5,6 +5,7 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -26,11 +27,15 @@ class BackgroundRun {
       const std::lock_guard lock(mutex_);
       told_ += line + "\n";
     };
-    thread_ = std::thread([this, experiment = std::move(experiment)] { run(experiment); });
+    thread_ = std::thread([this, experiment = std::move(experiment)] {
+      run(experiment);
+      over_ = true;
+    });
   }
   ~BackgroundRun() { ended_by_stop(); }
 
   void stop() { stop_ = true; }
+  bool is_over() const { return over_; }
   // Waits for the end.
   const LiveResult& ended() {
     if (thread_.joinable()) thread_.join();
@@ -52,7 +57,7 @@ class BackgroundRun {
     result_.ended = error.what(), result_.failed = true;
   }
 
-  std::atomic<bool> stop_ = false;
+  std::atomic<bool> stop_ = false, over_ = false;
   std::mutex mutex_;
   std::string told_;
   LiveOptions options_;
@@ -64,10 +69,33 @@ inline void nap() {
   std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 
-inline bool wait_until(const std::function<bool()>& is_so) {
-  for (const double until_s = steady_s() + 20; steady_s() < until_s; nap())
+inline bool wait_until(const std::function<bool()>& is_so, double longest_s = 20) {
+  for (const double until_s = steady_s() + longest_s; steady_s() < until_s; nap())
     if (is_so()) return true;
   return false;
+}
+
+// What a hand does, and what it feels.
+struct Hand {
+  std::function<void()> lift, press;
+  std::function<double()> force_N;
+};
+
+// Comes from free space and presses until there is a force. Where the machine pauses, the device is let go,
+// and then a hand that is inside waits for ever; some devices end the run. So it is lifted again, and a run
+// that is over, or that there is not yet, is started.
+inline bool press_in(std::unique_ptr<BackgroundRun>& run,
+                     const std::function<std::unique_ptr<BackgroundRun>()>& start, const Hand& hand) {
+  constexpr double kEnough_N = 0.4, kLift_s = 0.1, kPress_s = 0.3;
+  const auto try_once = [&] {
+    hand.lift();
+    if (!run || run->is_over()) run = start();
+    std::this_thread::sleep_for(std::chrono::duration<double>(kLift_s));
+    hand.press();
+    wait_until([&] { return run->is_over() || hand.force_N() > kEnough_N; }, kPress_s);
+    return !run->is_over() && hand.force_N() > kEnough_N;
+  };
+  return wait_until(try_once);
 }
 
 // From now on until there is no force; a second at most.

@@ -21,12 +21,15 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
     double_.reset();
     double_ = std::make_unique<DoubleInstalled>(*GetParam());
     if (prepare) device().set(prepare);
-    hold(0.03);
-    run_ = std::make_unique<BackgroundRun>(kPress, GetParam()->uri);
-    // The force begins in free space, and then there is something to feel.
-    ASSERT_TRUE(wait_until([&] { return device().events().size() > 300; }));
-    hold(-kPressed_m);
-    ASSERT_TRUE(wait_until([&] { return device().now().force() > 0.4; })) << "never touched";
+    run_.reset();
+    press_in_again();
+  }
+  void press_in_again() {
+    const auto start = [&] { return std::make_unique<BackgroundRun>(kPress, GetParam()->uri); };
+    ASSERT_TRUE(
+        press_in(run_, start,
+                 {[&] { hold(0.03); }, [&] { hold(-kPressed_m); }, [&] { return device().now().force(); }}))
+        << "never touched";
   }
 
   DeviceDouble& device() { return **double_; }
@@ -88,17 +91,18 @@ TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
   device().release();
   const double released_s = steady_s();
-  // What hung may still be told; from then on it begins as at the start: pressed in, it waits.
+  // What hung may still be told. From then on it begins as at the start, pressed in or not: from nothing, in
+  // small steps, and only once the command has been small, as the noise of the cloud can have it.
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  double before_N = 0;
   for (const DeviceDouble::Event& event : device().events()) {
-    if (event.at_s > released_s + kPromise_s) {
-      EXPECT_EQ(event.force(), 0);
+    if (event.at_s < released_s + kPromise_s) continue;
+    if (before_N == 0) {
+      EXPECT_LT(event.force(), 0.5 * SafetyLimits{}.engage_below_N);
     }
+    before_N = event.force();
   }
-  hold(0.03);
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  hold(-kPressed_m);
-  EXPECT_TRUE(wait_until([&] { return device().now().force() > 0.4; })) << "never came back";
+  press_in_again();
   EXPECT_GE(run_->ended_by_stop().counts.stalls, 1);
 }
 
@@ -125,22 +129,34 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
     for (std::size_t i = 0; i < trace.length(); ++i) largest = std::max(largest, trace.force(i).norm());
     return largest;
   };
-  // By then a jump of the force is no longer held back.
-  const auto settle = [] { std::this_thread::sleep_for(std::chrono::milliseconds(100)); };
+  const auto rendered_at_last_N = [](const LiveResult& result) {
+    const Trace& trace = result.log.trace;
+    return trace.force(trace.length() - 1).norm();
+  };
+  // At the device, once its force no longer rises; none where the machine has paused meanwhile.
+  const auto resting_N = [&] {
+    double force_N = 0;
+    wait_until([&] {
+      press_in_again();
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      return (force_N = device().now().force()) > 0;
+    });
+    return force_N;
+  };
   press();
-  settle();
+  const double whole_N = resting_N();
   const LiveResult whole = run_->ended_by_stop();
   EXPECT_EQ(whole.force_share, 1);
   EXPECT_EQ(run_->told().find("N/m"), std::string::npos);
-  EXPECT_GT(whole.log.largest_force_N, 0.8 * largest_rendered_N(whole));
+  EXPECT_NEAR(whole_N, rendered_at_last_N(whole), 0.01 * whole_N);
 
   constexpr double kLimit_N_per_m = 300, kRendered_N_per_m = 600;
   press([&](DeviceDouble::State& state) { state.largest_stiffness = kLimit_N_per_m / 1000; });  // N/mm
-  settle();
+  const double limited_N = resting_N();
   const LiveResult limited = run_->ended_by_stop();
   EXPECT_EQ(limited.force_share, kLimit_N_per_m / kRendered_N_per_m);
   EXPECT_HAS(run_->told(), "the device takes 300 N/m at most: it gets 0.5 of every force and torque");
-  EXPECT_GT(limited.log.largest_force_N, 0.4 * largest_rendered_N(limited));
+  EXPECT_NEAR(limited_N, 0.5 * rendered_at_last_N(limited), 0.01 * limited_N);
   EXPECT_LT(limited.log.largest_force_N, 0.5 * largest_rendered_N(limited) * (1 + 1e-9));
 }
 

@@ -15,11 +15,10 @@ namespace {
 class PressedInverse3 : public testing::Test {
  protected:
   void SetUp() override {
-    hold(0.03);
-    run_ = std::make_unique<BackgroundRun>(kPress, "haply:" + service_.address());
-    ASSERT_TRUE(wait_until([&] { return service_.commands().size() > 300; }));
-    hold(-0.002);
-    ASSERT_TRUE(wait_until([&] { return force_N() > 0.4; })) << "never touched";
+    const auto start = [&] { return std::make_unique<BackgroundRun>(kPress, "haply:" + service_.address()); };
+    ASSERT_TRUE(
+        press_in(run_, start, {[&] { hold(0.03); }, [&] { hold(-0.002); }, [&] { return force_N(); }}))
+        << "never touched";
   }
 
   // The service's z is up.
