@@ -284,4 +284,20 @@ std::string Sweep::to_json() const {
   return json.dump();
 }
 
+Sweep Sweep::thinned(int every) const {
+  Json json = parse_json(to_json(), title());
+  for (Json& axis : json["axes"]) {
+    if (const auto count = axis.find("count"); count != axis.end()) {
+      *count = (count->get<int>() - 1) / every + 1;
+      continue;
+    }
+    Json kept = Json::array();
+    const Json& values = axis["values"];
+    for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(every))
+      kept.push_back(values[i]);
+    axis["values"] = kept;
+  }
+  return from_json(json.dump(), title());
+}
+
 }  // namespace remote_touch

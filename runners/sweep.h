@@ -36,6 +36,9 @@ class Sweep {
   const std::vector<Measure>& measures() const;
   std::optional<RefinementRule> refinement() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
+  // Every so manieth value of each axis; of a range, whose steps may not divide evenly, about so. Its runs
+  // have noise of their own.
+  Sweep thinned(int every) const;
 
  private:
   struct Definition;

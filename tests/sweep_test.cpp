@@ -85,6 +85,22 @@ TEST(Sweeps, SurviveARoundTrip) {
   }
 }
 
+TEST(Sweeps, ThinnedTheyKeepEverySoManiethValue) {
+  const SweepResult plan = Sweep::load("fig4.13").thinned(5).plan();
+  const SweepResult whole = Sweep::load("fig4.13").plan();
+  ASSERT_EQ(plan.cell_count(), 16u * 15u);
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    for (std::size_t i = 0; i < plan.axes[axis].length(); ++i)
+      EXPECT_NEAR(std::get<std::vector<double>>(plan.axes[axis].values)[i],
+                  std::get<std::vector<double>>(whole.axes[axis].values)[5 * i], 1e-12);
+  const Sweep listed =
+      along(R"({"parameter": "scenario.noise_sigma_m", "values": [0, 1e-3, 2e-3, 3e-3, 4e-3]})");
+  EXPECT_EQ(numbers(listed.thinned(3)), (std::vector<double>{0, 3e-3}));
+  EXPECT_EQ(numbers(listed.thinned(9)), (std::vector<double>{0}));
+  EXPECT_EQ(listed.thinned(1).to_json(), listed.to_json());
+  EXPECT_EQ(small().thinned(2).plan().replicates, 2);
+}
+
 // The last axis runs first. Of the experiment nothing changes but the axes and the keys of the noise.
 TEST(Sweeps, ACellIsTheExperimentWithItsValues) {
   const Sweep sweep = small();

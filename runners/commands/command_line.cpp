@@ -85,6 +85,10 @@ void add_figure(Subcommands& commands) {
   auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", command_figure);
   command->add_option("names", figure->names, "figures of the list, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+  command
+      ->add_option("--coarse", figure->coarse,
+                   "maps of every Nth value of their axes, to look at: no claim of theirs is judged")
+      ->check(CLI::Range(1, 10));
 }
 
 void add_scorecard(Subcommands& commands) {

@@ -49,6 +49,7 @@ nlohmann::ordered_json claim_json(const Claim& claim) {
 void print(const Claim& claim) {
   const char* verdict = claim.verdict == Verdict::pass   ? "pass"
                         : claim.verdict == Verdict::fail ? "FAIL"
+                        : std::isfinite(claim.measured)  ? "open"
                                                          : "not run";
   std::printf("  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured, claim.unit.c_str(),
               claim.criterion.c_str());
@@ -70,6 +71,21 @@ nlohmann::ordered_json other_claims(const std::filesystem::path& file,
     if (std::none_of(chosen.begin(), chosen.end(), is_made)) kept.push_back(claim);
   }
   return kept;
+}
+
+std::string figure_command(const std::string& name, int coarse) {
+  const std::string whole = "remote-touch figure " + name;
+  return coarse == 1 ? whole : whole + " --coarse " + std::to_string(coarse);
+}
+
+// A share of a coarse map is not that of the whole.
+void leave_unjudged(Figure& figure, int coarse) {
+  figure.caption += " Coarse: about one in " + std::to_string(coarse) +
+                    " values of each axis of the maps, so no claim is judged.";
+  for (Claim& claim : figure.claims) {
+    claim.verdict = Verdict::not_run;
+    claim.criterion += ", not judged on a coarse map";
+  }
 }
 
 // A recording that is not there is no failure of the method: the claim says so and the rest goes on.
@@ -97,12 +113,16 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
   bool all_hold = true;
   for (const FigureEntry* entry : chosen) {
     Progress progress(std::string("figure ") + entry->name, line.quiet);
-    const Laboratory laboratory(*line.kernels, line.stop, [&](double share) { progress.update(share); });
-    const Figure figure = make(*entry, laboratory);
+    const Laboratory laboratory(
+        *line.kernels, line.stop, [&](double share) { progress.update(share); }, request.coarse);
+    Figure figure = make(*entry, laboratory);
+    const bool is_coarse = laboratory.has_coarse_map();
+    if (is_coarse) leave_unjudged(figure, request.coarse);
     const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
-    write_figure(file, figure,
-                 provenance(laboratory.configurations(), "remote-touch figure " + figure.name,
-                            line.kernels->isa, laboratory.inputs()));
+    write_figure(
+        file, figure,
+        provenance(laboratory.configurations(), figure_command(figure.name, is_coarse ? request.coarse : 1),
+                   line.kernels->isa, laboratory.inputs()));
     std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
     for (const Claim& claim : figure.claims) {
       print(claim);

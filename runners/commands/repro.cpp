@@ -200,10 +200,18 @@ class Repro {
     return compare_sweep(stored.result, stored.attributes, run_sweep(sweep, options),
                          ours(sweep.to_json(), input_hashes(sweep.inputs())), {});
   }
+  // That the figure's command asked for.
+  int coarse() const {
+    const std::vector<std::string> words = words_of(of("command"));
+    const auto option = std::find(words.begin(), words.end(), "--coarse");
+    return option == words.end() || option + 1 == words.end() ? 1
+                                                              : std::max(1, std::atoi((option + 1)->c_str()));
+  }
   ResultComparison figure_again(Progress& progress) const {
     for (const FigureEntry& entry : figures()) {
       if (entry.name != of("figure")) continue;
-      const Laboratory laboratory(*line_.kernels, line_.stop, [&](double share) { progress.update(share); });
+      const Laboratory laboratory(
+          *line_.kernels, line_.stop, [&](double share) { progress.update(share); }, coarse());
       std::vector<Column> columns;
       for (const Table& table : entry.make(laboratory).tables)
         for (Column column : table.columns) {

@@ -34,9 +34,10 @@ double largest_deviation(const Table& regions) {
 }  // namespace
 
 Figure figure_4_13(const Laboratory& laboratory) {
-  const Table map = map_table("map", laboratory.sweep(Sweep::load("fig4.13")));
-  const Table without = map_table(
-      "map_without_estimate", laboratory.sweep(Sweep::load("fig4.13", {"renderer.velocity_estimate=false"})));
+  const Table map = map_table("map", laboratory.sweep(laboratory.map("fig4.13")));
+  const Table without =
+      map_table("map_without_estimate",
+                laboratory.sweep(laboratory.map("fig4.13", {"renderer.velocity_estimate=false"})));
   const Table regions = with_reference(region_table("regions", map));
   Figure figure{
       "4.13",

@@ -68,13 +68,13 @@ Panel probability_panel(const std::string& title, const std::string& map, const 
 }  // namespace
 
 Figure figure_4_13_replicated(const Laboratory& laboratory) {
-  const Sweep sweep = Sweep::load("fig4.13-replicated");
+  const Sweep sweep = laboratory.map("fig4.13-replicated");
   const SweepResult result = laboratory.sweep(sweep);
   const std::size_t columns = result.axes.at(1).length();
   const Table map = map_table("map", result);
   const Table without =
       map_table("map_without_estimate",
-                laboratory.sweep(Sweep::load("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
+                laboratory.sweep(laboratory.map("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
   const Table half = contour("contour", map, columns);
   Figure figure{
       "4.13-replicated",

@@ -186,13 +186,13 @@ Figure figure_4_13_tracked(const Laboratory& laboratory) {
   Lifts lifts;
   Table map;
   for (const int number : kReportedSeeds) {
-    const SweepResult result = laboratory.sweep(Sweep::load("fig4.13-tracked", {seed(number)}));
+    const SweepResult result = laboratory.sweep(laboratory.map("fig4.13-tracked", {seed(number)}));
     const Table of_seed = map_table("map", result);
     add_seed(lifts, result, of_seed);
     if (number == kReportedSeeds[0]) map = of_seed;
   }
   const Table paper_map =
-      map_table("map_paper", laboratory.sweep(Sweep::load("fig4.13", {seed(kReportedSeeds[0])})));
+      map_table("map_paper", laboratory.sweep(laboratory.map("fig4.13", {seed(kReportedSeeds[0])})));
   const std::vector<Slide> ours = slides(laboratory, kTracked), paper = slides(laboratory, kPaper);
   Figure figure{
       "4.13-tracked",

@@ -93,6 +93,13 @@ void Laboratory::for_each(std::size_t count, const std::function<void(std::size_
     if (failure) std::rethrow_exception(failure);
 }
 
+Sweep Laboratory::map(const std::string& name, const std::vector<std::string>& overrides) const {
+  const Sweep whole = Sweep::load(name, overrides);
+  if (coarse_ <= 1) return whole;
+  has_coarse_map_ = true;
+  return whole.thinned(coarse_);
+}
+
 SweepResult Laboratory::sweep(const Sweep& sweep) const {
   note(sweep.to_json());
   inputs_.add(sweep.inputs());

@@ -19,8 +19,10 @@ namespace remote_touch {
 // How a figure gets its traces. Independent runs go side by side; results do not depend on how many.
 class Laboratory {
  public:
-  Laboratory(const Kernels& kernels, const std::atomic<bool>* stop, std::function<void(double)> progress)
-      : kernels_(kernels), stop_(stop), progress_(std::move(progress)) {}
+  // coarse: every so manieth value of the axes of maps, to look at; 1 for the whole.
+  Laboratory(const Kernels& kernels, const std::atomic<bool>* stop, std::function<void(double)> progress,
+             int coarse = 1)
+      : kernels_(kernels), stop_(stop), progress_(std::move(progress)), coarse_(coarse) {}
 
   Trace run(const Experiment& experiment) const;
   // For an experiment whose frames are used without a run.
@@ -37,6 +39,10 @@ class Laboratory {
     for (const Experiment& experiment : experiments) inputs_.add(experiment.inputs());
     return collect(experiments.size(), [&](std::size_t i) { return of(simulated(experiments[i])); });
   }
+  // A stored sweep that has thousands of runs, for the two calls below.
+  Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
+  // Whether one was asked for that is coarse: no claim can be judged then.
+  bool has_coarse_map() const { return has_coarse_map_; }
   // Every run of a sweep; throws InputError when one failed.
   SweepResult sweep(const Sweep& sweep) const;
   // What of(trace) gives for each run of a sweep's plan, in its order.
@@ -71,6 +77,8 @@ class Laboratory {
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
   std::function<void(double)> progress_;
+  int coarse_;
+  mutable bool has_coarse_map_ = false;
 };
 
 // A new figure is one file and one line in figures.cpp. May throw InputError: the figure is then reported as

@@ -110,7 +110,7 @@ Table effect_table(const MeasuredNoise& noise) {
 }
 
 LiftMap lift_map(const Laboratory& laboratory, int seed) {
-  const Sweep sweep = Sweep::load("fig4.13", {"seed=" + std::to_string(seed)});
+  const Sweep sweep = laboratory.map("fig4.13", {"seed=" + std::to_string(seed)});
   const SweepResult plan = sweep.plan();
   LiftMap result;
   result.updates = laboratory.measure(sweep, updates_of);

@@ -44,7 +44,8 @@ def figure_of(claim):
 
 def verdict(claim):
     """(CSS class, word)"""
-    return {True: ("pass", "pass"), False: ("fail", "FAIL")}.get(claim.get("pass"), ("none", "not run"))
+    unjudged = "not run" if claim.get("measured") is None else "open"
+    return {True: ("pass", "pass"), False: ("fail", "FAIL")}.get(claim.get("pass"), ("none", unjudged))
 
 
 def claim_row(anchor, claim):
@@ -71,7 +72,7 @@ def overview(anchored):
     failed = [(anchor, claim) for anchor, claim in anchored if verdict(claim)[1] == "FAIL"]
     style = "fail" if failed else "pass"
     lines = [f'<p class="count"><span class="{style}">{words.count("pass")} of {len(words)} claims pass</span>'
-             f', {len(failed)} failed, {words.count("not run")} not run.</p>']
+             f', {len(failed)} failed, {words.count("open")} open, {words.count("not run")} not run.</p>']
     if failed:
         items = "\n".join(f'<li><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}: '
                           f'{esc(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)
