@@ -22,6 +22,7 @@ constexpr int kMostTries = 6;
 constexpr const char* kTry = "REMOTE_TOUCH_TRY";  // of the process that was started again
 
 using Clock = std::chrono::steady_clock;
+constexpr auto kNap = std::chrono::milliseconds(1);
 
 // How long the machine has kept threads from running that had nothing to wait for.
 class Pauses {
@@ -32,6 +33,7 @@ class Pauses {
     if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
     for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
       if (CPU_ISSET(cpu, &allowed)) watches_.emplace_back([this, cpu] { watch(cpu); });
+    while (watching_ < static_cast<int>(watches_.size())) std::this_thread::yield();
   }
   // The longest.
   double end_s() {
@@ -47,10 +49,13 @@ class Pauses {
     CPU_ZERO(&only);
     CPU_SET(cpu, &only);
     ::sched_setaffinity(0, sizeof only, &only);
+    Clock::time_point due = Clock::now() + kNap;
+    ++watching_;
     while (!stop_) {
-      const Clock::time_point due = Clock::now() + std::chrono::milliseconds(1);
       std::this_thread::sleep_until(due);
-      note(std::chrono::duration<double>(Clock::now() - due).count());
+      const Clock::time_point now = Clock::now();
+      note(std::chrono::duration<double>(now - due).count());
+      due = now + kNap;
     }
   }
   void note(double late_s) {
@@ -59,6 +64,7 @@ class Pauses {
     }
   }
 
+  std::atomic<int> watching_ = 0;
   std::atomic<bool> stop_ = false;
   std::atomic<double> longest_s_ = 0;
   std::vector<std::thread> watches_;
