@@ -56,7 +56,7 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
     const LiveResult result = run_live(run, live);
     ASSERT_FALSE(result.failed) << name << ": " << result.ended;
     ASSERT_GT(result.log.trace.length(), 100u) << name;
-    ASSERT_GT(result.log.latency_s.size(), 2u) << name << ": frames taken";
+    ASSERT_GE(result.log.latency_s.size(), 2u) << name << ": frames taken";
     EXPECT_EQ(result.counts.rows_lost, 0) << name;
     EXPECT_EQ(result.log.reversed_frames, 0) << name;
 

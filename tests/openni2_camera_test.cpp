@@ -16,7 +16,6 @@
 #include "tests/doubles/virtual_openni2/recording.h"
 #include "tests/start_with_libraries.h"
 #include "tests/test_files.h"
-#include "tests/timed_tests.h"
 
 namespace remote_touch {
 namespace {
@@ -295,5 +294,6 @@ int main(int argc, char** argv) {
   remote_touch::start_with_libraries(REMOTE_TOUCH_VIRTUAL_OPENNI2, argv);
   keep_drivers(REMOTE_TOUCH_VIRTUAL_OPENNI2);
 #endif
-  return remote_touch::run_timed_tests(argc, argv);
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
 }
