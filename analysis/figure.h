@@ -31,7 +31,8 @@ struct Panel {
   std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
 };
 
-enum class Verdict { pass, fail, not_run };
+// open: measured, but on a part of what the claim is about.
+enum class Verdict { pass, fail, open, not_run };
 
 // One statement of the paper, or of this project, held against a measurement. A claim that fails stays in the
 // list.

@@ -108,9 +108,12 @@ inline double time_to_nothing_s(const std::function<double()>& force_N) {
 // The device's side has no force so long after a failure.
 constexpr double kPromise_s = 0.02;
 
-// A proxy over the table of `camera-scene`, of which a machine with little to spare makes images too.
+// A proxy over the table of `camera-scene`, of which a machine with little to spare makes images too. Without
+// noise a hand at rest commands the same force in every frame, never one so small that it would engage the
+// gate.
 constexpr const char* kPress = R"({
-  "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "renderer": {"name": "proxy"},
+  "scenario": {"name": "camera-scene", "width": 160, "height": 120, "noise_per_m": 0, "quantisation_per_m": 0},
+  "renderer": {"name": "proxy"},
   "trajectory": {"name": "follow-surface"}, "safety": {"ramp_s": 0.05}})";
 
 inline double table_height_m() {

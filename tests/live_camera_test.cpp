@@ -53,7 +53,7 @@ class LiveCamera : public testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(60));  // the force is whole then
     const double before_N = double_->now().force();
     if (before_N == 0) return false;
-    for (const double until_s = steady_s() + 0.06; steady_s() < until_s; nap())
+    for (const double until_s = steady_s() + 0.5; steady_s() < until_s; nap())
       if (std::abs(double_->now().force() - before_N) > 0.3 * before_N) return false;
     hold(0.1);
     return wait_until([&] { return double_->now().force() > 1.5 * before_N; }, 0.1);
@@ -79,7 +79,7 @@ TEST_F(LiveCamera, ThatSendsNothingMoreLeavesItsLastCloud) {
   expect_the_last_cloud_to_hold();
   const LiveResult& result = run_->ended_by_stop();
   EXPECT_FALSE(result.failed) << result.ended;
-  EXPECT_GT(result.log.stale_ticks, 100);
+  EXPECT_GT(result.log.stale_ticks, 300);
 }
 
 TEST_F(LiveCamera, ThatIsUnpluggedLeavesItsLastCloudAndAFailure) {

@@ -91,16 +91,12 @@ TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
   device().release();
   const double released_s = steady_s();
-  // What hung may still be told. From then on it begins as at the start, pressed in or not: from nothing, in
-  // small steps, and only once the command has been small, as the noise of the cloud can have it.
+  // What hung may still be told; from then on it begins as at the start: pressed in, it waits.
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  double before_N = 0;
   for (const DeviceDouble::Event& event : device().events()) {
-    if (event.at_s < released_s + kPromise_s) continue;
-    if (before_N == 0) {
-      EXPECT_LT(event.force(), 0.5 * SafetyLimits{}.engage_below_N);
+    if (event.at_s > released_s + kPromise_s) {
+      EXPECT_EQ(event.force(), 0);
     }
-    before_N = event.force();
   }
   press_in_again();
   EXPECT_GE(run_->ended_by_stop().counts.stalls, 1);

@@ -46,7 +46,7 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
   for (const auto& [name, experiment] : cases) {
     const TestFolder folder("live_run");
     const std::filesystem::path file = folder / "session.h5";
-    LiveOptions live = options(1.5);
+    LiveOptions live = options(2.5);
     live.record = file;
     const Experiment run = experiment.front() == '{'
                                ? Experiment::from_json(experiment, name)
@@ -56,7 +56,7 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
     const LiveResult result = run_live(run, live);
     ASSERT_FALSE(result.failed) << name << ": " << result.ended;
     ASSERT_GT(result.log.trace.length(), 100u) << name;
-    ASSERT_GE(result.log.latency_s.size(), 2u) << name << ": frames taken";
+    ASSERT_GT(result.log.latency_s.size(), 2u) << name << ": frames taken";
     EXPECT_EQ(result.counts.rows_lost, 0) << name;
     EXPECT_EQ(result.log.reversed_frames, 0) << name;
 

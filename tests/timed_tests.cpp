@@ -39,7 +39,6 @@ class Pauses {
   double end_s() {
     stop_ = true;
     for (std::thread& watch : watches_) watch.join();
-    watches_.clear();
     return longest_s_;
   }
 

@@ -33,23 +33,25 @@ std::vector<const FigureEntry*> chosen_figures(const std::vector<std::string>& n
   return chosen;
 }
 
+bool is_judged(const Claim& claim) {
+  return claim.verdict == Verdict::pass || claim.verdict == Verdict::fail;
+}
+
 nlohmann::ordered_json claim_json(const Claim& claim) {
   const nlohmann::ordered_json none;
-  return {
-      {"figure", claim.figure},
-      {"claim", claim.claim},
-      {"paper", claim.paper},
-      {"measured", std::isfinite(claim.measured) ? nlohmann::ordered_json(claim.measured) : none},
-      {"criterion", claim.criterion},
-      {"unit", claim.unit},
-      {"pass",
-       claim.verdict == Verdict::not_run ? none : nlohmann::ordered_json(claim.verdict == Verdict::pass)}};
+  return {{"figure", claim.figure},
+          {"claim", claim.claim},
+          {"paper", claim.paper},
+          {"measured", std::isfinite(claim.measured) ? nlohmann::ordered_json(claim.measured) : none},
+          {"criterion", claim.criterion},
+          {"unit", claim.unit},
+          {"pass", is_judged(claim) ? nlohmann::ordered_json(claim.verdict == Verdict::pass) : none}};
 }
 
 void print(const Claim& claim) {
   const char* verdict = claim.verdict == Verdict::pass   ? "pass"
                         : claim.verdict == Verdict::fail ? "FAIL"
-                        : std::isfinite(claim.measured)  ? "open"
+                        : claim.verdict == Verdict::open ? "open"
                                                          : "not run";
   std::printf("  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured, claim.unit.c_str(),
               claim.criterion.c_str());
@@ -83,7 +85,7 @@ void leave_unjudged(Figure& figure, int coarse) {
   figure.caption += " Coarse: about one in " + std::to_string(coarse) +
                     " values of each axis of the maps, so no claim is judged.";
   for (Claim& claim : figure.claims) {
-    claim.verdict = Verdict::not_run;
+    claim.verdict = Verdict::open;
     claim.criterion += ", not judged on a coarse map";
   }
 }
