@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <numeric>
+#include <new>
 #include <stdexcept>
 
 #include "analysis/hdf5_handle.h"
 #include "analysis/hdf5_seal.h"
+#include "analysis/hdf5_values.h"
 #include "core/input_error.h"
 
 namespace remote_touch {
@@ -19,100 +19,6 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 }
 
 namespace {
-
-std::string read_text(hid_t attribute) {
-  const Handle type(H5Aget_type(attribute), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) return {};
-  std::string text(H5Tget_size(type), '\0');
-  check(H5Aread(attribute, type, text.data()));
-  text.erase(std::find(text.begin(), text.end(), '\0'), text.end());
-  return text;
-}
-
-std::string text_attribute(hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return {};
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  return read_text(attribute);
-}
-
-// What of a dataset is read: all of it, or some rows.
-struct Selection {
-  hid_t in_memory = H5S_ALL, in_file = H5S_ALL;
-  std::size_t count = 0;  // of values
-};
-
-std::vector<std::string> read_texts(hid_t data, hid_t type, const Selection& wanted) {
-  if (H5Tis_variable_str(type) > 0) throw std::runtime_error("texts of variable length");
-  const std::size_t length = H5Tget_size(type);
-  std::string packed(length * wanted.count, '\0');
-  check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, packed.data()));
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < wanted.count; ++i) {
-    texts.push_back(packed.substr(i * length, length));
-    texts.back().erase(std::find(texts.back().begin(), texts.back().end(), '\0'), texts.back().end());
-  }
-  return texts;
-}
-
-template <class Number>
-std::vector<Number> read_numbers(hid_t data, hid_t type, const Selection& wanted) {
-  std::vector<Number> numbers(wanted.count);
-  // Not read as its own type: that may be wider.
-  check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, numbers.data()));
-  return numbers;
-}
-
-std::vector<std::string> names_of(hid_t enumeration) {
-  std::vector<std::string> names;
-  for (int i = 0; i < H5Tget_nmembers(enumeration); ++i) {
-    char* member = H5Tget_member_name(enumeration, static_cast<unsigned>(i));
-    names.emplace_back(member);
-    H5free_memory(member);
-  }
-  return names;
-}
-
-Values read_values(hid_t data, hid_t type, const Selection& wanted) {
-  switch (H5Tget_class(type)) {
-    case H5T_FLOAT:
-      return read_numbers<double>(data, H5T_NATIVE_DOUBLE, wanted);
-    case H5T_STRING:
-      return read_texts(data, type, wanted);
-    case H5T_INTEGER:
-      if (H5Tget_size(type) == sizeof(std::uint64_t) && H5Tget_sign(type) == H5T_SGN_NONE)
-        return read_numbers<std::uint64_t>(data, H5T_NATIVE_UINT64, wanted);
-      [[fallthrough]];
-    default:
-      return read_numbers<std::int32_t>(data, H5T_NATIVE_INT32, wanted);
-  }
-}
-
-struct Rows {
-  hsize_t first, count;
-};
-
-// All rows of a dataset, or some.
-Column read_dataset(hid_t data, const std::string& name, const Rows* some) {
-  const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
-  const int rank = H5Sget_simple_extent_ndims(space);
-  if (rank < 1) throw std::runtime_error(name + " has no dimension");
-  std::vector<hsize_t> size(static_cast<std::size_t>(rank)), start(size.size(), 0);
-  check(H5Sget_simple_extent_dims(space, size.data(), nullptr));
-  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
-  if (rank == 2 && size[1] == 0) throw std::runtime_error(name + " has rows without numbers");
-  column.width = static_cast<int>(rank == 2 ? size[1] : 1);
-  if (some) start[0] = some->first, size[0] = some->count;
-  const auto count = std::accumulate(size.begin(), size.end(), std::size_t{1}, std::multiplies<>());
-  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type);
-  if (!some) {
-    column.values = read_values(data, type, {H5S_ALL, H5S_ALL, count});
-    return column;
-  }
-  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
-  const Handle memory(H5Screate_simple(rank, size.data(), nullptr), H5Sclose);
-  column.values = read_values(data, type, {memory, space, count});
-  return column;
-}
 
 herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
   if (info->type == H5O_TYPE_DATASET)
@@ -154,7 +60,9 @@ bool require_readable(const std::filesystem::path& file) {
 }
 
 Handle open_dataset(const std::shared_ptr<void>& file, const std::string& dataset) {
-  return Handle(H5Dopen2(*static_cast<Handle*>(file.get()), dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  const hid_t found = H5Dopen2(*static_cast<Handle*>(file.get()), dataset.c_str(), H5P_DEFAULT);
+  if (found < 0) throw std::runtime_error(dataset + " is missing");
+  return Handle(found, H5Dclose);
 }
 
 std::string last_part(const std::string& path) {
@@ -163,11 +71,13 @@ std::string last_part(const std::string& path) {
 
 }  // namespace
 
-// Whatever the library or the standard library throws is damage, also a length that a damaged header claims.
+// Whatever the library throws is damage.
 template <class Read>
 auto Hdf5Reader::guarded(Read&& read) const {
   try {
     return read();
+  } catch (const std::bad_alloc&) {
+    damaged("it claims more values than fit into memory");
   } catch (const std::exception& error) {
     damaged(error.what());
   }
