@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/fingerprint.h"
 #include "analysis/result_file.h"
 
 namespace remote_touch {
@@ -26,6 +27,10 @@ Column StoredTrace::column(const std::string& name) const {
 
 Column StoredTrace::rows(const std::string& name, std::size_t first, std::size_t count) const {
   return hdf5_.rows("/trace/" + name, first, count);
+}
+
+std::vector<std::uint64_t> StoredTrace::running_hash() const {
+  return hdf5_.values<std::uint64_t>(std::string("/trace/") + kRunningHash);
 }
 
 StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {

@@ -1,6 +1,7 @@
 // Columns to compare: in a file, of which only those at hand are read, or in memory.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ class StoredTrace final : public ColumnSource {
   std::vector<std::string> columns() const override { return columns_; }
   Column column(const std::string& name) const override;
   Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
+  std::vector<std::uint64_t> running_hash() const;  // kRunningHash
   const TextAttributes& attributes() const { return hdf5_.attributes(); }
 
  private:

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/hdf5_file.h"
@@ -28,6 +29,14 @@ class Hdf5Reader {
   Column column(const std::string& dataset) const;
   // Rows first .. first + count - 1; pre: they are there.
   Column rows(const std::string& dataset, std::size_t first, std::size_t count) const;
+  // The values of a column of that width, which are of type T.
+  template <class T>
+  std::vector<T> values(const std::string& dataset, int width = 1) const {
+    Column read = column(dataset);
+    auto* values = std::get_if<std::vector<T>>(&read.values);
+    if (!values || read.width != width) damaged(dataset + " has values of another kind");
+    return std::move(*values);
+  }
   std::int64_t offset(const std::string& dataset) const;  // of its values in the file; it lies in one piece
 
   [[noreturn]] void damaged(const std::string& how) const;

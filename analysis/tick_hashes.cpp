@@ -1,13 +1,11 @@
 #include "analysis/tick_hashes.h"
 
-#include "analysis/fingerprint.h"
 #include "analysis/hdf5_reader.h"
 
 namespace remote_touch {
 
-TickHashes hashes_of_trace(const ColumnSource& trace, int every) {
-  const Column stored = trace.column(kRunningHash);
-  const auto& all = std::get<std::vector<std::uint64_t>>(stored.values);
+TickHashes hashes_of_trace(const StoredTrace& trace, int every) {
+  const std::vector<std::uint64_t> all = trace.running_hash();
   TickHashes some;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i % static_cast<std::size_t>(every) != 0 && i + 1 != all.size()) continue;
@@ -33,9 +31,14 @@ void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
 StoredHashes read_hashes(const std::filesystem::path& file) {
   const Hdf5Reader hdf5(file);
   hdf5.require_schema(kHashesSchema, "the result of remote-touch hashes");
-  return {{std::get<std::vector<std::int32_t>>(hdf5.column("/hashes/tick").values),
-           std::get<std::vector<std::uint64_t>>(hdf5.column("/hashes/tick_hash").values)},
-          hdf5.attributes()};
+  StoredHashes stored{
+      {hdf5.values<std::int32_t>("/hashes/tick"), hdf5.values<std::uint64_t>("/hashes/tick_hash")},
+      hdf5.attributes()};
+  const std::vector<std::int32_t>& tick = stored.hashes.tick;
+  if (tick.size() != stored.hashes.hash.size()) hdf5.damaged("its ticks and hashes differ in number");
+  for (std::size_t i = 0; i < tick.size(); ++i)
+    if (tick[i] < 0 || (i > 0 && tick[i] <= tick[i - 1])) hdf5.damaged("its ticks are out of order");
+  return stored;
 }
 
 HashComparison compare_hashes(const TickHashes& baseline, const TickHashes& candidate) {

@@ -19,7 +19,7 @@ struct TickHashes {
 };
 
 // Every n-th tick of a trace, and the last; pre: every > 0.
-TickHashes hashes_of_trace(const ColumnSource& trace, int every);
+TickHashes hashes_of_trace(const StoredTrace& trace, int every);
 
 void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
                   const TextAttributes& provenance);

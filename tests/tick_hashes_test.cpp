@@ -126,6 +126,50 @@ TEST(TickHashes, OtherFilesAndDamageAreRefused) {
   }
 }
 
+fs::path with_columns(const TestFolder& folder, const std::vector<Column>& columns) {
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", kHashesSchema);
+  hdf5.group("/hashes");
+  hdf5.columns("/hashes", columns, "");
+  hdf5.save(folder / "h.h5");
+  return folder / "h.h5";
+}
+
+// Sealed, and yet no list of ticks and hashes.
+TEST(TickHashes, ColumnsThatAreNotHashesAreRefused) {
+  const TestFolder folder("tick_hashes_test");
+  using Ticks = std::vector<std::int32_t>;
+  using Hashes = std::vector<std::uint64_t>;
+  const auto refused = [&](const Values& tick, const Values& hash) {
+    const fs::path file =
+        with_columns(folder, {{"tick", "1", "", tick, 1, {}}, {"tick_hash", "1", "", hash, 1, {}}});
+    return refusal([&] { read_hashes(file); });
+  };
+  EXPECT_EQ(refused(Ticks{0, 3, 4}, Hashes{1, 2, 3}), "no InputError");
+  EXPECT_HAS(refused(Ticks{0, 1, 2}, Hashes{1}), "h.h5: damaged (its ticks and hashes differ in number)");
+  EXPECT_HAS(refused(Ticks{0}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks and hashes differ in number)");
+  EXPECT_HAS(refused(Ticks{0, 2, 2}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
+  EXPECT_HAS(refused(Ticks{-1, 2, 3}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
+  EXPECT_HAS(refused(Ticks{0}, Ticks{1}), "h.h5: damaged (/hashes/tick_hash has values of another kind)");
+  EXPECT_HAS(refused(std::vector<double>{0}, Hashes{1}),
+             "h.h5: damaged (/hashes/tick has values of another kind)");
+  const fs::path one = with_columns(folder, {{"tick", "1", "", Ticks{0}, 1, {}}});
+  EXPECT_HAS(refusal([&] { read_hashes(one); }), "h.h5: damaged (/hashes/tick_hash is missing)");
+}
+
+TEST(TickHashes, ATraceWithoutARunningHashIsRefused) {
+  const TestFolder folder("tick_hashes_test");
+  std::vector<Column> columns = walk(10);
+  columns.back().values = std::vector<double>(10);
+  const fs::path numbers = stored(folder, "numbers.h5", columns);
+  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(numbers), 1); }),
+             "tick_hash has values of another kind");
+  columns.pop_back();
+  const fs::path none = stored(folder, "none.h5", columns);
+  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(none), 1); }),
+             "none.h5: damaged (/trace/tick_hash is missing)");
+}
+
 // --- comparison ---
 
 TEST(CompareHashes, TheSameAreTheSame) {

@@ -30,14 +30,6 @@ std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
   return json.dump();
 }
 
-template <class T>
-std::vector<T> values(const Hdf5Reader& file, const std::string& dataset, std::size_t width = 1) {
-  Column column = file.column(dataset);
-  auto* numbers = std::get_if<std::vector<T>>(&column.values);
-  if (!numbers || column.width != static_cast<int>(width)) file.damaged(dataset + " has other numbers");
-  return std::move(*numbers);
-}
-
 }  // namespace
 
 SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorView& view,
@@ -110,14 +102,14 @@ void SessionWriter::finish() {
 SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
   file_.require_schema(kSessionSchema, "which remote-touch live --record makes");
   read_view();
-  captured_s_ = values<double>(file_, "/frames/captured");
-  fixtures_off_ = values<std::uint64_t>(file_, "/frames/fixtures_off");
-  frame_number_ = values<std::int32_t>(file_, "/frames/number");
-  number_ = values<std::uint64_t>(file_, "/ticks/number");
-  position_ = values<double>(file_, "/ticks/position", 3);
-  orientation_ = values<double>(file_, "/ticks/orientation", 4);
-  buttons_ = values<std::int32_t>(file_, "/ticks/buttons");
-  taken_ = values<std::int32_t>(file_, "/ticks/taken");
+  captured_s_ = file_.values<double>("/frames/captured");
+  fixtures_off_ = file_.values<std::uint64_t>("/frames/fixtures_off");
+  frame_number_ = file_.values<std::int32_t>("/frames/number");
+  number_ = file_.values<std::uint64_t>("/ticks/number");
+  position_ = file_.values<double>("/ticks/position", 3);
+  orientation_ = file_.values<double>("/ticks/orientation", 4);
+  buttons_ = file_.values<std::int32_t>("/ticks/buttons");
+  taken_ = file_.values<std::int32_t>("/ticks/taken");
   const std::size_t ticks = number_.size(), frames = captured_s_.size();
   if (position_.size() != 3 * ticks || orientation_.size() != 4 * ticks || buttons_.size() != ticks ||
       taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
