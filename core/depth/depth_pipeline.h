@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/kernels.h"
-#include "core/parameter.h"
-#include "core/point_cloud.h"
+#include "core/cloud/camera.h"
+#include "core/cloud/point_cloud.h"
+#include "core/kernels/kernels.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

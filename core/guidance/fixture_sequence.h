@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

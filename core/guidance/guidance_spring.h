@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "core/guidance/guidance_target.h"
-#include "core/parameter.h"
-#include "core/tool/tool_pose.h"
-#include "core/tool/wrench_coupling.h"
+#include "core/parameters/parameter.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/dynamics/wrench_coupling.h"
+#include "core/virtual_fixtures/guidance_target.h"
 
 namespace remote_touch {
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/fixtures/fixture_rule.h"
-#include "core/frame_order.h"
 #include "core/guidance/fixture_sequence.h"
-#include "core/guidance/fixture_switches.h"
 #include "core/guidance/guidance_spring.h"
-#include "core/renderer.h"
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
+#include "core/virtual_fixtures/fixture_rule.h"
+#include "core/virtual_fixtures/fixture_switches.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 // the linker could keep one level's copy for all of them.
 #pragma once
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 
 #define REMOTE_TOUCH_DECLARE_KERNELS(level)                                                                  \
   namespace remote_touch::level {                                                                            \

@@ -22,7 +22,7 @@
 
 #include <string>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "core/rivals/grid_mesh.h"
 #include "core/rivals/plane_constraints.h"
 #include "core/rivals/rival_renderer.h"

@@ -8,8 +8,8 @@
 #include <optional>
 #include <span>
 
-#include "core/gathered_points.h"
-#include "core/vector.h"
+#include "core/geometry/vector.h"
+#include "core/search/gathered_points.h"
 
 namespace remote_touch {
 

@@ -19,7 +19,7 @@
 
 #include <string>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "core/rivals/point_surface.h"
 #include "core/rivals/rival_renderer.h"
 

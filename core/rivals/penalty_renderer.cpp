@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/proxy_step.h"
+#include "core/proxy/proxy_step.h"
 
 namespace remote_touch {
 

@@ -16,7 +16,7 @@
 
 #include <string>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "core/rivals/rival_renderer.h"
 
 namespace remote_touch {

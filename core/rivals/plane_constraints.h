@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/vector.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

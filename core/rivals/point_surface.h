@@ -7,11 +7,12 @@
 //              their weighted covariance is smallest (total least squares). The gradient is taken to be n.
 //
 // Lengths are in units of the support radius R here, so that f and its gradient have none. r_f of points is
-// ignored. The same bits for every order of the points: the sums are pre-rounded as in core/kernels.h.
+// ignored. The same bits for every order of the points: the sums are pre-rounded as in
+// core/kernels/kernels.h.
 #pragma once
 
-#include "core/kernels.h"
-#include "core/vector.h"
+#include "core/geometry/vector.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 
@@ -41,9 +42,9 @@ class PointSurface {
   PointSurface(SurfaceKind kind, SurfaceWeight weight, double support_radius_m, double threshold)
       : kind_(kind), weight_(weight), radius_m_(support_radius_m), threshold_(threshold) {}
 
-  // points: all within R of p, and any beyond. sum_grid: M of core/kernels.h for as many points. side:
-  // surfels have no inside of their own; n is taken to be within 90 degrees of side, or, where that is zero,
-  // towards the side that p is on. One point, or points on a line, have no plane: p is then outside.
+  // points: all within R of p, and any beyond. sum_grid: M of core/kernels/kernels.h for as many points.
+  // side: surfels have no inside of their own; n is taken to be within 90 degrees of side, or, where that is
+  // zero, towards the side that p is on. One point, or points on a line, have no plane: p is then outside.
   SurfaceSample at(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;
 
  private:

@@ -3,9 +3,9 @@
 // method: frames in their order, a device that is lost, and what is answered before the first frame.
 #pragma once
 
-#include "core/frame_order.h"
-#include "core/neighbourhood.h"
-#include "core/renderer.h"
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
+#include "core/search/neighbourhood.h"
 
 namespace remote_touch {
 

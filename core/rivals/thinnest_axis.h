@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "core/vector.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

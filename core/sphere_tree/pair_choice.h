@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 #include "core/sphere_tree/tree_collision.h"
 
 namespace remote_touch {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 #include "core/sphere_tree/pair_choice.h"
 #include "core/sphere_tree/region_tree.h"
 #include "core/sphere_tree/tree_collision.h"
-#include "core/tool/contact_thinning.h"
-#include "core/tool/near_contacts.h"
+#include "core/tool/contact/contact_thinning.h"
+#include "core/tool/contact/near_contacts.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/morton_order.h"
+#include "core/search/morton_order.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/point_cloud.h"
+#include "core/cloud/point_cloud.h"
 #include "core/sphere_tree/sphere_tree.h"
 
 namespace remote_touch {

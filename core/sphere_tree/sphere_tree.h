@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/kernels.h"
-#include "core/vector.h"
+#include "core/geometry/vector.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 

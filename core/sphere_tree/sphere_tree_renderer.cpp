@@ -4,8 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/frame_preparation.h"
-#include "core/tool/wrench_coupling.h"
+#include "core/rendering/frame_preparation.h"
+#include "core/tool/dynamics/wrench_coupling.h"
 
 namespace remote_touch {
 

@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include "core/frame_order.h"
-#include "core/renderer.h"
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
 #include "core/sphere_tree/region_contacts.h"
-#include "core/tool/look_ahead_motion.h"
-#include "core/tool/tool_parameters.h"
-#include "core/tool/voxel_tool.h"
+#include "core/tool/dynamics/tool_parameters.h"
+#include "core/tool/motion/look_ahead_motion.h"
+#include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch {
 

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <unordered_set>
 
-#include "core/input_error.h"
+#include "core/parameters/input_error.h"
 #include "core/sphere_tree/sphere_cover.h"
-#include "core/tool/contact_thinning.h"
-#include "core/tool/triangle_tree.h"
+#include "core/tool/contact/contact_thinning.h"
+#include "core/tool/mesh/triangle_tree.h"
 
 namespace remote_touch {
 

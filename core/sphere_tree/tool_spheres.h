@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/sphere_tree/sphere_tree.h"
-#include "core/tool/voxel_tool.h"
+#include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 #include "core/sphere_tree/sphere_tree.h"
-#include "core/tool/tool_pose.h"
+#include "core/tool/dynamics/tool_pose.h"
 
 namespace remote_touch {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/kernels.h"
-#include "core/vector.h"
+#include "core/geometry/vector.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 

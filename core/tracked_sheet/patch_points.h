@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/gathered_points.h"
+#include "core/search/gathered_points.h"
 #include "core/tracked_sheet/height_map.h"
 #include "core/tracked_sheet/height_profile.h"
 #include "core/tracked_sheet/patch_region.h"

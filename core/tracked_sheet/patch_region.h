@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/gathered_points.h"
+#include "core/search/gathered_points.h"
 #include "core/tracked_sheet/patch_frame.h"
 
 namespace remote_touch {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/kernels.h"
-#include "core/neighbour_search.h"
+#include "core/kernels/kernels.h"
+#include "core/search/neighbour_search.h"
 #include "core/tracked_sheet/height_fit.h"
 #include "core/tracked_sheet/patch_points.h"
 

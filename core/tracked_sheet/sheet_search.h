@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "core/neighbour_search.h"
+#include "core/search/neighbour_search.h"
 #include "core/tracked_sheet/patch_region.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-#include "core/proxy_renderer.h"
+#include "core/proxy/proxy_renderer.h"
 #include "core/tracked_sheet/sheet_tracker.h"
 
 namespace remote_touch {

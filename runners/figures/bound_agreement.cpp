@@ -4,7 +4,7 @@
 #include <iterator>
 #include <map>
 
-#include "analysis/proportion.h"
+#include "analysis/statistics/proportion.h"
 #include "runners/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/contact_point.h"
+#include "analysis/measures/contact_point.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -1,7 +1,7 @@
 // Fig 4.12: a noisy cloud is lifted with acceleration.
 #include <numeric>
 
-#include "analysis/measures.h"
+#include "analysis/measures/measures.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/falling_curve.h"
+#include "analysis/statistics/falling_curve.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 

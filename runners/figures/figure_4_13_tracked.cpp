@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures.h"
+#include "analysis/measures/measures.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/ball_closing.h"
-#include "analysis/contact_point.h"
+#include "analysis/measures/contact_point.h"
+#include "analysis/theory/ball_closing.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/contact_point.h"
-#include "analysis/measures.h"
+#include "analysis/measures/contact_point.h"
+#include "analysis/measures/measures.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

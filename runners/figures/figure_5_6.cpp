@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/contact_point.h"
+#include "analysis/measures/contact_point.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/polynomial_fit.h"
+#include "analysis/statistics/polynomial_fit.h"
 #include "runners/figures/fixture_run.h"
 
 namespace remote_touch {

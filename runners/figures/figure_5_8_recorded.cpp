@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/measures.h"
+#include "analysis/measures/measures.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/recorded_fixture.h"
 

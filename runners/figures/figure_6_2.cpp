@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/noise.h"
+#include "core/random/noise.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/tool_picture.h"
 

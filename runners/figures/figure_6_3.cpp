@@ -4,8 +4,8 @@
 #include <span>
 #include <utility>
 
-#include "analysis/measures.h"
-#include "core/rotation.h"
+#include "analysis/measures/measures.h"
+#include "core/geometry/rotation.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/tool_picture.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/sequence_log.h"
+#include "analysis/trace/sequence_log.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/tool_picture.h"
 #include "runners/figures/valve_task.h"

@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/segmentation.h"
+#include "analysis/measures/segmentation.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/hue_masks.h"
-#include "scenarios/valve_tank.h"
+#include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {
 

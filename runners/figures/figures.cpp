@@ -2,8 +2,8 @@
 
 #include <exception>
 
-#include "core/input_error.h"
-#include "runners/sweep_run.h"
+#include "core/parameters/input_error.h"
+#include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
 

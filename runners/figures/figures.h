@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figure.h"
-#include "analysis/trace.h"
-#include "runners/experiment.h"
-#include "runners/input_hashes.h"
-#include "runners/simulation.h"
-#include "runners/sweep.h"
+#include "analysis/figures/figure.h"
+#include "analysis/trace/trace.h"
+#include "runners/experiment/experiment.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/simulation/simulation.h"
+#include "runners/sweep/sweep.h"
 
 namespace remote_touch {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "analysis/measures.h"
+#include "analysis/measures/measures.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/fixtures/fixture_rule.h"
+#include "core/virtual_fixtures/fixture_rule.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures.h"
+#include "analysis/measures/measures.h"
 #include "runners/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "analysis/lift_noise.h"
-#include "analysis/polynomial_fit.h"
+#include "analysis/statistics/polynomial_fit.h"
+#include "analysis/theory/lift_noise.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/proportion.h"
+#include "analysis/statistics/proportion.h"
 
 namespace remote_touch {
 

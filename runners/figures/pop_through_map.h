@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figure.h"
-#include "analysis/pop_through_bound.h"
-#include "analysis/sweep_result.h"
+#include "analysis/figures/figure.h"
+#include "analysis/sweeps/sweep_result.h"
+#include "analysis/theory/pop_through_bound.h"
 
 namespace remote_touch {
 

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/rotation.h"
-#include "runners/tools/tool_loading.h"
+#include "core/geometry/rotation.h"
+#include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
 

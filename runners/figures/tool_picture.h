@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/point_cloud.h"
-#include "core/tool/voxel_tool.h"
+#include "core/cloud/point_cloud.h"
+#include "core/tool/voxels/voxel_tool.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures.h"
-#include "analysis/sequence_log.h"
-#include "core/rotation.h"
+#include "analysis/measures/measures.h"
+#include "analysis/trace/sequence_log.h"
+#include "core/geometry/rotation.h"
 #include "core/sphere_tree/region_tree.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/tool_picture.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/tool/voxel_tool.h"
+#include "core/tool/voxels/voxel_tool.h"
 #include "runners/figures/figures.h"
-#include "scenarios/valve_tank.h"
+#include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "core/parameter.h"
-#include "core/tool/wrench_coupling.h"
+#include "core/parameters/parameter.h"
+#include "core/tool/dynamics/wrench_coupling.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 #include "runners/operator/operator_model.h"
 
-#include "core/schedule.h"
+#include "core/parameters/schedule.h"
 
 namespace remote_touch {
 

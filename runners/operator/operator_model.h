@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/parameter.h"
-#include "core/tool/tool_pose.h"
-#include "core/tool/wrench_coupling.h"
+#include "core/parameters/parameter.h"
+#include "core/rendering/frame.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/dynamics/wrench_coupling.h"
 
 namespace remote_touch {
 

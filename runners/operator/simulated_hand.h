@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "analysis/trace.h"
-#include "core/renderer.h"
+#include "analysis/trace/trace.h"
+#include "core/rendering/renderer.h"
 #include "runners/operator/device_motors.h"
 #include "runners/operator/operator_model.h"
 

@@ -6,9 +6,9 @@
 #include <set>
 #include <span>
 
-#include "core/input_error.h"
-#include "runners/json_parameters.h"
-#include "runners/stored.h"
+#include "core/parameters/input_error.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/settings/stored.h"
 
 namespace remote_touch {
 

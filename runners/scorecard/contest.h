@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/standing.h"
-#include "analysis/success_rule.h"
-#include "runners/sweep.h"
+#include "analysis/scorecard/standing.h"
+#include "analysis/scorecard/success_rule.h"
+#include "runners/sweep/sweep.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runners/scorecard/passivity.h"
-#include "scenarios/recording_part.h"
+#include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {
 

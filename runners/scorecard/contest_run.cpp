@@ -1,9 +1,9 @@
 #include "runners/scorecard/contest_run.h"
 
-#include "core/input_error.h"
-#include "runners/input_hashes.h"
-#include "runners/provenance.h"
-#include "runners/sweep_session.h"
+#include "core/parameters/input_error.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/provenance.h"
+#include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
 

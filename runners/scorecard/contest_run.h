@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweep_file.h"
-#include "core/kernels.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/kernels/kernels.h"
 #include "runners/scorecard/contest.h"
 
 namespace remote_touch {

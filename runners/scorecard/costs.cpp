@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/whole_file.h"
-#include "runners/json_parameters.h"
-#include "runners/provenance.h"
-#include "runners/simulation.h"
+#include "analysis/storage/whole_file.h"
+#include "runners/provenance/provenance.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/simulation/simulation.h"
 
 namespace remote_touch {
 

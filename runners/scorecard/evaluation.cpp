@@ -2,7 +2,7 @@
 
 #include <omp.h>
 
-#include "runners/provenance.h"
+#include "runners/provenance/provenance.h"
 #include "runners/scorecard/passivity.h"
 
 namespace remote_touch {

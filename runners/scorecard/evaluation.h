@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 #include "runners/scorecard/contest_plan.h"
 #include "runners/scorecard/page.h"
 

@@ -1,8 +1,8 @@
 #include "runners/scorecard/failure_traces.h"
 
-#include "analysis/hdf5_reader.h"
-#include "core/input_error.h"
-#include "runners/sweep_replay.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "core/parameters/input_error.h"
+#include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 #include "runners/scorecard/contest_run.h"
 
 namespace remote_touch {

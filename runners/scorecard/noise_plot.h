@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard.h"
+#include "analysis/scorecard/scorecard.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard.h"
+#include "analysis/scorecard/scorecard.h"
 #include "runners/scorecard/costs.h"
 #include "runners/scorecard/failure_traces.h"
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runners/catalog.h"
-#include "runners/json_parameters.h"
+#include "runners/experiment/catalog.h"
+#include "runners/settings/json_parameters.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/input_error.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 

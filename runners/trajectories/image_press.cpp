@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/input_error.h"
+#include "core/parameters/input_error.h"
 #include "runners/trajectories/seen_object.h"
 #include "runners/trajectories/seen_surface.h"
 

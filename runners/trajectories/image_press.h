@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "runners/trajectories/trajectory.h"
-#include "scenarios/scenario.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/input_error.h"
+#include "core/parameters/input_error.h"
 #include "runners/trajectories/seen_object.h"
 #include "runners/trajectories/seen_surface.h"
 

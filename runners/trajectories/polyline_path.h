@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/vector.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/rotation.h"
+#include "core/geometry/rotation.h"
 
 namespace remote_touch {
 

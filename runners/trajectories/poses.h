@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "runners/trajectories/trajectory.h"
-#include "scenarios/scenario.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

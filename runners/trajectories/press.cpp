@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/input_error.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 

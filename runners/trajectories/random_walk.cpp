@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise.h"
-#include "core/rotation.h"
+#include "core/geometry/rotation.h"
+#include "core/random/noise.h"
 
 namespace remote_touch {
 

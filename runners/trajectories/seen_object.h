@@ -1,7 +1,7 @@
 // The nearest large object that a depth image shows: where a scan goes when nobody says.
 #pragma once
 
-#include "core/camera.h"
+#include "core/cloud/camera.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 // What a depth image tells a scripted device about where it can touch.
 #pragma once
 
-#include "core/camera.h"
+#include "core/cloud/camera.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 // The seam of every scripted device motion.
 #pragma once
 
-#include "core/frame.h"
+#include "core/rendering/frame.h"
 
 namespace remote_touch {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/parameter.h"
+#include "core/parameters/parameter.h"
 #include "runners/trajectories/polyline_path.h"
 #include "runners/trajectories/trajectory.h"
-#include "scenarios/scenario.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

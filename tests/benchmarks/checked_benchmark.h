@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernels.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch::benchmarks {
 

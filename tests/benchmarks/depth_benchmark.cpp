@@ -9,8 +9,8 @@
 #include <string>
 
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/depth_scenes.h"
-#include "tests/reference_depth_pipeline.h"
+#include "tests/core/depth/reference_depth_pipeline.h"
+#include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbourhood.h"
-#include "core/proxy_renderer.h"
-#include "core/proxy_step.h"
+#include "core/proxy/proxy_renderer.h"
+#include "core/proxy/proxy_step.h"
+#include "core/search/neighbourhood.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/fixture_scene.h"
 #include "tests/benchmarks/proxy_benchmark.h"

@@ -5,8 +5,8 @@
 #include <random>
 #include <utility>
 
-#include "core/proxy_renderer.h"
-#include "tests/scenes.h"
+#include "core/proxy/proxy_renderer.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch::benchmarks {
 namespace {

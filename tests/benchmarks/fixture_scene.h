@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbour_search.h"
+#include "core/search/neighbour_search.h"
 #include "tests/benchmarks/naive_regions.h"
 #include "tests/benchmarks/slide.h"
 

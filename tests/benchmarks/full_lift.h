@@ -4,10 +4,10 @@
 #include <functional>
 #include <memory>
 
-#include "analysis/trace.h"
-#include "core/neighbour_search.h"
-#include "runners/experiment.h"
-#include "scenarios/moving_lift.h"
+#include "analysis/trace/trace.h"
+#include "core/search/neighbour_search.h"
+#include "runners/experiment/experiment.h"
+#include "scenarios/synthetic/moving_lift.h"
 
 namespace remote_touch::benchmarks {
 

@@ -15,10 +15,10 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/digest.h"
-#include "analysis/measures.h"
-#include "runners/simulation.h"
-#include "runners/sweep_run.h"
+#include "analysis/measures/measures.h"
+#include "analysis/storage/digest.h"
+#include "runners/simulation/simulation.h"
+#include "runners/sweep/sweep_run.h"
 #include "tests/benchmarks/full_lift.h"
 #include "tests/benchmarks/naive_lift.h"
 #include "tests/benchmarks/naive_proxy.h"

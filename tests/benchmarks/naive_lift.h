@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "core/proxy_parameters.h"
-#include "core/vector.h"
-#include "scenarios/moving_lift.h"
+#include "core/geometry/vector.h"
+#include "core/proxy/proxy_parameters.h"
+#include "scenarios/synthetic/moving_lift.h"
 
 namespace remote_touch::naive {
 

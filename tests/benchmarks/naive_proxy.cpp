@@ -6,8 +6,8 @@
 #include <random>
 #include <utility>
 
-#include "core/camera.h"
-#include "tests/scenes.h"
+#include "core/cloud/camera.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch::naive {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/gathered_points.h"
-#include "core/point_cloud.h"
-#include "core/proxy_parameters.h"
-#include "core/renderer.h"
+#include "core/cloud/point_cloud.h"
+#include "core/proxy/proxy_parameters.h"
+#include "core/rendering/renderer.h"
+#include "core/search/gathered_points.h"
 
 namespace remote_touch::naive {
 

@@ -12,7 +12,7 @@
 #include "core/depth/depth_pipeline.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_depth.h"
-#include "tests/depth_scenes.h"
+#include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {
 namespace {

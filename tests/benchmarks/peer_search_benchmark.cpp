@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "tests/benchmarks/naive_proxy.h"
-#include "tests/scenes.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch {
 namespace {

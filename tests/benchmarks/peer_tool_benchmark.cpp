@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/tool/touch_finder.h"
-#include "core/tool/triangle_tree.h"
+#include "core/tool/contact/touch_finder.h"
+#include "core/tool/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_tool.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/formed.h"
+#include "tests/support/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {

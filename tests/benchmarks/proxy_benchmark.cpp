@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/scenes.h"
+#include "tests/support/scenes.h"
 
 int main(int argc, char** argv) {
   using namespace remote_touch;

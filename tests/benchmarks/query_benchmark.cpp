@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbour_search.h"
-#include "scenarios/recording.h"
+#include "core/search/neighbour_search.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 

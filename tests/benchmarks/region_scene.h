@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/point_cloud.h"
+#include "core/cloud/point_cloud.h"
 #include "core/sphere_tree/sphere_tree.h"
 #include "core/sphere_tree/tree_collision.h"
-#include "core/tool/tool_pose.h"
-#include "core/tool/voxel_tool.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch::benchmarks {
 

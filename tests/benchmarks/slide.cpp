@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/proxy_renderer.h"
-#include "tests/scenes.h"
+#include "core/proxy/proxy_renderer.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch::benchmarks {
 namespace {

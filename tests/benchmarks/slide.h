@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbour_search.h"
-#include "core/proxy_parameters.h"
+#include "core/proxy/proxy_parameters.h"
+#include "core/search/neighbour_search.h"
 #include "tests/benchmarks/naive_proxy.h"
 
 namespace remote_touch::benchmarks {

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "core/sphere_tree/region_contacts.h"
-#include "core/tool/look_ahead_motion.h"
+#include "core/tool/motion/look_ahead_motion.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
-#include "tests/formed.h"
+#include "tests/support/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {

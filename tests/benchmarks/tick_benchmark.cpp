@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/proxy_renderer.h"
+#include "core/proxy/proxy_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "core/neighbour_search.h"
-#include "core/tool/contact_list.h"
-#include "core/tool/tool_renderer.h"
+#include "core/search/neighbour_search.h"
+#include "core/tool/contact/contact_list.h"
+#include "core/tool/motion/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/formed.h"
+#include "tests/support/formed.h"
 
 namespace remote_touch::benchmarks {
 namespace {

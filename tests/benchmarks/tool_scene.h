@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
-#include "core/tool/tool_parameters.h"
-#include "core/tool/tool_pose.h"
-#include "core/tool/touch_finder.h"
-#include "core/tool/voxel_tool.h"
+#include "core/rendering/frame.h"
+#include "core/tool/contact/touch_finder.h"
+#include "core/tool/dynamics/tool_parameters.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch::benchmarks {
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
-#include "scenarios/moving_lift.h"
+#include "scenarios/synthetic/moving_lift.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
 namespace remote_touch::benchmarks {

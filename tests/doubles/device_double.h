@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "runners/live/steady_clock.h"
+#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 

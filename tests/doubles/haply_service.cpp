@@ -1,4 +1,4 @@
-// As in runners/devices/haply_link.cpp.
+// As in runners/live/devices/haply_link.cpp.
 #define BOOST_ASIO_DISABLE_FENCED_BLOCK
 #include "tests/doubles/haply_service.h"
 
@@ -20,7 +20,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "runners/live/steady_clock.h"
+#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/vector.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

@@ -1,0 +1,39 @@
+// How far the values of one column are from those of another.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/columns/column.h"
+#include "analysis/columns/tolerance.h"
+
+namespace remote_touch {
+
+// The deviation of a row, a number or a vector, is the length of its difference, in the column's units; it is
+// inside when it is at most absolute + relative * |the baseline's row|.
+//
+// Numbers are equal as tolerance.h says. Names (enumerations), texts and fingerprints are equal or outside.
+// Columns of other kinds, widths, units, names of values or lengths are a problem, and so are no rows at all;
+// rows that both have are compared all the same.
+struct ColumnComparison {
+  std::string name, units;
+  Tolerance tolerance;
+  std::string problem = {};  // empty: none
+  std::size_t baseline_rows = 0, candidate_rows = 0;
+  std::size_t rows = 0;         // compared
+  std::size_t outside = 0;      // of them
+  std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity
+  double largest = 0, rms = 0;  // of the finite deviations, in units; 0 for what is equal or not
+  std::optional<std::size_t> first_difference = {}, first_outside = {};
+
+  bool is_same() const { return problem.empty() && rows > 0 && outside == 0; }
+};
+
+ColumnComparison compare_columns(const Column& baseline, const Column& candidate, const Tolerance& tolerance);
+
+// The deviation of every row that both have; NaN where one has a NaN or an infinity and the other does not,
+// and 1 or 0 for what is equal or not.
+std::vector<double> deviations(const Column& baseline, const Column& candidate);
+
+}  // namespace remote_touch

@@ -1,0 +1,67 @@
+#include "analysis/comparison/column_source.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/columns/fingerprint.h"
+#include "analysis/figures/result_file.h"
+
+namespace remote_touch {
+
+bool ColumnSource::has(const std::string& name) const {
+  const std::vector<std::string> names = columns();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
+  hdf5_.require_schema(kTraceSchema, "a trace of remote-touch run or replay");
+  std::istringstream list(attribute(hdf5_.attributes(), "columns"));
+  for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
+}
+
+Column StoredTrace::column(const std::string& name) const {
+  return hdf5_.column("/trace/" + name);
+}
+
+Column StoredTrace::rows(const std::string& name, std::size_t first, std::size_t count) const {
+  return hdf5_.rows("/trace/" + name, first, count);
+}
+
+std::vector<std::uint64_t> StoredTrace::running_hash() const {
+  return hdf5_.values<std::uint64_t>(std::string("/trace/") + kRunningHash);
+}
+
+StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
+  hdf5_.require_schema(kFigureSchema, "a figure of remote-touch figure");
+  const std::string tables = "/tables/";
+  for (const std::string& path : hdf5_.datasets())
+    if (path.starts_with(tables)) columns_.push_back(path.substr(tables.size()));
+}
+
+std::vector<std::string> ColumnsInMemory::columns() const {
+  std::vector<std::string> names;
+  for (const Column& column : all_) names.push_back(column.name);
+  return names;
+}
+
+const Column& ColumnsInMemory::find(const std::string& name) const {
+  for (const Column& column : all_)
+    if (column.name == name) return column;
+  throw std::out_of_range("no column " + name);
+}
+
+Column ColumnsInMemory::rows(const std::string& name, std::size_t first, std::size_t count) const {
+  Column some = find(name);
+  const auto width = static_cast<std::ptrdiff_t>(some.width);
+  std::visit(
+      [&](auto& values) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first) * width;
+        values = std::decay_t<decltype(values)>(begin, begin + static_cast<std::ptrdiff_t>(count) * width);
+      },
+      some.values);
+  return some;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,68 @@
+// Columns to compare: in a file, of which only those at hand are read, or in memory.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_reader.h"
+
+namespace remote_touch {
+
+class ColumnSource {
+ public:
+  virtual ~ColumnSource() = default;
+  virtual std::vector<std::string> columns() const = 0;  // names, in the order they are stored and hashed
+  virtual Column column(const std::string& name) const = 0;
+  // Rows first .. first + count - 1; pre: they are there.
+  virtual Column rows(const std::string& name, std::size_t first, std::size_t count) const = 0;
+
+  bool has(const std::string& name) const;
+};
+
+// Throws InputError for a file that is no trace, is of another version of the layout, or is not as it was
+// written.
+class StoredTrace final : public ColumnSource {
+ public:
+  explicit StoredTrace(Hdf5Reader hdf5);
+  explicit StoredTrace(const std::filesystem::path& file) : StoredTrace(Hdf5Reader(file)) {}
+  std::vector<std::string> columns() const override { return columns_; }
+  Column column(const std::string& name) const override;
+  Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
+  std::vector<std::uint64_t> running_hash() const;  // kRunningHash
+  const TextAttributes& attributes() const { return hdf5_.attributes(); }
+
+ private:
+  Hdf5Reader hdf5_;
+  std::vector<std::string> columns_;
+};
+
+// The tables of a figure; columns are named table/column.
+class StoredFigure final : public ColumnSource {
+ public:
+  explicit StoredFigure(Hdf5Reader hdf5);
+  std::vector<std::string> columns() const override { return columns_; }
+  Column column(const std::string& name) const override { return hdf5_.column("/tables/" + name); }
+  Column rows(const std::string& name, std::size_t first, std::size_t count) const override {
+    return hdf5_.rows("/tables/" + name, first, count);
+  }
+  const TextAttributes& attributes() const { return hdf5_.attributes(); }
+
+ private:
+  Hdf5Reader hdf5_;
+  std::vector<std::string> columns_;
+};
+
+class ColumnsInMemory final : public ColumnSource {
+ public:
+  explicit ColumnsInMemory(std::vector<Column> columns) : all_(std::move(columns)) {}
+  std::vector<std::string> columns() const override;
+  Column column(const std::string& name) const override { return find(name); }
+  Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
+
+ private:
+  const Column& find(const std::string& name) const;
+  std::vector<Column> all_;
+};
+
+}  // namespace remote_touch

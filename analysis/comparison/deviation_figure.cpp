@@ -1,0 +1,68 @@
+#include "analysis/comparison/deviation_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMostPieces = 2000, kMostPanels = 8;
+
+// Logarithm of the largest of each piece. What is equal or not counts as 1, NaN against a number as none.
+Table pieces(const std::string& column, const std::vector<double>& time,
+             const std::vector<double>& deviation) {
+  std::vector<double> when, largest;
+  const std::size_t rows = std::min(time.size(), deviation.size());
+  const std::size_t length = (rows + kMostPieces - 1) / kMostPieces;
+  for (std::size_t first = 0; first < rows; first += length) {
+    double most = 0;
+    for (std::size_t i = first; i < std::min(rows, first + length); ++i)
+      most = std::max(most, std::isnan(deviation[i]) ? 0 : deviation[i]);
+    when.push_back(time[first]);
+    largest.push_back(most > 0 ? std::log10(most) : std::numeric_limits<double>::quiet_NaN());
+  }
+  Table table{column, "Deviation of " + column};
+  table.add("time", "s", "simulated time, beginning of the piece", std::move(when));
+  table.add("deviation", "1", "log10 of the largest deviation in the column's units", std::move(largest));
+  return table;
+}
+
+}  // namespace
+
+Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                        const TraceComparison& comparison) {
+  Figure figure{"deviation", "Deviation of two traces over time", "No column differs."};
+  if (!baseline.has("time")) return figure;
+  const Column time = baseline.column("time");
+  if (!std::holds_alternative<std::vector<double>>(time.values)) return figure;
+  const auto& time_s = std::get<std::vector<double>>(time.values);
+  for (const ColumnComparison& column : comparison.columns) {
+    if (!column.first_difference || figure.panels.size() == kMostPanels) continue;
+    const Column ours = baseline.column(column.name);
+    figure.tables.push_back(pieces(column.name, time_s, deviations(ours, candidate.column(column.name))));
+    Table first{column.name + "_first", "First row outside"};
+    if (column.first_outside && *column.first_outside < time_s.size()) {
+      const double size = deviations(baseline.rows(column.name, *column.first_outside, 1),
+                                     candidate.rows(column.name, *column.first_outside, 1))
+                              .front();
+      first.add("time", "s", "simulated time", {time_s[*column.first_outside]});
+      first.add("deviation", "1", "log10 of the deviation", {std::log10(size)});
+    }
+    Panel panel{column.name, "time / s", "log10 of the deviation / " + column.units};
+    panel.curves.push_back({column.name, "time", "deviation", CurveStyle::line});
+    if (!first.columns.empty() && std::isfinite(std::get<std::vector<double>>(first.columns[1].values)[0])) {
+      figure.tables.push_back(first);
+      panel.curves.push_back({first.name, "time", "deviation", CurveStyle::dots, "first outside"});
+    }
+    figure.panels.push_back(panel);
+  }
+  if (comparison.divergence)
+    figure.caption = "First divergent tick " + std::to_string(comparison.divergence->tick) + ", " +
+                     comparison.divergence->quantity + ": " + name_of(comparison.divergence->cause) + ", " +
+                     comparison.divergence->because + ".";
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,16 @@
+// How far two traces are apart over time, as a figure.
+#pragma once
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/trace_comparison.h"
+#include "analysis/figures/figure.h"
+
+namespace remote_touch {
+
+// One panel for each column that differs, at most 8, in the trace's order: the decimal logarithm of the
+// largest deviation in each of up to 2000 pieces of time (absent where there is none), and the first
+// divergent tick.
+Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                        const TraceComparison& comparison);
+
+}  // namespace remote_touch

@@ -1,0 +1,286 @@
+#include "analysis/comparison/sweep_comparison.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+using Problems = std::vector<std::string>;
+using Runs = std::vector<std::size_t>;  // rising
+
+// --- may they be compared? ---
+
+bool same_values(const Column& a, const Column& b) {
+  const auto* numbers = std::get_if<std::vector<double>>(&a.values);
+  const auto* others = std::get_if<std::vector<double>>(&b.values);
+  if (numbers == nullptr || others == nullptr) return a.values == b.values;
+  return std::equal(numbers->begin(), numbers->end(), others->begin(), others->end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+void expect_same(const std::string& what, const std::string& a, const std::string& b, Problems& problems) {
+  if (a != b) problems.push_back(what + ": " + a + " against " + b);
+}
+
+void check_axis(const Column& a, const Column& b, Problems& problems) {
+  if (a.name != b.name) return expect_same("axis", a.name, b.name, problems);
+  const std::string label = "axis " + a.name;
+  expect_same(label + ", parameter", a.long_name, b.long_name, problems);
+  expect_same(label + ", unit", a.units, b.units, problems);
+  expect_same(label + ", values", std::to_string(a.length()), std::to_string(b.length()), problems);
+  if (a.length() == b.length() && !(same_values(a, b) && a.value_names == b.value_names))
+    problems.push_back(label + ": the values differ");
+}
+
+std::vector<Column>::const_iterator find(const std::vector<Column>& columns, const std::string& name) {
+  return std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+}
+
+void check_measures(const SweepResult& a, const SweepResult& b, SweepComparison& result) {
+  if (a.measures.empty()) result.problems.emplace_back("the baseline has no measures");
+  auto last = b.measures.begin();
+  for (const Column& measure : a.measures) {
+    const std::string label = "measure " + measure.name;
+    const auto found = find(b.measures, measure.name);
+    if (found == b.measures.end()) {
+      result.problems.push_back(label + ": the candidate has none");
+      continue;
+    }
+    expect_same(label + ", unit", measure.units, found->units, result.problems);
+    if (found < last) result.problems.push_back(label + ": comes before " + last->name + " in the candidate");
+    last = std::max(last, found);
+  }
+  for (const Column& measure : b.measures)
+    if (find(a.measures, measure.name) == a.measures.end())
+      result.notes.push_back("measure " + measure.name + ": only the candidate has it");
+}
+
+void check_definitions(const SweepResult& a, const SweepResult& b, SweepComparison& result) {
+  expect_same("axes", std::to_string(a.axes.size()), std::to_string(b.axes.size()), result.problems);
+  for (std::size_t i = 0; i < std::min(a.axes.size(), b.axes.size()); ++i)
+    check_axis(a.axes[i], b.axes[i], result.problems);
+  expect_same("replicates", std::to_string(a.replicates), std::to_string(b.replicates), result.problems);
+  check_measures(a, b, result);
+}
+
+// Returns the runs done in both.
+Runs check_states(const SweepResult& a, const SweepResult& b, SweepComparison& result) {
+  Runs both;
+  for (std::size_t run = 0; run < a.run_count(); ++run) {
+    const bool in_a = a.state[run] == RunState::done, in_b = b.state[run] == RunState::done;
+    if (in_a && in_b) both.push_back(run);
+    if (in_a && !in_b) result.baseline_only.push_back(run);
+    if (!in_a && in_b) result.candidate_only.push_back(run);
+  }
+  const std::size_t neither =
+      a.run_count() - both.size() - result.baseline_only.size() - result.candidate_only.size();
+  if (neither > 0) result.notes.push_back("runs done in neither: " + std::to_string(neither));
+  if (both.empty()) result.problems.emplace_back("no run is done in both");
+  result.done_in_both = both.size();
+  return both;
+}
+
+// --- measures ---
+
+struct Pairs {
+  const std::vector<double>&baseline, &candidate;
+  Tolerance tolerance;
+  bool event = false;  // then a candidate's value that is neither 0 nor 1 has no partner
+
+  bool finite(std::size_t run) const {
+    const double value = candidate[run];
+    return std::isfinite(baseline[run]) && std::isfinite(value) && (!event || value == 0 || value == 1);
+  }
+  bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }
+};
+
+bool is_0_or_1(double value) {
+  return value == 0 || value == 1 || !std::isfinite(value);
+}
+
+// What is 0 in all of the baseline may be an event that did not happen: then the candidate tells.
+bool is_event(const std::vector<double>& baseline, const std::vector<double>& candidate, const Runs& runs) {
+  bool any = false, happened = false, in_candidate = true;
+  for (const std::size_t run : runs) {
+    if (!is_0_or_1(baseline[run])) return false;
+    any |= std::isfinite(baseline[run]), happened |= baseline[run] == 1;
+    in_candidate &= is_0_or_1(candidate[run]);
+  }
+  return any && (happened || in_candidate);
+}
+
+MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
+  MeasureComparison result;
+  result.tolerance = pairs.tolerance, result.event = pairs.event;
+  result.compared = static_cast<std::int64_t>(runs.size());
+  std::vector<double> deviations;
+  for (const std::size_t run : runs) {
+    const double deviation = std::abs(pairs.candidate[run] - pairs.baseline[run]);
+    if (std::isfinite(deviation)) deviations.push_back(deviation);
+    if (pairs.equal(run)) continue;
+    if (result.outside++ == 0) result.first_outside = run;
+  }
+  for (const double d : deviations) result.largest_deviation = std::max(result.largest_deviation, d);
+  result.rms_deviation = root_mean_square(deviations);
+  return result;
+}
+
+std::optional<FirstDifference> first_difference(const SweepResult& a, const SweepResult& b,
+                                                const SweepComparison& comparison) {
+  std::optional<FirstDifference> first;
+  const auto consider = [&](std::size_t run, const std::string& measure) {
+    if (first && first->run <= run) return;
+    const std::size_t cell = a.cell_of(run);
+    first = FirstDifference{run, cell, a.place(cell), a.replicate_of(run), measure};
+    if (!measure.empty())
+      first->baseline = a.measure(measure)[run], first->candidate = b.measure(measure)[run];
+  };
+  for (const auto* only : {&comparison.baseline_only, &comparison.candidate_only})
+    if (!only->empty()) consider(only->front(), "");
+  for (const MeasureComparison& measure : comparison.measures)
+    if (measure.first_outside) consider(*measure.first_outside, measure.name);
+  return first;
+}
+
+std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const std::vector<Region>& regions) {
+  std::vector<Runs> split(regions.size());
+  for (const std::size_t run : runs) {
+    const std::vector<std::size_t> place = result.place(result.cell_of(run));
+    for (std::size_t i = 0; i < regions.size(); ++i)
+      if (regions[i].contains(place)) split[i].push_back(run);
+  }
+  return split;
+}
+
+// --- paired tests ---
+
+double standard_deviation(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  double sum = 0;
+  for (const double value : values) sum += value / static_cast<double>(values.size());
+  std::vector<double> centred;
+  for (const double value : values) centred.push_back(value - sum);
+  return root_mean_square(centred);
+}
+
+RegionComparison tested(const Pairs& pairs, const Runs& runs) {
+  RegionComparison result;
+  result.runs = static_cast<std::int64_t>(runs.size());
+  std::vector<double> all, outside, before;
+  for (const std::size_t run : runs) {
+    const bool finite = pairs.finite(run), equal = pairs.equal(run);
+    result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
+    if (!finite) continue;
+    const double b = pairs.baseline[run], c = pairs.candidate[run];
+    ++result.pairs;
+    result.up += !equal && c > b ? 1 : 0, result.down += !equal && c < b ? 1 : 0;
+    if (pairs.event) {
+      result.baseline_events += b == 1 ? 1 : 0, result.candidate_events += c == 1 ? 1 : 0;
+      continue;
+    }
+    all.push_back(c - b), before.push_back(b);
+    if (!equal && std::isfinite(c - b)) outside.push_back(c - b);
+  }
+  result.difference = paired_difference_interval(result.up, result.down, result.pairs);
+  result.sign_p = sign_test(result.up, result.down);
+  if (pairs.event) {
+    result.baseline_share = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
+    result.candidate_share = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
+  } else {
+    result.mean = mean_difference(all);
+    result.baseline_spread = standard_deviation(before);
+    result.symmetry_p = symmetry_test(outside);
+  }
+  return result;
+}
+
+bool holds(const std::pair<double, double>& interval, double margin) {
+  return interval.first >= -margin && interval.second <= margin;
+}
+
+Judgement judgement(const RegionComparison& c, bool event, const PairedRule& rule) {
+  if (c.runs > 0 && c.outside == 0) return Judgement::equal;
+  if (c.adjusted_p < rule.alpha || c.unpaired > 0) return Judgement::changed;
+  if (c.pairs == 0) return Judgement::undecided;
+  const bool within = event ? holds(c.difference, rule.margin)
+                            : holds(c.difference, rule.shift_margin) &&
+                                  holds({c.mean.low, c.mean.high}, rule.shift_margin * c.baseline_spread);
+  return within ? Judgement::within_margin : Judgement::undecided;
+}
+
+// Both tests of a measure that is no event are members of the family that is adjusted together.
+void judge(const PairedRule& rule, SweepComparison& result) {
+  std::vector<double> p;
+  for (const RegionComparison& c : result.by_region) {
+    p.push_back(c.sign_p);
+    if (!result.measures[c.measure].event) p.push_back(c.symmetry_p);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  auto next = adjusted.begin();
+  for (RegionComparison& c : result.by_region) {
+    c.adjusted_p = *next++;
+    if (!result.measures[c.measure].event) c.adjusted_p = std::min(c.adjusted_p, *next++);
+    c.judgement = judgement(c, result.measures[c.measure].event, rule);
+  }
+}
+
+// Of a refined sweep the first round: what was run later follows from what came out.
+bool is_planned(const SweepResult& sweep, std::size_t run) {
+  return sweep.round.empty() || sweep.round[run] == 0;
+}
+
+PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison& result) {
+  for (const auto* only : {&result.baseline_only, &result.candidate_only})
+    for (const std::size_t run : *only)
+      if (is_planned(baseline, run)) return PairedVerdict::runs_missing;
+  if (!result.first) return PairedVerdict::equal;
+  bool undecided = false;
+  for (const RegionComparison& c : result.by_region) {
+    if (c.judgement == Judgement::changed) return PairedVerdict::changed;
+    undecided = undecided || (c.region == 0 && c.judgement == Judgement::undecided);
+  }
+  return undecided ? PairedVerdict::undecided : PairedVerdict::within_margin;
+}
+
+}  // namespace
+
+SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
+                        const Tolerances& tolerances, const PairedRule& rule) {
+  SweepComparison result;
+  check_definitions(baseline, candidate, result);
+  for (const auto& [name, tolerance] : tolerances)
+    if (name != "*" && find(baseline.measures, name) == baseline.measures.end())
+      result.problems.push_back("a tolerance is given for " + name + ", which the baseline does not measure");
+  if (!result.problems.empty()) return result;
+  const Runs both = check_states(baseline, candidate, result);
+  if (!result.problems.empty()) return result;
+  result.regions = regions_of(baseline.axes);
+  Runs planned;
+  for (const std::size_t run : both)
+    if (is_planned(baseline, run)) planned.push_back(run);
+  const std::vector<Runs> runs = by_region(baseline, planned, result.regions);
+  std::vector<Pairs> pairs;
+  for (const Column& measure : baseline.measures) {
+    pairs.push_back({baseline.measure(measure.name), candidate.measure(measure.name),
+                     tolerance_of(tolerances, measure.name),
+                     is_event(baseline.measure(measure.name), candidate.measure(measure.name), both)});
+    result.measures.push_back(compare_values(pairs.back(), both));
+    result.measures.back().name = measure.name, result.measures.back().units = measure.units;
+  }
+  for (std::size_t region = 0; region < runs.size(); ++region)
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      result.by_region.push_back(tested(pairs[i], runs[region]));
+      result.by_region.back().region = region, result.by_region.back().measure = i;
+    }
+  result.first = first_difference(baseline, candidate, result);
+  result.exact = result.first ? ExactVerdict::different : ExactVerdict::equal;
+  judge(rule, result);
+  result.paired = paired_verdict(baseline, result);
+  return result;
+}
+
+}  // namespace remote_touch

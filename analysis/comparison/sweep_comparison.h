@@ -1,0 +1,136 @@
+// Two finished sweeps of the same definition, held against each other.
+//
+// Noise is keyed by seed, cell and replicate: the same run of both met the same noise, so they are a pair.
+// Where nothing changed, pairs are equal to the last bit. Where something did, single runs near a limit are
+// chaotic: a last bit flips some of them, in either direction alike. So there are two verdicts: an exact
+// one, and one by paired tests, which tells such flips from a change of what happens.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/columns/tolerance.h"
+#include "analysis/statistics/paired_test.h"
+#include "analysis/sweeps/sweep_regions.h"
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+// Over the runs that are done in both.
+struct MeasureComparison {
+  std::string name, units;
+  Tolerance tolerance;
+  // All finite values of the baseline are 0 or 1 (and those of the candidate, where the baseline has no 1):
+  // the share of 1 is a probability.
+  bool event = false;
+  std::int64_t compared = 0, outside = 0;
+  double largest_deviation = 0, rms_deviation = 0;  // |candidate - baseline| where both are finite
+  std::optional<std::size_t> first_outside = {};    // a run
+};
+
+// The first run, in the order of the arrays, that is done in one only or has a measure outside.
+struct FirstDifference {
+  std::size_t run = 0, cell = 0;
+  std::vector<std::size_t> place;  // of the cell on each axis
+  int replicate = 0;
+  std::string measure;  // the first outside; empty: done in one only
+  double baseline = 0, candidate = 0;
+};
+
+enum class Judgement {
+  equal,          // every pair is within the tolerance
+  within_margin,  // the intervals of the differences lie within the margins
+  changed,        // one direction prevails: adjusted p < alpha, whatever the margins; or a number is none now
+  undecided       // none of these
+};
+
+// A measure in a region, over the runs done in both. Up and down: the candidate's number is larger, smaller,
+// by more than the tolerance. For an event: it happened in the candidate only, in the baseline only.
+struct RegionComparison {
+  std::size_t region = 0, measure = 0;
+  std::int64_t runs = 0;
+  std::int64_t pairs = 0;     // finite in both
+  std::int64_t outside = 0;   // the tolerance
+  std::int64_t unpaired = 0;  // of those: not finite in one or both, or an event neither 0 nor 1
+  std::int64_t up = 0, down = 0;
+  std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
+
+  // Events only: how often in either, with Wilson's intervals of the shares of pairs.
+  int baseline_events = 0, candidate_events = 0;
+  std::pair<double, double> baseline_share = {0, 1}, candidate_share = {0, 1};
+  // Other measures only: over all pairs, in the measure's unit; and the baseline's standard deviation.
+  MeanDifference mean = {};
+  double baseline_spread = 0;
+
+  double sign_p = 1;
+  double symmetry_p = 1;  // over the pairs outside; 1 for an event, where it tells nothing more
+  double adjusted_p = 1;  // the smaller of the two, adjusted for all tests of all regions and measures
+  Judgement judgement = Judgement::undecided;
+};
+
+struct PairedRule {
+  double margin = 0.02;  // of a difference of shares of an event
+  // Of other measures: of the share that got larger less the share that got smaller, and of the mean
+  // difference in units of the baseline's standard deviation.
+  double shift_margin = 0.1;
+  double alpha = 0.01;  // probability of calling anything changed where nothing is
+};
+
+enum class ExactVerdict {
+  not_comparable,
+  equal,     // the same runs are done, and every pair of every measure is within the tolerance
+  different  // some are not
+};
+
+// In this order, the first that holds; equal and within_margin are a pass.
+//
+// A pass beside equal has to be shown, not only not refuted: over the whole, every measure that differs
+// anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
+// with one flip, and more with more; 4 runs of which one differs are undecided, 5396 with 30 flips evenly
+// both ways are known to +-0.2 %. It needs no correction for the number of measures, as all of them have to
+// pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: a change that is
+// lost in the flips of the whole is found where it is. What a pass does not exclude in a part is what the
+// part's interval says. For measures that are no events: the share of runs that got larger less the share
+// that got smaller (about 400 runs where all differ, both ways alike), and the mean difference in units of
+// how far the baseline's runs lie apart, so that few runs that got much worse are no pass. A tolerance takes
+// away what does not matter. A systematic change, however small, is changed. A number against none is
+// changed. Of a refined sweep the first round is judged: which runs follow depends on what came out.
+enum class PairedVerdict {
+  not_comparable,
+  runs_missing,   // some runs of the first round are done in one only, which no test excuses
+  equal,          // as ExactVerdict
+  changed,        // some measure in some region
+  undecided,      // some measure over the whole
+  within_margin,  // over the whole every measure is equal or within_margin
+};
+
+struct SweepComparison {
+  // Why the two are not comparable, a line each. Nothing below is set then but notes and the lists of runs.
+  std::vector<std::string> problems;
+  std::vector<std::string> notes;  // what does not matter to the verdicts, a line each
+  std::size_t done_in_both = 0;
+  std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, rising
+  std::vector<MeasureComparison> measures;                 // those of the baseline
+  std::optional<FirstDifference> first;
+  std::vector<Region> regions;
+  std::vector<RegionComparison> by_region;  // for each region, for each measure
+  ExactVerdict exact = ExactVerdict::not_comparable;
+  PairedVerdict paired = PairedVerdict::not_comparable;
+
+  const RegionComparison& at(std::size_t region, std::size_t measure) const {
+    return by_region[region * measures.size() + measure];
+  }
+};
+
+// Comparable are sweeps of the same axes (name, parameter, unit, and values to the bit), the same number of
+// replicates, and all measures of the baseline in the same order and units; the candidate may have others.
+// At least one run is done in both. What is within its tolerance counts as equal in every test. Rounds of
+// refinement and texts of errors are not compared. pre: the same noise in both (one seed); arrays are over
+// all runs, as read_sweep gives them; tolerances, margin and alpha are not negative.
+SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
+                        const Tolerances& tolerances = {}, const PairedRule& rule = {});
+
+}  // namespace remote_touch

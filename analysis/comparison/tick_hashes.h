@@ -1,0 +1,42 @@
+// The running hash of a trace without the trace: what is sent from one machine to another to find the first
+// tick at which two runs differ. 8 bytes a tick, or less when only every n-th is kept.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/storage/hdf5_file.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kHashesSchema = "remote-touch-hashes/1";
+
+struct TickHashes {
+  std::vector<std::int32_t> tick;   // rising; the last is the trace's last
+  std::vector<std::uint64_t> hash;  // the running hash at that tick (fingerprint.h)
+};
+
+// Every n-th tick of a trace, and the last; pre: every > 0.
+TickHashes hashes_of_trace(const StoredTrace& trace, int every);
+
+void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
+                  const TextAttributes& provenance);
+struct StoredHashes {
+  TickHashes hashes;
+  TextAttributes attributes;
+};
+StoredHashes read_hashes(const std::filesystem::path& file);  // throws InputError for any other file
+
+// Over the ticks that both have. Runs are the same up to `same`, and differ at `different`, both included;
+// what lies between is not known.
+struct HashComparison {
+  std::size_t compared = 0;
+  std::optional<int> same, different;
+  bool same_length = false;
+  bool is_same() const { return compared > 0 && same_length && !different; }
+};
+HashComparison compare_hashes(const TickHashes& baseline, const TickHashes& candidate);
+
+}  // namespace remote_touch

@@ -1,0 +1,211 @@
+#include "analysis/comparison/trace_comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "analysis/columns/fingerprint.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::optional<std::size_t> earlier(std::optional<std::size_t> a, std::optional<std::size_t> b) {
+  return a && b ? std::min(a, b) : a ? a : b;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : ", ") + part;
+  return text;
+}
+
+bool is_input(const std::string& column) {
+  for (const char* input : {"time", "hip_position", "hip_orientation", "frame_hash"})
+    if (column == input) return true;
+  return false;
+}
+
+// Where the runs part, and the rows around it.
+class PartingPlace {
+ public:
+  PartingPlace(const ColumnSource& baseline, const ColumnSource& candidate,
+               const std::vector<ColumnComparison>& columns, std::size_t tick)
+      : baseline_(baseline), candidate_(candidate), columns_(columns), tick_(tick) {}
+
+  // What kind of place it is, and the line that says why.
+  std::pair<Cause, std::string> situation() const {
+    const std::vector<std::string> inputs = differing_inputs();
+    if (!inputs.empty())
+      return {Cause::input, joined(inputs) + " differs; the renderer was given something else"};
+    if (differs("frame_index"))
+      return {Cause::frame_update, "both were given the same frames, but one did not take the newest"};
+    if (new_frame(baseline_) || new_frame(candidate_))
+      return {Cause::frame_update, "frame " + std::to_string(frame(baseline_, tick_)) +
+                                       " came in with this tick, the same in both"};
+    if (differs("state") || changed(baseline_, "state") || changed(candidate_, "state"))
+      return {Cause::state_transition, "baseline " + states(baseline_) + ", candidate " + states(candidate_)};
+    return {Cause::drift, "no frame came in and the state, " + state(baseline_, tick_) + ", did not change"};
+  }
+
+  std::string frame_text() const {
+    if (!integer(baseline_, "frame_index", tick_)) return "unknown: the traces have no frame_index here";
+    const Column frames = baseline_.column("frame_index");
+    const auto& index = std::get<std::vector<std::int32_t>>(frames.values);
+    if (index[tick_] < 0) return "none had come yet";
+    std::size_t since = tick_, next = tick_ + 1;
+    while (since > 0 && index[since - 1] == index[tick_]) --since;
+    while (next < index.size() && index[next] == index[tick_]) ++next;
+    std::string text = "frame " + std::to_string(index[tick_]) + " since tick " + std::to_string(since);
+    if (next < index.size())
+      text += ", frame " + std::to_string(index[next]) + " with tick " + std::to_string(next);
+    return text;
+  }
+
+ private:
+  bool differs(const std::string& column) const {
+    for (const ColumnComparison& comparison : columns_)
+      if (comparison.name == column) return comparison.first_difference == tick_;
+    return false;
+  }
+  std::vector<std::string> differing_inputs() const {
+    std::vector<std::string> inputs;
+    for (const ColumnComparison& comparison : columns_)
+      if (is_input(comparison.name) && differs(comparison.name)) inputs.push_back(comparison.name);
+    // Another distance to the truth at the same place: the truth is another.
+    if (inputs.empty() && differs("signed_distance") && !differs("proxy_position"))
+      inputs.emplace_back("signed_distance (the true surface)");
+    return inputs;
+  }
+  // None where one of the two has no such column, not that far, or of something else.
+  std::optional<std::int32_t> integer(const ColumnSource& trace, const char* column, std::size_t tick) const {
+    for (const ColumnComparison& comparison : columns_) {
+      if (comparison.name != column || comparison.rows <= tick) continue;
+      const Column row = trace.rows(column, tick, 1);
+      if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&row.values)) return integers->at(0);
+    }
+    return {};
+  }
+  std::int32_t frame(const ColumnSource& trace, std::size_t tick) const {
+    return integer(trace, "frame_index", tick).value_or(-1);
+  }
+  bool changed(const ColumnSource& trace, const char* column) const {
+    const auto now = integer(trace, column, tick_);
+    return now && tick_ > 0 && now != integer(trace, column, tick_ - 1);
+  }
+  // The very first tick with a frame is an update too.
+  bool new_frame(const ColumnSource& trace) const {
+    return tick_ > 0 ? changed(trace, "frame_index") : frame(trace, 0) >= 0;
+  }
+  std::string state(const ColumnSource& trace, std::size_t tick) const {
+    const auto number = integer(trace, "state", tick);
+    if (!number) return "unknown";
+    const Column row = trace.rows("state", tick, 1);
+    const auto place = static_cast<std::size_t>(*number);
+    return place < row.value_names.size() ? row.value_names[place] : std::to_string(*number);
+  }
+  std::string states(const ColumnSource& trace) const {
+    return (tick_ > 0 ? state(trace, tick_ - 1) + " to " : "") + state(trace, tick_);
+  }
+
+  const ColumnSource& baseline_;
+  const ColumnSource& candidate_;
+  const std::vector<ColumnComparison>& columns_;
+  std::size_t tick_;
+};
+
+double deviation_at(const ColumnSource& baseline, const ColumnSource& candidate, const std::string& column,
+                    std::size_t tick) {
+  return deviations(baseline.rows(column, tick, 1), candidate.rows(column, tick, 1)).at(0);
+}
+
+// 0 where the trace does not tell it.
+double time_of(const ColumnSource& trace, std::size_t tick) {
+  if (!trace.has("time")) return 0;
+  const Column time = trace.column("time");
+  const auto* time_s = std::get_if<std::vector<double>>(&time.values);
+  return time_s && tick < time_s->size() ? (*time_s)[tick] : 0;
+}
+
+std::optional<Divergence> find_divergence(const ColumnSource& baseline, const ColumnSource& candidate,
+                                          const std::vector<ColumnComparison>& columns,
+                                          const std::vector<std::string>& configuration) {
+  std::optional<std::size_t> outside, parted;
+  for (const ColumnComparison& column : columns) {
+    outside = earlier(outside, column.first_outside);
+    parted = earlier(parted, column.first_difference);
+  }
+  if (!outside) return {};
+  Divergence found;
+  found.tick = *outside, found.parted = *parted;
+  for (const ColumnComparison& column : columns) {
+    if (column.first_outside != outside) continue;
+    found.quantity = column.name;
+    found.deviation = deviation_at(baseline, candidate, column.name, found.tick);
+    break;
+  }
+  found.time_s = time_of(baseline, found.tick);
+  const PartingPlace place(baseline, candidate, columns, found.parted);
+  std::tie(found.situation, found.seen) = place.situation();
+  found.cause = configuration.empty() ? found.situation : Cause::configuration;
+  found.because = configuration.empty() ? found.seen : joined(configuration);
+  found.frame = place.frame_text();
+  found.first_row = found.parted > 0 ? found.parted - 1 : 0;
+  for (const ColumnComparison& column : columns) {
+    if (column.rows <= found.parted) continue;
+    const std::size_t count = found.parted - found.first_row + 1;
+    found.baseline.push_back(baseline.rows(column.name, found.first_row, count));
+    found.candidate.push_back(candidate.rows(column.name, found.first_row, count));
+  }
+  return found;
+}
+
+}  // namespace
+
+const char* name_of(Cause cause) {
+  switch (cause) {
+    case Cause::configuration:
+      return "configuration differs";
+    case Cause::input:
+      return "input differs";
+    case Cause::frame_update:
+      return "frame update";
+    case Cause::state_transition:
+      return "state transition";
+    case Cause::drift:
+      break;
+  }
+  return "drift";
+}
+
+bool TraceComparison::is_same() const {
+  return !columns.empty() &&
+         std::all_of(columns.begin(), columns.end(), [](const ColumnComparison& c) { return c.is_same(); });
+}
+
+TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
+                                const Tolerances& tolerances) {
+  TraceComparison result;
+  for (const std::string& name : baseline.columns()) {
+    if (name == kRunningHash) continue;
+    const Column ours = baseline.column(name);
+    if (candidate.has(name)) {
+      result.columns.push_back(compare_columns(ours, candidate.column(name), tolerance_of(tolerances, name)));
+      result.columns.back().name = name;  // of a figure, with its table
+    } else {
+      result.columns.push_back({name, ours.units, tolerance_of(tolerances, name)});
+      result.columns.back().problem = "missing in the candidate";
+    }
+  }
+  for (const std::string& name : candidate.columns())
+    if (name != kRunningHash && !baseline.has(name)) result.added.push_back(name);
+  return result;
+}
+
+TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,
+                               const Tolerances& tolerances, const std::vector<std::string>& configuration) {
+  TraceComparison result = compare_by_name(baseline, candidate, tolerances);
+  result.divergence = find_divergence(baseline, candidate, result.columns, configuration);
+  return result;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,62 @@
+#include "analysis/figures/figure.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+std::string text(double value) {
+  std::ostringstream out;
+  out.precision(6);
+  out << value;
+  return out.str();
+}
+
+Claim claim_of(std::string figure, std::string claim, std::string paper, double measured,
+               std::string criterion, std::string unit, bool holds) {
+  return {std::move(figure),
+          std::move(claim),
+          std::move(paper),
+          measured,
+          std::move(criterion),
+          std::move(unit),
+          holds ? Verdict::pass : Verdict::fail};
+}
+
+}  // namespace
+
+// Comparisons are written so that NaN fails.
+Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
+                    double high, std::string unit) {
+  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured,
+                  "from " + text(low) + " to " + text(high), std::move(unit),
+                  measured >= low && measured <= high);
+}
+
+Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
+                    std::string unit) {
+  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured, "at most " + text(limit),
+                  std::move(unit), measured <= limit);
+}
+
+Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
+                     std::string unit) {
+  return claim_of(std::move(figure), std::move(claim), std::move(paper), measured, "at least " + text(limit),
+                  std::move(unit), measured >= limit);
+}
+
+Claim claim_not_run(std::string figure, std::string claim, std::string reason) {
+  return {std::move(figure),
+          std::move(claim),
+          "-",
+          std::numeric_limits<double>::quiet_NaN(),
+          std::move(reason),
+          "",
+          Verdict::not_run};
+}
+
+}  // namespace remote_touch

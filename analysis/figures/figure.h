@@ -1,0 +1,65 @@
+// What an analysis hands over for a figure: tables, how to draw them, and claims with their verdicts.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/columns/column.h"
+#include "analysis/figures/scene.h"
+
+namespace remote_touch {
+
+// squares: filled cells of a map, as large as the samples lie apart; map: the same coloured by z; band: from
+// y to z; image: a pixel in every cell of a grid, of the colour z = 0xRRGGBB.
+enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band, image };
+
+struct Curve {
+  std::string table, x, y;  // names of a table and two of its columns
+  CurveStyle style = CurveStyle::line;
+  std::string label = {};  // empty: not in the legend
+  double radius = 0;       // of circles, in data units
+  std::string z = {};      // a third column, of maps, bands and images
+};
+
+struct Panel {
+  std::string title, x_label, y_label;
+  bool equal_aspect = false;
+  std::vector<Curve> curves = {};
+  std::optional<std::pair<double, double>> x_range = {}, y_range = {};
+  std::optional<std::pair<double, double>> place = {};  // row and column; absent: one below the other
+  std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
+};
+
+// open: measured, but on a part of what the claim is about.
+enum class Verdict { pass, fail, open, not_run };
+
+// One statement of the paper, or of this project, held against a measurement. A claim that fails stays in the
+// list.
+struct Claim {
+  std::string figure, claim;
+  std::string paper;  // the paper's value as text; "-" where it has none
+  double measured = 0;
+  std::string criterion;  // in words, with numbers
+  std::string unit;
+  Verdict verdict = Verdict::not_run;
+};
+
+// measured within [low, high].
+Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
+                    double high, std::string unit);
+// measured at most, or at least, a value.
+Claim claim_at_most(std::string figure, std::string claim, std::string paper, double measured, double limit,
+                    std::string unit);
+Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
+                     std::string unit);
+Claim claim_not_run(std::string figure, std::string claim, std::string reason);
+
+struct Figure {
+  std::string name, title, caption;
+  std::vector<Table> tables = {};
+  std::vector<Panel> panels = {};
+  std::vector<Claim> claims = {};
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,158 @@
+#include "analysis/figures/result_file.h"
+
+#include <limits>
+
+#include "analysis/storage/digest.h"
+
+namespace remote_touch {
+
+TextAttributes provenance_of(const TextAttributes& attributes) {
+  TextAttributes kept;
+  for (const auto& [name, value] : attributes)
+    if (name != "schema" && name != "digest" && name != "default" && name != "columns")
+      kept.emplace_back(name, value);
+  return kept;
+}
+
+namespace {
+// In the order of the digest, which the file's own order of datasets is not.
+std::string names(const std::vector<Column>& columns) {
+  std::string list;
+  for (const Column& column : columns) list += (list.empty() ? "" : ",") + column.name;
+  return list;
+}
+}  // namespace
+
+std::string write_trace(const std::filesystem::path& file, const std::vector<Column>& columns,
+                        const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
+  const std::string sum = digest(columns);
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", kTraceSchema);
+  hdf5.attributes("/", provenance);
+  hdf5.attribute("/", "digest", sum);
+  hdf5.attribute("/", "columns", names(columns));
+  hdf5.attribute("/", "default", "trace");  // NeXus: what a viewer opens first
+  hdf5.group("/trace");
+  hdf5.columns("/trace", columns, "time");
+  hdf5.attributes("/trace", {{"NX_class", "NXdata"}, {"signal", "proxy_position"}, {"axes", "time"}});
+  if (!step_duration_s.empty()) {
+    hdf5.group("/timing");
+    hdf5.columns("/timing", {{"step_duration", "s", "wall clock of one tick", step_duration_s, 1, {}}}, "");
+  }
+  hdf5.save(file);
+  return sum;
+}
+
+namespace {
+
+std::string style_name(CurveStyle style) {
+  switch (style) {
+    case CurveStyle::line:
+      break;
+    case CurveStyle::dots:
+      return "dots";
+    case CurveStyle::steps:
+      return "steps";
+    case CurveStyle::dashed:
+      return "dashed";
+    case CurveStyle::circle:
+      return "circle";
+    case CurveStyle::bars:
+      return "bars";
+    case CurveStyle::squares:
+      return "squares";
+    case CurveStyle::map:
+      return "map";
+    case CurveStyle::band:
+      return "band";
+    case CurveStyle::image:
+      return "image";
+  }
+  return "line";
+}
+
+const char* kind_name(ScenePart::Kind kind) {
+  switch (kind) {
+    case ScenePart::Kind::points:
+      break;
+    case ScenePart::Kind::segments:
+      return "segments";
+    case ScenePart::Kind::solid:
+      return "solid";
+  }
+  return "points";
+}
+
+void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) {
+  const auto vector = [](const Vec3& v) { return std::vector{v.x(), v.y(), v.z()}; };
+  hdf5.group(path);
+  hdf5.attribute(path, "eye", vector(scene.eye));
+  hdf5.attribute(path, "target", vector(scene.target));
+  hdf5.attribute(path, "up", vector(scene.up));
+  hdf5.attribute(path, "width", std::vector{scene.width_m});
+  hdf5.attribute(path, "proportion", std::vector{scene.proportion});
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    const std::string place = path + "/part" + std::to_string(i);
+    hdf5.group(place);
+    hdf5.attributes(place, {{"kind", kind_name(part.kind)},
+                            {"table", part.table},
+                            {"label", part.label},
+                            {"triangles", part.triangles},
+                            {"poses", part.poses}});
+    hdf5.attribute(place, "pose_row", part.pose_row);
+    hdf5.attribute(place, "colour", static_cast<std::int32_t>(part.colour));
+    hdf5.attribute(place, "size", std::vector{part.size_m});
+    hdf5.attribute(place, "opacity", std::vector{part.opacity});
+  }
+}
+
+void write_panel(Hdf5Writer& hdf5, const std::string& path, const Panel& panel) {
+  const double automatic = std::numeric_limits<double>::quiet_NaN();
+  const auto x = panel.x_range.value_or(std::pair(automatic, automatic));
+  const auto y = panel.y_range.value_or(std::pair(automatic, automatic));
+  hdf5.group(path);
+  hdf5.attributes(path, {{"title", panel.title}, {"x_label", panel.x_label}, {"y_label", panel.y_label}});
+  hdf5.attribute(path, "equal_aspect", panel.equal_aspect ? 1 : 0);
+  hdf5.attribute(path, "x_range", std::vector{x.first, x.second});
+  hdf5.attribute(path, "y_range", std::vector{y.first, y.second});
+  if (panel.place) hdf5.attribute(path, "place", std::vector{panel.place->first, panel.place->second});
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    const Curve& curve = panel.curves[i];
+    const std::string place = path + "/curve" + std::to_string(i);
+    hdf5.group(place);
+    hdf5.attributes(place, {{"table", curve.table},
+                            {"x", curve.x},
+                            {"y", curve.y},
+                            {"z", curve.z},
+                            {"style", style_name(curve.style)},
+                            {"label", curve.label}});
+    hdf5.attribute(place, "radius", std::vector<double>{curve.radius});
+  }
+  if (panel.scene) write_scene(hdf5, path + "/scene", *panel.scene);
+}
+
+}  // namespace
+
+std::string write_figure(const std::filesystem::path& file, const Figure& figure,
+                         const TextAttributes& provenance) {
+  const std::string sum = digest(figure.tables);
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", kFigureSchema);
+  hdf5.attributes("/", {{"figure", figure.name}, {"title", figure.title}, {"caption", figure.caption}});
+  hdf5.attributes("/", provenance);
+  hdf5.attribute("/", "digest", sum);
+  hdf5.group("/tables");
+  for (const Table& table : figure.tables) {
+    hdf5.group("/tables/" + table.name);
+    hdf5.attribute("/tables/" + table.name, "title", table.title);
+    hdf5.columns("/tables/" + table.name, table.columns, "");
+  }
+  hdf5.group("/panels");
+  for (std::size_t i = 0; i < figure.panels.size(); ++i)
+    write_panel(hdf5, "/panels/" + std::to_string(i), figure.panels[i]);
+  hdf5.save(file);
+  return sum;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,32 @@
+// The layout of this project's results in HDF5: traces and figures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "analysis/figures/figure.h"
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kTraceSchema = "remote-touch-trace/1";
+inline constexpr const char* kFigureSchema = "remote-touch-figure/1";
+
+// What of a result's root attributes tells where it came from: all that its writer does not add by itself.
+TextAttributes provenance_of(const TextAttributes& attributes);
+
+// columns: of Trace::columns(). provenance: config, command, version and so on, as root attributes. Adds
+// schema, digest and the names of the columns in order. step_duration_s: wall clock of each tick, stored
+// outside the digest as /timing; empty: not stored. Returns the digest.
+std::string write_trace(const std::filesystem::path& file, const std::vector<Column>& columns,
+                        const TextAttributes& provenance, const std::vector<double>& step_duration_s);
+inline std::string write_trace(const std::filesystem::path& file, const Trace& trace,
+                               const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
+  return write_trace(file, trace.columns(), provenance, step_duration_s);
+}
+
+std::string write_figure(const std::filesystem::path& file, const Figure& figure,
+                         const TextAttributes& provenance);
+
+}  // namespace remote_touch

@@ -1,0 +1,105 @@
+#include "analysis/measures/contact_measures.h"
+
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // 0 / 0 has the sign that a machine likes
+
+bool has_force(const Trace& trace, std::size_t i) {
+  return !trace.force(i).isZero(0);
+}
+
+// Mean of what value(i) gives for the ticks that end in contact and have a known truth; height is that of the
+// rendered surface.
+template <class Value>
+double mean_in_contact(const Trace& trace, Value&& value) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const double height = trace.signed_distance_m[i] - trace.nearest_m[i];
+    if (trace.state[i] != static_cast<std::int32_t>(ContactState::contact) || !std::isfinite(height))
+      continue;
+    sum += value(height), ++count;
+  }
+  return count == 0 ? kNone : sum / count;
+}
+
+// The same of the distance itself, for the ticks with a force and a known truth.
+template <class Value>
+double mean_with_force(const Trace& trace, Value&& value) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]))
+      sum += value(trace.signed_distance_m[i]), ++count;
+  return count == 0 ? kNone : sum / count;
+}
+
+// Root mean square change of the force to the tick before, over those ticks that are updates or are not.
+double rms_force_change_N(const Trace& trace, bool at_updates) {
+  double squares = 0, count = 0;
+  for (std::size_t i = 1; i < trace.length(); ++i) {
+    if (trace.frame_update(i) != at_updates || !has_force(trace, i) || !has_force(trace, i - 1)) continue;
+    squares += (trace.force(i) - trace.force(i - 1)).squaredNorm(), ++count;
+  }
+  return count == 0 ? kNone : std::sqrt(squares / count);
+}
+
+}  // namespace
+
+double mean_height_m(const Trace& trace) {
+  return mean_in_contact(trace, [](double height) { return height; });
+}
+
+double height_sd_m(const Trace& trace) {
+  const double mean = mean_height_m(trace);
+  const double variance =
+      mean_in_contact(trace, [mean](double height) { return (height - mean) * (height - mean); });
+  return std::isnan(variance) ? kNone : std::sqrt(variance);
+}
+
+double mean_distance_m(const Trace& trace) {
+  return mean_with_force(trace, [](double distance) { return distance; });
+}
+
+double distance_sd_m(const Trace& trace) {
+  const double mean = mean_distance_m(trace);
+  const double variance =
+      mean_with_force(trace, [mean](double distance) { return (distance - mean) * (distance - mean); });
+  return std::isnan(variance) ? kNone : std::sqrt(variance);
+}
+
+double end_distance_m(const Trace& trace) {
+  return trace.length() == 0 ? kNone : trace.signed_distance_m.back();
+}
+
+double force_share(const Trace& trace) {
+  double count = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) count += has_force(trace, i) ? 1 : 0;
+  return trace.length() == 0 ? 0 : count / static_cast<double>(trace.length());
+}
+
+double last_force_time_s(const Trace& trace) {
+  for (std::size_t i = trace.length(); i > 0; --i)
+    if (has_force(trace, i - 1)) return trace.time_s[i - 1];
+  return kNone;
+}
+
+double rms_force_jump_N(const Trace& trace) {
+  return rms_force_change_N(trace, true);
+}
+
+double force_noise_N(const Trace& trace) {
+  return rms_force_change_N(trace, false);
+}
+
+double energy_injected_J(const Trace& trace) {
+  double energy_J = 0;
+  for (std::size_t i = 0; i + 1 < trace.length(); ++i)
+    energy_J += trace.force(i).dot(trace.hip(i + 1) - trace.hip(i));
+  return energy_J;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+// What a run with contact is judged by, as scalars of a trace: where the rendered surface lies over the true
+// one, how steady the force is and when it ends, and the energy that the hand gets.
+#pragma once
+
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+// How far the rendered surface lies above the true one: mean difference of the centre's distance to the true
+// surface and to the nearest point, over the ticks that end in contact and have a known truth, m; and its
+// standard deviation over them, m. NaN without any.
+double mean_height_m(const Trace& trace);
+double height_sd_m(const Trace& trace);
+// Distance of the centre to the true surface, over the ticks with a force and a known truth: mean and
+// standard deviation, m; NaN without any. Unlike the height it asks nothing about points, so that it compares
+// renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
+double mean_distance_m(const Trace& trace);
+double distance_sd_m(const Trace& trace);
+// Distance of the centre to the true surface in the last tick, m, negative behind it; NaN where it is not
+// known.
+double end_distance_m(const Trace& trace);
+// Share of the ticks with a force.
+double force_share(const Trace& trace);
+// Time of the last tick with a force, s; NaN without any.
+double last_force_time_s(const Trace& trace);
+// Root mean square change of the force from one tick to the next while there is force on both sides, N: over
+// those where a new frame came in, and over the others. NaN without any.
+double rms_force_jump_N(const Trace& trace);
+double force_noise_N(const Trace& trace);
+// Work that the rendered force does on the hand: the sum of force . way of the HIP until the next tick, J.
+// Below 0 where the hand did more work on the surface.
+double energy_injected_J(const Trace& trace);
+
+}  // namespace remote_touch

@@ -1,0 +1,56 @@
+#include "analysis/measures/segmentation.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch {
+
+namespace {
+
+double share(int events, int of) {
+  return of > 0 ? static_cast<double>(events) / of : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+SegmentationScore& SegmentationScore::operator+=(const SegmentationScore& other) {
+  right += other.right, missed += other.missed, wrong += other.wrong;
+  of_class_without_depth += other.of_class_without_depth;
+  return *this;
+}
+
+double SegmentationScore::recall() const {
+  return share(right, right + missed);
+}
+double SegmentationScore::precision() const {
+  return share(right, picked());
+}
+double SegmentationScore::depth_share() const {
+  return share(right + missed, right + missed + of_class_without_depth);
+}
+std::pair<double, double> SegmentationScore::recall_interval() const {
+  return wilson_interval(right, right + missed);
+}
+std::pair<double, double> SegmentationScore::precision_interval() const {
+  return wilson_interval(right, picked());
+}
+
+SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
+                                     const std::vector<char>& has_depth) {
+  if (picked.size() != of_class.size() || picked.size() != has_depth.size())
+    throw std::invalid_argument("score_segmentation: columns differ in length");
+  SegmentationScore score;
+  for (std::size_t i = 0; i < picked.size(); ++i) {
+    if (!has_depth[i])
+      score.of_class_without_depth += of_class[i] ? 1 : 0;
+    else if (of_class[i])
+      ++(picked[i] ? score.right : score.missed);
+    else if (picked[i])
+      ++score.wrong;
+  }
+  return score;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,239 @@
+#include "analysis/scorecard/scorecard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/statistics/paired_bootstrap.h"
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+Share share_of(int events, int runs) {
+  const auto [low, high] = wilson_interval(events, runs);
+  return {events, runs, runs > 0 ? static_cast<double>(events) / runs : kNone, low, high};
+}
+
+// Values of the runs by noise level and replicate.
+template <class Value>
+PairedValues by_level(const SweepResult& sweep, Value&& value) {
+  PairedValues values(sweep.cell_count());
+  for (std::size_t run = 0; run < sweep.run_count(); ++run) values[sweep.cell_of(run)].push_back(value(run));
+  return values;
+}
+
+// Of the levels without noise: are all replicates the same run, to the last bit of every measure? A scene's
+// own noise is not known to be none, its numbers tell.
+Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m) {
+  Repeats repeats;
+  const auto same = [&](std::size_t a, std::size_t b) {
+    const auto equal = [&](const Column& measure) {
+      const auto& values = std::get<std::vector<double>>(measure.values);
+      return values[a] == values[b] || (std::isnan(values[a]) && std::isnan(values[b]));
+    };
+    return sweep.state[a] == sweep.state[b] &&
+           std::all_of(sweep.measures.begin(), sweep.measures.end(), equal);
+  };
+  for (std::size_t level = 0; level < noise_m.size(); ++level) {
+    bool all = !(noise_m[level] > 0);
+    for (int k = 1; k < sweep.replicates; ++k) all = all && same(sweep.run(level, 0), sweep.run(level, k));
+    repeats.push_back(all);
+  }
+  return repeats;
+}
+
+std::vector<Share> shares(const PairedValues& success) {
+  std::vector<Share> list;
+  for (const auto& level : success) {
+    const auto events = std::count(level.begin(), level.end(), 1.0);
+    list.push_back(share_of(static_cast<int>(events), static_cast<int>(level.size())));
+  }
+  return list;
+}
+
+Share sum_of(const std::vector<Share>& levels) {
+  int events = 0, runs = 0;
+  for (const Share& level : levels) events += level.events, runs += level.runs;
+  return share_of(events, runs);
+}
+
+std::string units_of(const SweepResult& sweep, const std::string& measure) {
+  for (const Column& column : sweep.measures)
+    if (column.name == measure) return column.units;
+  return "1";
+}
+
+// Who loses the surface early has a short and quiet run: where a measure is judged, only successes count.
+JudgedMeasure judged(const std::string& name, Better better, const std::vector<SweepResult>& sweeps,
+                     const std::vector<PairedValues>& won, const std::vector<Repeats>& repeats,
+                     std::uint64_t key) {
+  JudgedMeasure measure{name, units_of(sweeps.front(), name), better};
+  std::vector<PairedValues> values;
+  for (std::size_t c = 0; c < sweeps.size(); ++c) {
+    const std::vector<double>& all = sweeps[c].measure(name);
+    values.push_back(by_level(sweeps[c], [&](std::size_t run) { return all[run]; }));
+    if (better != Better::reported)
+      for (std::size_t i = 0; i < won[c].size(); ++i)
+        for (std::size_t k = 0; k < won[c][i].size(); ++k)
+          if (won[c][i][k] == 0) values.back()[i][k] = kNone;
+    measure.at_level.emplace_back();
+    for (const auto& level : distinct(values.back(), repeats[c]))
+      measure.at_level.back().push_back(bootstrap_mean({level}, key));
+  }
+  measure.standing = standing(values, better, false, key, repeats);
+  return measure;
+}
+
+}  // namespace
+
+SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
+                 std::uint64_t key) {
+  SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
+  if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
+  std::vector<PairedValues> won;
+  std::vector<Repeats> repeats;
+  for (const SweepResult& sweep : sweeps) {
+    const std::vector<bool> success = successes(sweep, rules.success);
+    won.push_back(by_level(sweep, [&](std::size_t run) { return success[run] ? 1.0 : 0.0; }));
+    repeats.push_back(repeats_of(sweep, scene.noise_m));
+    scene.success.push_back(shares(distinct(won.back(), repeats.back())));
+    scene.success_overall.push_back(sum_of(scene.success.back()));
+  }
+  scene.standing = standing(won, Better::larger, true, key, repeats);
+  for (const auto& [name, better] : rules.measures)
+    scene.measures.push_back(judged(name, better, sweeps, won, repeats, key));
+  return scene;
+}
+
+namespace {
+
+Column texts(const char* name, const char* meaning, std::vector<std::string> values) {
+  return {name, "1", meaning, std::move(values), 1, {}};
+}
+Column counts(const char* name, const char* meaning, std::vector<std::int32_t> values) {
+  return {name, "1", meaning, std::move(values), 1, {}};
+}
+
+Table success_table(const Scorecard& card) {
+  std::vector<std::string> scene, contender;
+  std::vector<double> noise, low, high, share;
+  std::vector<std::int32_t> events, runs;
+  for (const SceneScore& s : card.scenes)
+    for (std::size_t c = 0; c < card.contenders.size(); ++c)
+      for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
+        const Share& one = s.success[c][i];
+        scene.push_back(s.name), contender.push_back(card.contenders[c]), noise.push_back(s.noise_m[i]);
+        events.push_back(one.events), runs.push_back(one.runs);
+        share.push_back(one.share), low.push_back(one.low), high.push_back(one.high);
+      }
+  Table table{"success", "share of successful runs with Wilson's 95 % interval"};
+  table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender)};
+  table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
+  table.columns.push_back(counts("successes", "successful runs", events));
+  table.columns.push_back(
+      counts("runs", "runs; those that are one and the same run, as without noise, count once", runs));
+  table.add("share", "1", "share of successful runs", share);
+  table.add("low", "1", "lower end of the interval", low);
+  table.add("high", "1", "upper end of the interval", high);
+  return table;
+}
+
+Table measure_table(const Scorecard& card) {
+  std::vector<std::string> scene, contender, measure, units;
+  std::vector<double> noise, mean, low, high;
+  std::vector<std::int32_t> runs;
+  for (const SceneScore& s : card.scenes)
+    for (const JudgedMeasure& m : s.measures)
+      for (std::size_t c = 0; c < card.contenders.size(); ++c)
+        for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
+          const MeanDifference& one = m.at_level[c][i];
+          scene.push_back(s.name), contender.push_back(card.contenders[c]);
+          measure.push_back(m.name), units.push_back(m.units), noise.push_back(s.noise_m[i]);
+          runs.push_back(static_cast<std::int32_t>(one.pairs));
+          mean.push_back(one.mean), low.push_back(one.low), high.push_back(one.high);
+        }
+  Table table{
+      "measures",
+      "means with 95 % intervals of the bootstrap: of a measure that is judged over the successful runs, "
+      "of one that is reported over all"};
+  table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender),
+                   texts("measure", "measure", measure), texts("units", "unit of the measure", units)};
+  table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
+  table.columns.push_back(counts("runs", "runs that have a number", runs));
+  table.add("mean", "1", "mean, in the measure's unit", mean);
+  table.add("low", "1", "lower end of the interval", low);
+  table.add("high", "1", "upper end of the interval", high);
+  return table;
+}
+
+// 1, 2, ... in the order of each standing, and who stands out: 1 best, -1 worst of all, 0 neither.
+Table standing_table(const Scorecard& card) {
+  std::vector<std::string> scene, contender, measure;
+  std::vector<std::int32_t> place, mark, top;
+  const auto add = [&](const SceneScore& s, const std::string& name, const Standing& standing) {
+    for (std::size_t i = 0; i < standing.order.size(); ++i) {
+      const std::size_t c = standing.order[i];
+      scene.push_back(s.name), measure.push_back(name), contender.push_back(card.contenders[c]);
+      place.push_back(static_cast<std::int32_t>(i + 1));
+      mark.push_back(i == 0 && standing.has_best                      ? 1
+                     : i + 1 == standing.placed && standing.has_worst ? -1
+                                                                      : 0);
+      top.push_back(std::count(standing.at_the_top.begin(), standing.at_the_top.end(), c) > 0);
+    }
+  };
+  for (const SceneScore& s : card.scenes) {
+    add(s, "success", s.standing);
+    for (const JudgedMeasure& m : s.measures)
+      if (m.better != Better::reported) add(s, m.name, m.standing);
+  }
+  Table table{"standings", "contenders in order over all noise levels"};
+  table.columns = {texts("scene", "scene", scene),
+                   texts("measure", "success or measure", measure),
+                   counts("place", "place in the order, 1 the best", place),
+                   texts("contender", "contender", contender),
+                   counts("mark", "1: best, -1: worst, told apart from all others", mark),
+                   counts("at_the_top", "1: the first, and whom it is not shown to be better than", top)};
+  return table;
+}
+
+// A panel of the share of successes over noise; a scene with its own noise has one place.
+void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
+  const SceneScore& s = card.scenes[number];
+  Table table{"panel_" + std::to_string(number), s.name};
+  std::vector<double> noise_mm;
+  for (const double noise : s.noise_m) noise_mm.push_back(noise != noise ? 0 : 1e3 * noise);
+  table.add("noise", "mm", "standard deviation of the noise", noise_mm);
+  Panel panel{s.name, "noise (mm)", "success"};
+  panel.y_range = std::pair(-0.05, 1.05);
+  constexpr std::size_t kAcross = 5;
+  panel.place = std::pair(static_cast<double>(number / kAcross), static_cast<double>(number % kAcross));
+  for (std::size_t c = 0; c < card.contenders.size(); ++c) {
+    const std::string& name = card.contenders[c];
+    std::vector<double> share, low, high;
+    for (const Share& one : s.success[c])
+      share.push_back(one.share), low.push_back(one.low), high.push_back(one.high);
+    table.add(name, "1", "share of successful runs", share);
+    table.add(name + "_low", "1", "lower end of its interval", low);
+    table.add(name + "_high", "1", "upper end of its interval", high);
+    panel.curves.push_back({table.name, "noise", name, CurveStyle::line, number == 0 ? name : ""});
+  }
+  figure.tables.push_back(std::move(table));
+  figure.panels.push_back(std::move(panel));
+}
+
+}  // namespace
+
+Figure scorecard_figure(const Scorecard& card) {
+  Figure figure{kScorecardFigure,
+                "Scorecard of 3-DOF renderers",
+                "Share of successful runs over noise, scene by scene. Every contender met the same noise.",
+                {success_table(card), measure_table(card), standing_table(card)}};
+  for (std::size_t i = 0; i < card.scenes.size(); ++i) add_panel(card, i, figure);
+  return figure;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,72 @@
+#include "analysis/statistics/paired_bootstrap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/random/noise.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Whole numbers below a limit. Streams of simulations have their use in the upper bits of the first word;
+// here all bits are set, which no frame has.
+class Choices {
+ public:
+  Choices(std::uint64_t key, int draw)
+      : stream_{{static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)},
+                {0xFFFFFFFFu, static_cast<std::uint32_t>(draw), 0}} {}
+  std::size_t below(std::size_t count) {
+    if (next_ == words_.size()) words_ = uniforms(stream_, point_++), next_ = 0;
+    const double share = words_[next_++];  // in (0, 1)
+    return std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
+  }
+
+ private:
+  NoiseStream stream_;
+  std::uint32_t point_ = 0;
+  std::array<double, 4> words_{};
+  std::size_t next_ = 4;
+};
+
+// Of sorted values, the one that so large a share lies below, between neighbours in proportion.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
+  const double above = sorted[std::min(i + 1, sorted.size() - 1)];
+  return sorted[i] + (place - static_cast<double>(i)) * (above - sorted[i]);
+}
+
+double drawn_mean(const std::vector<std::vector<double>>& groups, Choices choices, double pairs) {
+  double sum = 0;
+  for (const std::vector<double>& group : groups)
+    for (std::size_t i = 0; i < group.size(); ++i) sum += group[choices.below(group.size())];
+  return sum / pairs;
+}
+
+}  // namespace
+
+MeanDifference bootstrap_mean(const std::vector<std::vector<double>>& differences, std::uint64_t key,
+                              int draws) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  MeanDifference result{0, kNone, kNone, kNone};
+  std::vector<std::vector<double>> groups;
+  double sum = 0;
+  for (const std::vector<double>& all : differences) {
+    groups.emplace_back();
+    for (const double d : all)
+      if (!std::isnan(d)) groups.back().push_back(d), sum += d, ++result.pairs;
+  }
+  const double pairs = static_cast<double>(result.pairs);
+  if (result.pairs > 0) result.mean = sum / pairs;
+  if (result.pairs < 2) return result;
+  std::vector<double> means;
+  for (int draw = 0; draw < draws; ++draw) means.push_back(drawn_mean(groups, Choices(key, draw), pairs));
+  std::sort(means.begin(), means.end());
+  result.low = quantile(means, 0.025), result.high = quantile(means, 0.975);
+  return result;
+}
+
+}  // namespace remote_touch

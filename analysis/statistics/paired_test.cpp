@@ -1,0 +1,91 @@
+#include "analysis/statistics/paired_test.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace remote_touch {
+
+namespace {
+
+double largest_magnitude(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+}  // namespace
+
+double root_mean_square(const std::vector<double>& values) {
+  const double largest = largest_magnitude(values);
+  if (largest == 0 || std::isinf(largest)) return largest;
+  double squares = 0;
+  for (const double value : values) squares += (value / largest) * (value / largest);
+  return largest * std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+// Binomial weights downwards from the middle, where they are largest, in units of the largest: each follows
+// from the one above it. Their sum is half of all, so neither factorials nor powers of 2 are needed.
+double sign_test(std::int64_t plus, std::int64_t minus) {
+  const std::int64_t count = plus + minus, fewer = std::min(plus, minus);
+  if (2 * fewer >= count - 1) return 1;
+  double weight = 1, half = count % 2 == 0 ? 0.5 : 1, tail = 0;
+  for (std::int64_t i = count / 2; i > 0 && weight > 0; --i) {
+    weight *= static_cast<double>(i) / static_cast<double>(count - i + 1);  // now that of i - 1
+    half += weight;
+    if (i - 1 > fewer) continue;
+    tail += weight;
+    if (weight < 1e-18 * tail) break;
+  }
+  return std::min(1.0, tail / half);
+}
+
+double symmetry_test(const std::vector<double>& differences) {
+  const double largest = largest_magnitude(differences);
+  if (largest == 0) return 1;
+  double sum = 0, squares = 0;  // in units of the largest: no square overflows or vanishes
+  for (const double d : differences) sum += d / largest, squares += (d / largest) * (d / largest);
+  return std::min(1.0, 2 * std::exp(-sum * sum / (2 * squares)));
+}
+
+std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
+                                                     std::int64_t pairs, double z) {
+  if (pairs <= 0) return {-1, 1};
+  const double n = static_cast<double>(pairs) + 2, difference = static_cast<double>(plus - minus);
+  const double discordant = static_cast<double>(plus + minus) + 1;
+  const double half = z * std::sqrt(discordant - difference * difference / n) / n;
+  return {std::max(-1.0, difference / n - half), std::min(1.0, difference / n + half)};
+}
+
+MeanDifference mean_difference(const std::vector<double>& differences) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  MeanDifference result{0, kNone, kNone, kNone};
+  double sum = 0, squares = 0;
+  for (const double d : differences)
+    if (!std::isnan(d)) sum += d, ++result.pairs;
+  const double n = static_cast<double>(result.pairs);
+  if (result.pairs > 0) result.mean = sum / n;
+  if (result.pairs < 2) return result;
+  for (const double d : differences)
+    if (!std::isnan(d)) squares += (d - result.mean) * (d - result.mean);
+  const double half = kTwoSided95 * std::sqrt(squares / (n - 1) / n);
+  result.low = result.mean - half, result.high = result.mean + half;
+  return result;
+}
+
+std::vector<double> holm_adjusted(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - i) * p[order[i]]));
+    adjusted[order[i]] = largest;
+  }
+  return adjusted;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// Pairs, two versions of a run that met the same noise: which are equal, tests and intervals for the rest.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch {
+
+// Root mean square, without overflow or underflow of the squares; 0 for none. pre: no NaN.
+double root_mean_square(const std::vector<double>& values);
+
+// Exact two-sided sign test: how likely a split at least as uneven as plus against minus is when every
+// differing pair goes either way with probability 1/2. On the discordant pairs of an event it is the exact
+// form of McNemar's test (Q. McNemar, Psychometrika 12 (1947), 153-157). 1 when nothing differs. Relative
+// error below 1e-10 up to 1e7 each; 0 where the result is below about 1e-300. Nothing but +, -, *, /: the
+// same bits on every machine. pre: plus, minus >= 0.
+double sign_test(std::int64_t plus, std::int64_t minus);
+
+// The same null hypothesis, that a difference is as likely as its opposite, asked of the sum of the
+// differences: it sees few large differences one way among many small ones both ways, which the sign test
+// does not. Not the exact p but Hoeffding's bound of it, 2 exp(-(sum d)^2 / (2 sum d^2)), which holds for
+// any number of pairs and any distribution (W. Hoeffding, J. Am. Stat. Assoc. 58 (1963), theorem 2).
+// 1 without differences. pre: all finite.
+double symmetry_test(const std::vector<double>& differences);
+
+// Interval of a difference of two proportions counted on the same pairs, (plus - minus) / pairs: Wald's after
+// adding 1/2 to each of the four cells, clamped to [-1, 1] (A. Agresti, Y. Min, Statistics in Medicine 24
+// (2005), 729-740, "Wald+2"). [-1, 1] for no pairs. z: quantile of the confidence.
+// pre: plus, minus >= 0, plus + minus <= pairs.
+std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
+                                                     std::int64_t pairs, double z = kTwoSided95);
+
+// Mean of the differences and its 95 % interval if they were normal, in their unit; what there are too few
+// pairs for is NaN: the mean of none, the interval of one.
+struct MeanDifference {
+  std::int64_t pairs = 0;
+  double mean = 0, low = 0, high = 0;
+};
+// NaNs are skipped.
+MeanDifference mean_difference(const std::vector<double>& differences);
+
+// p values of tests that were made together, adjusted so that "adjusted < alpha" is wrong anywhere with
+// probability alpha at most, whatever their dependence (S. Holm, Scand. J. Stat. 6 (1979), 65-70). In the
+// given order, none below its own p. pre: all within [0, 1].
+std::vector<double> holm_adjusted(const std::vector<double>& p);
+
+}  // namespace remote_touch

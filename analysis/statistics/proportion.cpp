@@ -1,0 +1,17 @@
+#include "analysis/statistics/proportion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+std::pair<double, double> wilson_interval(int events, int runs, double z) {
+  if (runs <= 0) return {0, 1};
+  const double n = runs, p = events / n, z2 = z * z;
+  const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
+  const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
+  // Where the count itself is an end, so is the interval's, to the last bit.
+  return {events <= 0 ? 0 : std::max(0.0, middle - half), events >= runs ? 1 : std::min(1.0, middle + half)};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,56 @@
+#include "analysis/storage/file_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "analysis/storage/whole_file.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+bool is_same_file(int descriptor, const std::filesystem::path& path) {
+  struct stat held = {}, there = {};
+  return ::fstat(descriptor, &held) == 0 && ::stat(path.c_str(), &there) == 0 &&
+         held.st_ino == there.st_ino && held.st_dev == there.st_dev;
+}
+
+bool is_special(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  const auto there = std::filesystem::status(target, unreachable);
+  return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
+}
+
+}  // namespace
+
+FileLock::FileLock(const std::filesystem::path& target) : lock_(target.string() + ".lock") {
+  if (is_special(target)) return;
+  // Whoever held it may have removed it between our open and our lock: then it is another file's name by now.
+  do {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0)
+      throw InputError(target.string(), std::string("cannot be written (") + std::strerror(errno) +
+                                            "); allowed a file in a writable folder");
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) continue;
+    if (errno != EWOULDBLOCK) return;
+    ::close(descriptor_);
+    throw InputError(target.string(), "another process is writing it; allowed one at a time");
+  } while (!is_same_file(descriptor_, lock_));
+  remove_leftovers(target);
+}
+
+FileLock::~FileLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(lock_.c_str());
+  ::close(descriptor_);
+}
+
+}  // namespace remote_touch

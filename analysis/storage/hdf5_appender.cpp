@@ -1,0 +1,130 @@
+#include "analysis/storage/hdf5_appender.h"
+
+#include <utility>
+
+#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_seal.h"
+#include "analysis/storage/whole_file.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// What a camera sends is compressed as fast as it can be.
+constexpr unsigned kDeflate = 1;
+
+hid_t stored(Hdf5Appender::Number number) {
+  switch (number) {
+    case Hdf5Appender::Number::f64:
+      return H5T_IEEE_F64LE;
+    case Hdf5Appender::Number::i32:
+      return H5T_STD_I32LE;
+    case Hdf5Appender::Number::u64:
+      return H5T_STD_U64LE;
+    case Hdf5Appender::Number::u32:
+      return H5T_STD_U32LE;
+    case Hdf5Appender::Number::u16:
+      return H5T_STD_U16LE;
+  }
+  return -1;
+}
+
+}  // namespace
+
+// The library does not say what went wrong; mostly it is the disk.
+template <class Call>
+void Hdf5Appender::guarded(const Call& call) {
+  try {
+    call();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(target_.string(), std::string("cannot be written (") + error.what() +
+                                           "); allowed a writable place with room");
+  }
+}
+
+Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
+    : target_(target), temporary_(temporary_of(target)) {
+  require_writable(target);
+  remove_leftovers(target);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  guarded([&] {
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    check(H5Pset_userblock(creation, kSealSize));
+    check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
+    file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+    check(file_ < 0 ? -1 : 0);
+  });
+}
+
+void Hdf5Appender::close() {
+  for (const auto& [path, data] : open_) H5Dclose(data.id);
+  open_.clear();
+  if (file_ >= 0) H5Fclose(std::exchange(file_, -1));
+}
+
+Hdf5Appender::~Hdf5Appender() {
+  if (finished_) return;
+  close();
+  std::error_code gone;
+  std::filesystem::remove(temporary_, gone);
+}
+
+void Hdf5Appender::group(const std::string& path) {
+  guarded([&] {
+    const Handle made(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  });
+}
+
+void Hdf5Appender::dataset(const Dataset& made) {
+  guarded([&] {
+    std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{made.rows_a_chunk};
+    for (const auto extent : made.row) now.push_back(extent), most.push_back(extent), chunk.push_back(extent);
+    const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    check(H5Pset_obj_track_times(creation, false));
+    check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
+    check(H5Pset_shuffle(creation));
+    check(H5Pset_deflate(creation, kDeflate));
+    const hid_t id =
+        H5Dcreate2(file_, made.path.c_str(), stored(made.number), space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    check(id < 0 ? -1 : 0);
+    open_[made.path] = {id, made};
+    write_text(file_, made.path, "units", made.units);
+    write_text(file_, made.path, "long_name", made.long_name);
+  });
+}
+
+void Hdf5Appender::append(const std::string& path, const void* rows, std::size_t count) {
+  if (count == 0) return;
+  guarded([&] {
+    Open& data = open_.at(path);
+    std::vector<hsize_t> start{data.rows}, size{count}, end{data.rows + count};
+    for (const auto extent : data.made.row) start.push_back(0), size.push_back(extent), end.push_back(extent);
+    check(H5Dset_extent(data.id, end.data()));
+    const Handle space(H5Dget_space(data.id), H5Sclose);
+    check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
+    const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+    const Handle type(H5Tget_native_type(stored(data.made.number), H5T_DIR_ASCEND), H5Tclose);
+    check(H5Dwrite(data.id, type, memory, space, H5P_DEFAULT, rows));
+    data.rows += count;
+  });
+}
+
+void Hdf5Appender::attributes(const std::string& object, const TextAttributes& list) {
+  guarded([&] {
+    for (const auto& [name, value] : list) write_text(file_, object, name, value);
+  });
+}
+
+void Hdf5Appender::finish() {
+  guarded([&] { check(H5Fflush(file_, H5F_SCOPE_GLOBAL)); });
+  close();
+  seal_file(temporary_);
+  move_into_place(temporary_, target_);
+  finished_ = true;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,57 @@
+// HDF5 files that grow while something is recorded.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+
+namespace remote_touch {
+
+// Written under a temporary name beside the target, which appears, sealed, with finish(); without it nothing
+// is left, but for a program that was killed: the next one of the same target removes that. Not for use from
+// several threads at once, nor while another thread uses HDF5. Every member throws InputError naming the
+// target when it cannot be written.
+class Hdf5Appender {
+ public:
+  enum class Number { f64, i32, u64, u32, u16 };
+
+  explicit Hdf5Appender(const std::filesystem::path& target);
+  ~Hdf5Appender();
+  Hdf5Appender(const Hdf5Appender&) = delete;
+  Hdf5Appender& operator=(const Hdf5Appender&) = delete;
+
+  void group(const std::string& path);
+  struct Dataset {
+    std::string path, units, long_name;
+    Number number = Number::f64;
+    std::vector<unsigned long long> row =
+        {};  // extent of a row: {} one number, {3} a vector, {h, w} an image
+    unsigned long long rows_a_chunk = 4096;
+  };
+  void dataset(const Dataset& made);
+  // rows: so many, in the type of the dataset and the machine's byte order.
+  void append(const std::string& path, const void* rows, std::size_t count);
+  void attributes(const std::string& object, const TextAttributes& list);
+  void finish();
+
+ private:
+  struct Open {
+    std::int64_t id;
+    Dataset made;
+    unsigned long long rows = 0;
+  };
+  template <class Call>
+  void guarded(const Call& call);
+  void close();
+
+  const std::filesystem::path target_, temporary_;
+  std::int64_t file_ = -1;
+  bool finished_ = false;
+  std::map<std::string, Open> open_;
+};
+
+}  // namespace remote_touch

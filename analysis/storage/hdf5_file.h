@@ -1,0 +1,68 @@
+// HDF5 files, written whole or not at all. Only analysis/hdf5_* know the HDF5 library.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/columns/column.h"
+
+namespace remote_touch {
+
+using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+// The attribute of that name; empty where there is none.
+std::string attribute(const TextAttributes& attributes, const std::string& name);
+
+// Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
+// part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.
+class Hdf5Writer {
+ public:
+  // A finished file is sealed (hdf5_seal.h); one that is to be written in place later cannot be.
+  enum class Finished { yes, no };
+  explicit Hdf5Writer(Finished finished = Finished::yes);
+  ~Hdf5Writer();
+  Hdf5Writer(const Hdf5Writer&) = delete;
+  Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+
+  void group(const std::string& path);  // its parent exists
+  // Attributes of a group or dataset that exists; "/" is the root.
+  void attribute(const std::string& object, const std::string& name, const std::string& value);
+  void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
+  void attribute(const std::string& object, const std::string& name, std::int32_t value);
+  void attributes(const std::string& object, const TextAttributes& list);
+  // Writes the columns as datasets of a group, with units and long_name. The column called rows becomes the
+  // dimension scale of the rows of all others; empty: none.
+  void columns(const std::string& group, const std::vector<Column>& columns, const std::string& rows);
+  // A column as an array over axes: names of datasets of the same group that scale() made scales. Its values
+  // run through the last axis first. Stored in one piece where it is to be written in place later; else in
+  // compressed chunks when it is long.
+  enum class Storage { compact, in_place };
+  void array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
+             Storage storage);
+  // Makes a dataset the scale of its own dimension.
+  void scale(const std::string& path);
+  std::size_t size();  // of the file as it is now, in bytes
+  // Throws InputError naming the file when it cannot be written.
+  void save(const std::filesystem::path& target);
+
+ private:
+  void dataset(const std::string& path, const Column& column, const std::vector<unsigned long long>& extent,
+               Storage storage);
+  bool sealed_;
+  std::int64_t file_;
+};
+
+struct Hdf5Content {
+  TextAttributes attributes;                             // text attributes of the root
+  std::vector<std::pair<std::string, Column>> datasets;  // path and values, in the order of the paths
+};
+
+// Reads every dataset; see hdf5_reader.h.
+Hdf5Content read_hdf5(const std::filesystem::path& file);
+
+// Where in the file the values of a dataset begin that was stored in_place.
+std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset);
+
+}  // namespace remote_touch

@@ -1,0 +1,155 @@
+#include "analysis/storage/hdf5_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <stdexcept>
+
+#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_seal.h"
+#include "analysis/storage/hdf5_values.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+std::string attribute(const TextAttributes& attributes, const std::string& name) {
+  for (const auto& [known, value] : attributes)
+    if (known == name) return value;
+  return {};
+}
+
+namespace {
+
+herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET)
+    static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
+  return 0;
+}
+
+TextAttributes root_attributes(hid_t file) {
+  TextAttributes found;
+  H5O_info_t root;
+  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS));
+  for (hsize_t i = 0; i < root.num_attrs; ++i) {
+    const Handle attribute(H5Aopen_by_idx(file, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
+    std::array<char, 256> name{};
+    H5Aget_name(attribute, name.size(), name.data());
+    found.emplace_back(name.data(), read_text(attribute));
+  }
+  return found;
+}
+
+// Throws InputError unless the file exists, is HDF5 and as it was written. True when it is sealed.
+bool require_readable(const std::filesystem::path& file) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable))
+    throw InputError(file.string(), "no such file; allowed an HDF5 result");
+  if (std::filesystem::is_directory(file, unreachable))
+    throw InputError(file.string(), "a folder; allowed an HDF5 result");
+  if (std::filesystem::file_size(file, unreachable) == 0)
+    throw InputError(file.string(), "empty; allowed an HDF5 result");
+  const Seal found = seal_of(file);
+  if (found == Seal::broken)
+    throw InputError(
+        file.string(),
+        "damaged (not as it was written: its SHA-256 is another); allowed a result of this program");
+  if (H5Fis_hdf5(file.c_str()) <= 0)
+    throw InputError(file.string(), "not a readable HDF5 file; allowed a result of this program");
+  return found == Seal::intact;
+}
+
+Handle open_dataset(const std::shared_ptr<void>& file, const std::string& dataset) {
+  const hid_t found = H5Dopen2(*static_cast<Handle*>(file.get()), dataset.c_str(), H5P_DEFAULT);
+  if (found < 0) throw std::runtime_error(dataset + " is missing");
+  return Handle(found, H5Dclose);
+}
+
+std::string last_part(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+}  // namespace
+
+// Whatever the library throws is damage.
+template <class Read>
+auto Hdf5Reader::guarded(Read&& read) const {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    damaged("it claims more values than fit into memory");
+  } catch (const std::exception& error) {
+    damaged(error.what());
+  }
+}
+
+void Hdf5Reader::damaged(const std::string& how) const {
+  throw InputError(file_, "damaged (" + how + "); allowed a result of this program");
+}
+
+void Hdf5Reader::require_schema(const std::string& schema, const std::string& allowed) const {
+  const std::string found = attribute(attributes_, "schema");
+  if (found == schema) return;
+  throw InputError(file_, (found.empty() ? "names no schema" : "is of schema " + found) + "; allowed " +
+                              schema + ", " + allowed);
+}
+
+void Hdf5Reader::require_seal() const {
+  if (!sealed_) damaged("its seal is missing: it was changed, or written before there were seals");
+}
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string()) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  sealed_ = require_readable(file);
+  guarded([&] {
+    handle_ = std::make_shared<Handle>(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    attributes_ = root_attributes(*static_cast<Handle*>(handle_.get()));
+  });
+  // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
+  if (attribute(attributes_, "schema").starts_with("remote-touch-") && !has("/sweep/checksum"))
+    require_seal();
+}
+
+std::vector<std::string> Hdf5Reader::datasets() const {
+  return guarded([&] {
+    std::vector<std::string> names;
+    check(H5Ovisit2(*static_cast<Handle*>(handle_.get()), H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names,
+                    H5O_INFO_BASIC));
+    return names;
+  });
+}
+
+bool Hdf5Reader::has(const std::string& dataset) const {
+  const std::vector<std::string> all = datasets();
+  return std::find(all.begin(), all.end(), dataset) != all.end();
+}
+
+Column Hdf5Reader::column(const std::string& dataset) const {
+  return guarded([&] { return read_dataset(open_dataset(handle_, dataset), last_part(dataset), nullptr); });
+}
+
+Column Hdf5Reader::rows(const std::string& dataset, std::size_t first, std::size_t count) const {
+  const Rows some{first, count};
+  return guarded([&] { return read_dataset(open_dataset(handle_, dataset), last_part(dataset), &some); });
+}
+
+std::int64_t Hdf5Reader::offset(const std::string& dataset) const {
+  return guarded([&] {
+    const haddr_t offset = H5Dget_offset(open_dataset(handle_, dataset));
+    if (offset == HADDR_UNDEF) throw std::runtime_error(dataset + " is not stored in one piece");
+    return static_cast<std::int64_t>(offset);
+  });
+}
+
+Hdf5Content read_hdf5(const std::filesystem::path& file) {
+  const Hdf5Reader reader(file);
+  Hdf5Content content{reader.attributes(), {}};
+  for (const std::string& path : reader.datasets()) content.datasets.emplace_back(path, reader.column(path));
+  return content;
+}
+
+std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset) {
+  return Hdf5Reader(file).offset(dataset);
+}
+
+}  // namespace remote_touch

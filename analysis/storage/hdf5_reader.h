@@ -1,0 +1,54 @@
+// Reading an HDF5 file a column, or some rows of one, at a time: a file may be larger than what one wants to
+// hold.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+
+namespace remote_touch {
+
+// Every member throws InputError naming the file when it is damaged.
+class Hdf5Reader {
+ public:
+  // Throws InputError when the file is missing, not HDF5, or its seal is broken; also when a finished result
+  // of this program has none.
+  explicit Hdf5Reader(const std::filesystem::path& file);
+
+  const std::string& file() const { return file_; }
+  // Throws InputError unless the file is of that schema; allowed: what makes one.
+  void require_schema(const std::string& schema, const std::string& allowed) const;
+  const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
+  std::vector<std::string> datasets() const;                        // paths, sorted
+  bool has(const std::string& dataset) const;
+  // An array of more than two dimensions comes as one column.
+  Column column(const std::string& dataset) const;
+  // Rows first .. first + count - 1; pre: they are there.
+  Column rows(const std::string& dataset, std::size_t first, std::size_t count) const;
+  // The values of a column of that width, which are of type T.
+  template <class T>
+  std::vector<T> values(const std::string& dataset, int width = 1) const {
+    Column read = column(dataset);
+    auto* values = std::get_if<std::vector<T>>(&read.values);
+    if (!values || read.width != width) damaged(dataset + " has values of another kind");
+    return std::move(*values);
+  }
+  std::int64_t offset(const std::string& dataset) const;  // of its values in the file; it lies in one piece
+
+  [[noreturn]] void damaged(const std::string& how) const;
+
+ private:
+  void require_seal() const;
+  template <class Read>
+  auto guarded(Read&& read) const;
+  std::string file_;
+  bool sealed_ = false;
+  std::shared_ptr<void> handle_;
+  TextAttributes attributes_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,191 @@
+#include "analysis/storage/hdf5_values.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace remote_touch {
+
+namespace {
+
+// The best that deflate can do. A dataset that claims more than so many bytes for each that it stores is not
+// read, unless it is small: values that were never written take no place in the file.
+constexpr hsize_t kMaxInflation = 1032, kMaxUnwritten = 1 << 20;
+
+std::optional<hsize_t> product(const std::vector<hsize_t>& extent, hsize_t factor) {
+  hsize_t all = factor;
+  for (const hsize_t along : extent)
+    if (__builtin_mul_overflow(all, along, &all)) return {};
+  return all;
+}
+
+hsize_t file_size(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose);
+  hsize_t size = 0;
+  check(H5Fget_filesize(file, &size));
+  return size;
+}
+
+// The text in a place of fixed length.
+std::string text_in(const char* place, std::size_t length, H5T_str_t padding) {
+  std::string text(place, std::find(place, place + length, '\0'));
+  if (padding == H5T_STR_SPACEPAD) text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+std::vector<std::string> texts_in(const std::string& packed, hid_t type) {
+  const std::size_t length = H5Tget_size(type);
+  const H5T_str_t padding = H5Tget_strpad(type);
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < packed.size(); at += length)
+    texts.push_back(text_in(packed.data() + at, length, padding));
+  return texts;
+}
+
+bool has_fixed_texts(hid_t type) {
+  return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) > 0;
+}
+
+}  // namespace
+
+std::string read_text(hid_t attribute) {
+  const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (!has_fixed_texts(type) || count < 1) return {};
+  const auto size = product({static_cast<hsize_t>(count)}, H5Tget_size(type));
+  if (!size || *size > file_size(attribute)) throw std::runtime_error("an attribute is longer than the file");
+  std::string packed(*size, '\0');
+  check(H5Aread(attribute, type, packed.data()));
+  std::string joined;
+  for (const std::string& text : texts_in(packed, type))
+    joined.append(joined.empty() ? "" : ", ").append(text);
+  return joined;
+}
+
+std::string text_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  return read_text(attribute);
+}
+
+namespace {
+
+// What of a dataset is read: all of it, or some rows.
+struct Selection {
+  hid_t in_memory = H5S_ALL, in_file = H5S_ALL;
+  std::size_t count = 0;  // of values
+};
+
+std::vector<std::string> read_texts(hid_t data, hid_t type, const Selection& wanted) {
+  std::string packed(H5Tget_size(type) * wanted.count, '\0');
+  check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, packed.data()));
+  return texts_in(packed, type);
+}
+
+template <class Number>
+std::vector<Number> read_numbers(hid_t data, hid_t type, const Selection& wanted) {
+  std::vector<Number> numbers(wanted.count);
+  // Not read as its own type: that may be wider.
+  check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, numbers.data()));
+  return numbers;
+}
+
+std::vector<std::string> names_of(hid_t enumeration) {
+  std::vector<std::string> names;
+  for (int i = 0; i < H5Tget_nmembers(enumeration); ++i) {
+    char* member = H5Tget_member_name(enumeration, static_cast<unsigned>(i));
+    names.emplace_back(member);
+    H5free_memory(member);
+  }
+  return names;
+}
+
+// 64 bits without a sign are hashes; with one they are numbers, which a double has exactly up to 2^53.
+Values read_integers(hid_t data, hid_t type, const Selection& wanted) {
+  if (H5Tget_size(type) <= sizeof(std::int32_t))
+    return read_numbers<std::int32_t>(data, H5T_NATIVE_INT32, wanted);
+  if (H5Tget_sign(type) == H5T_SGN_NONE) return read_numbers<std::uint64_t>(data, H5T_NATIVE_UINT64, wanted);
+  return read_numbers<double>(data, H5T_NATIVE_DOUBLE, wanted);
+}
+
+Values read_values(hid_t data, hid_t type, const Selection& wanted) {
+  switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+      return read_numbers<double>(data, H5T_NATIVE_DOUBLE, wanted);
+    case H5T_STRING:
+      return read_texts(data, type, wanted);
+    case H5T_INTEGER:
+      return read_integers(data, type, wanted);
+    default:
+      return read_numbers<std::int32_t>(data, H5T_NATIVE_INT32, wanted);
+  }
+}
+
+void require_known_kind(hid_t type, const std::string& name) {
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER && kind != H5T_ENUM && !has_fixed_texts(type))
+    throw std::runtime_error(name + " is neither numbers nor texts of one length");
+}
+
+// In one piece or in chunks in this file; not in others, nor put together from other datasets.
+void require_own_values(hid_t creation, const std::string& name) {
+  const H5D_layout_t layout = H5Pget_layout(creation);
+  if ((layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) ||
+      H5Pget_external_count(creation) != 0)
+    throw std::runtime_error(name + " has its values in another file");
+}
+
+std::vector<hsize_t> chunk_of(hid_t creation, std::size_t rank) {
+  std::vector<hsize_t> chunk(rank, 1);
+  if (H5Pget_layout(creation) == H5D_CHUNKED)
+    check(H5Pget_chunk(creation, static_cast<int>(rank), chunk.data()));
+  return chunk;
+}
+
+void require_room_for(hid_t data, hid_t type, const std::vector<hsize_t>& extent, const std::string& name) {
+  const Handle creation(H5Dget_create_plist(data), H5Pclose);
+  require_own_values(creation, name);
+  const hsize_t stored = std::min(H5Dget_storage_size(data), file_size(data));
+  const hsize_t allowed = std::max(kMaxUnwritten, kMaxInflation * stored);
+  for (const auto& claimed : {extent, chunk_of(creation, extent.size())})
+    if (product(claimed, H5Tget_size(type)).value_or(std::numeric_limits<hsize_t>::max()) > allowed)
+      throw std::runtime_error(name + " claims more values than the file can hold");
+}
+
+// Its extent, when this program can read it.
+std::vector<hsize_t> checked_extent(hid_t data, hid_t type, hid_t space, const std::string& name) {
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 1) throw std::runtime_error(name + " has no dimension");
+  std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
+  check(H5Sget_simple_extent_dims(space, extent.data(), nullptr));
+  require_known_kind(type, name);
+  if (rank == 2 && extent[1] == 0) throw std::runtime_error(name + " has rows without numbers");
+  if (rank == 2 && extent[1] > std::numeric_limits<int>::max())
+    throw std::runtime_error(name + " has rows of " + std::to_string(extent[1]) + " values");
+  require_room_for(data, type, extent, name);
+  return extent;
+}
+
+}  // namespace
+
+Column read_dataset(hid_t data, const std::string& name, const Rows* some) {
+  const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
+  std::vector<hsize_t> size = checked_extent(data, type, space, name);
+  std::vector<hsize_t> start(size.size(), 0);
+  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
+  column.width = static_cast<int>(size.size() == 2 ? size[1] : 1);
+  if (some) start[0] = some->first, size[0] = some->count;
+  const std::size_t count = product(size, 1).value();
+  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type);
+  if (!some) {
+    column.values = read_values(data, type, {H5S_ALL, H5S_ALL, count});
+    return column;
+  }
+  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
+  const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  column.values = read_values(data, type, {memory, space, count});
+  return column;
+}
+
+}  // namespace remote_touch

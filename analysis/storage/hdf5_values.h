@@ -1,0 +1,24 @@
+// Values of attributes and datasets of an HDF5 file that any program may have written: kinds and sizes are
+// checked before memory is taken. For analysis/hdf5_* only.
+#pragma once
+
+#include <string>
+
+#include "analysis/columns/column.h"
+#include "analysis/storage/hdf5_handle.h"
+
+namespace remote_touch {
+
+// Several texts are joined by ", ". Empty for what is no text, or one of variable length.
+std::string read_text(hid_t attribute);
+// Empty where the object has no such attribute.
+std::string text_attribute(hid_t object, const char* name);
+
+struct Rows {
+  hsize_t first, count;
+};
+
+// All rows of a dataset, or some. Throws std::exception saying what is wrong with it.
+Column read_dataset(hid_t data, const std::string& name, const Rows* some);
+
+}  // namespace remote_touch

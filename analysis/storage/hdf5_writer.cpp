@@ -1,0 +1,201 @@
+#include "analysis/storage/hdf5_file.h"
+
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_seal.h"
+#include "analysis/storage/whole_file.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Columns longer than that are compressed, in chunks of so many rows; an array has chunks of at most so many
+// values.
+constexpr hsize_t kLongestInOnePiece = 256, kChunk = 4096, kLargestChunk = 32768;
+
+// Object time stamps off, so that equal contents are equal bytes.
+Handle creation_list(hid_t kind) {
+  Handle list(H5Pcreate(kind), H5Pclose);
+  check(H5Pset_obj_track_times(list, false));
+  return list;
+}
+
+std::size_t longest(const std::vector<std::string>& texts) {
+  std::size_t length = 0;
+  for (const std::string& text : texts) length = std::max(length, text.size());
+  return length;
+}
+
+Handle stored_type(const Column& column) {
+  if (std::holds_alternative<std::vector<double>>(column.values))
+    return Handle(H5Tcopy(H5T_IEEE_F64LE), H5Tclose);
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values))
+    return text_type(longest(*texts));
+  if (std::holds_alternative<std::vector<std::uint64_t>>(column.values))
+    return Handle(H5Tcopy(H5T_STD_U64LE), H5Tclose);
+  if (column.value_names.empty()) return Handle(H5Tcopy(H5T_STD_I32LE), H5Tclose);
+  Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(column.value_names.size()); ++i)
+    check(H5Tenum_insert(type, column.value_names[static_cast<std::size_t>(i)].c_str(), &i));
+  return type;
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes), file_(-1) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  check(H5Pset_fapl_core(access, 1 << 20, false));
+  const Handle creation = creation_list(H5P_FILE_CREATE);
+  // Brings the root an object header that takes attributes above 64 KiB: a configuration with many waypoints.
+  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));
+  file_ = H5Fcreate("remote-touch", H5F_ACC_TRUNC, creation, access);
+  if (file_ < 0) throw std::runtime_error("the HDF5 library refused to start a file");
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  H5Fclose(file_);
+}
+
+void Hdf5Writer::group(const std::string& path) {
+  const Handle creation = creation_list(H5P_GROUP_CREATE);
+  const Handle made(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+}
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& value) {
+  write_text(file_, object, name, value);
+}
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name,
+                           const std::vector<double>& values) {
+  const hsize_t length = values.size();
+  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+  const Handle made(H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+  check(H5Awrite(made, H5T_NATIVE_DOUBLE, values.data()));
+}
+
+void Hdf5Writer::attribute(const std::string& object, const std::string& name, std::int32_t value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle made(H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_STD_I32LE, space, H5P_DEFAULT,
+                                      H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+  check(H5Awrite(made, H5T_NATIVE_INT32, &value));
+}
+
+void Hdf5Writer::attributes(const std::string& object, const TextAttributes& list) {
+  for (const auto& [name, value] : list) attribute(object, name, value);
+}
+
+namespace {
+
+// Whole trailing dimensions, as many as fit.
+std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
+  if (extent.size() == 1) return {std::min(kChunk, extent.front())};
+  for (hsize_t& along : extent) {
+    const auto product = std::accumulate(extent.begin(), extent.end(), hsize_t{1}, std::multiplies<>());
+    if (product > kLargestChunk) along = std::max<hsize_t>(1, kLargestChunk * along / product);
+  }
+  return extent;
+}
+
+void write_values(hid_t dataset, hid_t type, const Column& column) {
+  // The machine is little-endian (asserted in digest.cpp), so the stored types are the native ones.
+  const auto write = [&](const auto& v) {
+    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, v.data()));
+  };
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
+    const std::size_t length = H5Tget_size(type);
+    std::string packed(length * texts->size(), '\0');
+    for (std::size_t i = 0; i < texts->size(); ++i) (*texts)[i].copy(packed.data() + i * length, length);
+    write(packed);
+  } else {
+    std::visit(write, column.values);
+  }
+}
+
+}  // namespace
+
+void Hdf5Writer::dataset(const std::string& path, const Column& column, const std::vector<hsize_t>& extent,
+                         Storage storage) {
+  const int rank = static_cast<int>(extent.size());
+  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  const Handle creation = creation_list(H5P_DATASET_CREATE);
+  const Handle type = stored_type(column);
+  if (storage == Storage::in_place) {
+    check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
+  } else if (column.length() > kLongestInOnePiece) {
+    check(H5Pset_chunk(creation, rank, chunk_of(extent).data()));
+    check(H5Pset_shuffle(creation));
+    check(H5Pset_deflate(creation, 1));
+    check(H5Pset_fletcher32(creation));
+  }
+  const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                    H5Dclose);
+  write_values(made, type, column);
+  attribute(path, "units", column.units);
+  attribute(path, "long_name", column.long_name);
+}
+
+void Hdf5Writer::scale(const std::string& path) {
+  const Handle values(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose);
+  check(H5DSset_scale(values, path.substr(path.rfind('/') + 1).c_str()));
+}
+
+namespace {
+void attach(hid_t file, const std::string& dataset, const std::string& scale, unsigned dimension) {
+  const Handle values(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle along(H5Dopen2(file, scale.c_str(), H5P_DEFAULT), H5Dclose);
+  check(H5DSattach_scale(values, along, dimension));
+}
+}  // namespace
+
+void Hdf5Writer::columns(const std::string& group, const std::vector<Column>& columns,
+                         const std::string& rows) {
+  for (const Column& column : columns) {
+    std::vector<hsize_t> extent{column.length()};
+    if (column.width > 1) extent.push_back(static_cast<hsize_t>(column.width));
+    dataset(group + "/" + column.name, column, extent, Storage::compact);
+  }
+  if (rows.empty()) return;
+  scale(group + "/" + rows);
+  for (const Column& column : columns)
+    if (column.name != rows) attach(file_, group + "/" + column.name, group + "/" + rows, 0);
+}
+
+void Hdf5Writer::array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
+                       Storage storage) {
+  std::vector<hsize_t> extent;
+  for (const std::string& axis : axes) {
+    const Handle along(H5Dopen2(file_, (group + "/" + axis).c_str(), H5P_DEFAULT), H5Dclose);
+    const Handle space(H5Dget_space(along), H5Sclose);
+    extent.push_back(static_cast<hsize_t>(H5Sget_simple_extent_npoints(space)));
+  }
+  const std::string path = group + "/" + column.name;
+  dataset(path, column, extent, storage);
+  for (unsigned i = 0; i < axes.size(); ++i) attach(file_, path, group + "/" + axes[i], i);
+}
+
+std::size_t Hdf5Writer::size() {
+  check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
+  const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+  if (size < 0) throw std::runtime_error("the HDF5 library gave no file image");
+  return static_cast<std::size_t>(size);
+}
+
+void Hdf5Writer::save(const std::filesystem::path& target) {
+  std::vector<char> image(size());
+  if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
+    throw std::runtime_error("the HDF5 library gave no file image");
+  if (sealed_) image = seal(image);
+  write_whole_file(target, image.data(), image.size());
+}
+
+}  // namespace remote_touch

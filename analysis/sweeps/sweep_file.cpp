@@ -1,0 +1,242 @@
+#include "analysis/sweeps/sweep_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <sstream>
+
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Storage = Hdf5Writer::Storage;
+
+std::vector<std::int32_t> numbers_of(const std::vector<RunState>& states) {
+  std::vector<std::int32_t> numbers;
+  for (const RunState state : states) numbers.push_back(static_cast<std::int32_t>(state));
+  return numbers;
+}
+
+Column state_column(const SweepResult& result) {
+  return {"state",
+          "1",
+          "what became of the run",
+          numbers_of(result.state),
+          1,
+          {"not_sampled", "pending", "done", "failed", "elsewhere"}};
+}
+Column error_column(const SweepResult& result) {
+  return {"error", "1", "why the run failed", result.error, 1, {}};
+}
+Column round_column(const SweepResult& result) {
+  return {"round", "1", "round of refinement that asked for the run, -1: none", result.round, 1, {}};
+}
+Column replicate_column(const SweepResult& result) {
+  std::vector<std::int32_t> numbers;
+  for (int i = 0; i < result.replicates; ++i) numbers.push_back(i);
+  return {"replicate", "1", "repetition with other noise", numbers, 1, {}};
+}
+
+std::string joined(const std::vector<Column>& columns) {
+  std::string names;
+  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
+  return names;
+}
+
+std::vector<std::string> split(const std::string& names) {
+  std::vector<std::string> list;
+  std::istringstream text(names);
+  for (std::string name; std::getline(text, name, ',');) list.push_back(name);
+  return list;
+}
+
+std::vector<std::int32_t> checksums(const SweepResult& result) {
+  std::vector<std::int32_t> sums;
+  for (std::size_t run = 0; run < result.run_count(); ++run) sums.push_back(checksum(result, run));
+  return sums;
+}
+
+// Of what stays as it is while the sweep runs; the rest has a checksum for each run.
+std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
+  std::sort(attributes.begin(), attributes.end());
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : attributes) texts.push_back(name), texts.push_back(value);
+  std::vector<Column> columns = result.axes;
+  columns.push_back({"attributes", "1", "", texts, 1, {}});
+  if (!result.round.empty()) columns.push_back(round_column(result));
+  return digest(columns);
+}
+
+// The attributes by name, as they come back when the file is read: whoever wrote it last, it has the same
+// bytes.
+void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attributes, Storage storage) {
+  std::sort(attributes.begin(), attributes.end());
+  hdf5.attribute("/", "schema", kSweepSchema);
+  hdf5.attributes("/", attributes);
+  if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
+  hdf5.attributes("/", {{"axes", joined(result.axes)}, {"measures", joined(result.measures)}});
+  hdf5.attribute("/", "default", "sweep");  // NeXus: what a viewer opens first
+  hdf5.group("/sweep");
+  std::vector<Column> scales = result.axes;
+  if (result.replicates > 1) scales.push_back(replicate_column(result));
+  hdf5.columns("/sweep", scales, "");
+  std::vector<std::string> axes;
+  for (const Column& scale : scales) hdf5.scale("/sweep/" + axes.emplace_back(scale.name));
+  for (const Column& measure : result.measures) hdf5.array("/sweep", measure, axes, storage);
+  hdf5.array("/sweep", state_column(result), axes, storage);
+  if (!result.round.empty()) hdf5.array("/sweep", round_column(result), axes, Storage::compact);
+  if (storage == Storage::in_place)
+    hdf5.array("/sweep",
+               {"checksum", "1", "of the run's values, while the sweep runs", checksums(result), 1, {}}, axes,
+               storage);
+  else
+    hdf5.array("/sweep", error_column(result), axes, storage);
+  hdf5.attributes("/sweep", {{"NX_class", "NXdata"}, {"signal", result.measures.front().name}});
+}
+
+}  // namespace
+
+// FNV-1a over the run's number, state and values, so that values that belong to another run do not pass.
+std::int32_t checksum(const SweepResult& result, std::size_t run) {
+  std::uint32_t hash = 2166136261u;
+  const auto mix = [&hash](std::uint64_t bits) {
+    for (int byte = 0; byte < 8; ++byte, bits >>= 8)
+      hash = (hash ^ static_cast<std::uint32_t>(bits & 0xff)) * 16777619u;
+  };
+  mix(run);
+  mix(static_cast<std::uint64_t>(result.state[run]));
+  for (const Column& measure : result.measures)
+    mix(std::bit_cast<std::uint64_t>(std::get<std::vector<double>>(measure.values)[run]));
+  return static_cast<std::int32_t>(hash);
+}
+
+std::string digest(const SweepResult& result) {
+  std::vector<Column> columns = result.axes;
+  columns.insert(columns.end(), result.measures.begin(), result.measures.end());
+  columns.push_back(state_column(result));
+  columns.push_back(error_column(result));
+  if (!result.round.empty()) columns.push_back(round_column(result));
+  return digest(columns);
+}
+
+std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
+                        const TextAttributes& attributes) {
+  const std::string sum = digest(result);
+  Hdf5Writer hdf5;
+  build(hdf5, result, attributes, Storage::compact);
+  hdf5.attribute("/", "digest", sum);
+  hdf5.save(file);
+  return sum;
+}
+
+void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
+                             const TextAttributes& attributes) {
+  Hdf5Writer hdf5(Hdf5Writer::Finished::no);
+  build(hdf5, result, attributes, Storage::in_place);
+  hdf5.save(file);
+}
+
+std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes) {
+  Hdf5Writer hdf5(Hdf5Writer::Finished::no);
+  build(hdf5, result, attributes, Storage::in_place);
+  return hdf5.size();
+}
+
+// --- reading ---
+
+namespace {
+
+class SweepReader {
+ public:
+  explicit SweepReader(const std::filesystem::path& file) : hdf5_(file), datasets_(hdf5_.datasets()) {
+    hdf5_.require_schema(kSweepSchema, "the result of remote-touch sweep or merge");
+  }
+
+  std::string text(const std::string& name) const { return attribute(hdf5_.attributes(), name); }
+  TextAttributes provenance() const {
+    TextAttributes kept;
+    for (const auto& [name, value] : hdf5_.attributes())
+      if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures"}))
+        kept.emplace_back(name, value);
+    return kept;
+  }
+  bool has(const std::string& name) const {
+    return std::find(datasets_.begin(), datasets_.end(), "/sweep/" + name) != datasets_.end();
+  }
+  Column axis(const std::string& name) const {
+    if (!has(name)) damaged("/sweep/" + name + " is missing");
+    return hdf5_.column("/sweep/" + name);
+  }
+  // The column of that name, length and kind.
+  template <class Value>
+  Column column(const std::string& name, std::size_t length) const {
+    Column column = axis(name);
+    const auto* values = std::get_if<std::vector<Value>>(&column.values);
+    if (values == nullptr || values->size() != length) damaged("/sweep/" + name + " has another shape");
+    column.width = 1;  // a second dimension is an axis
+    return column;
+  }
+  template <class Value>
+  std::vector<Value> values(const std::string& name, std::size_t length) const {
+    return std::get<std::vector<Value>>(column<Value>(name, length).values);
+  }
+  [[noreturn]] void damaged(const std::string& how) const { hdf5_.damaged(how); }
+
+ private:
+  static bool is_one_of(const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
+  Hdf5Reader hdf5_;
+  std::vector<std::string> datasets_;
+};
+
+void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result) {
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    if (sums[run] == checksum(result, run)) continue;
+    const bool asked_for = result.round.empty() || result.round[run] >= 0;
+    result.state[run] = asked_for ? RunState::pending : RunState::not_sampled;
+    for (Column& measure : result.measures)
+      std::get<std::vector<double>>(measure.values)[run] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+StoredSweep read_sweep(const std::filesystem::path& file) {
+  const SweepReader reader(file);
+  StoredSweep stored;
+  SweepResult& result = stored.result;
+  stored.attributes = reader.provenance();
+  stored.in_progress = reader.has("checksum");
+  for (const std::string& name : split(reader.text("axes"))) result.axes.push_back(reader.axis(name));
+  if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
+  const std::size_t runs = result.run_count();
+  for (const std::string& name : split(reader.text("measures")))
+    result.measures.push_back(reader.column<double>(name, runs));
+  if (result.axes.empty() || result.measures.empty()) reader.damaged("it names no axes or no measures");
+  for (const std::int32_t state : reader.values<std::int32_t>("state", runs)) {
+    if (state < 0 || state > static_cast<std::int32_t>(RunState::elsewhere))
+      reader.damaged("a state is unknown");
+    result.state.push_back(static_cast<RunState>(state));
+  }
+  if (reader.has("round")) result.round = reader.values<std::int32_t>("round", runs);
+  if (stored.in_progress) {
+    result.error.resize(runs);
+    if (reader.text("plan_digest") != plan_digest(result, stored.attributes))
+      reader.damaged("its plan has changed");
+    take_back_parts(reader.values<std::int32_t>("checksum", runs), result);
+  } else {
+    result.error = reader.values<std::string>("error", runs);
+    if (reader.text("digest") != digest(result)) reader.damaged("its digest is another");
+  }
+  for (std::size_t run = 0; run < result.round.size(); ++run)
+    if ((result.round[run] < 0) != (result.state[run] == RunState::not_sampled))
+      reader.damaged("a run belongs to no round");
+  return stored;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,41 @@
+// A sweep in HDF5: group /sweep with the axes as dimension scales, one array for each measure, state and
+// error.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kSweepSchema = "remote-touch-sweep/1";
+
+// Of axes, measures, states and errors.
+std::string digest(const SweepResult& result);
+
+// The finished file: equal results are equal bytes. attributes: configuration, provenance and shard; schema
+// and digest are added. Returns the digest. Throws InputError when it cannot be written.
+std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
+                        const TextAttributes& attributes);
+
+// What a file holds, finished or not. Runs of which only a part was written come as pending. Throws
+// InputError for a file that is no sweep, or is not as it was written.
+struct StoredSweep {
+  SweepResult result;
+  TextAttributes attributes;  // without schema and digest
+  bool in_progress = false;
+};
+StoredSweep read_sweep(const std::filesystem::path& file);
+
+// The layout while the sweep runs: nothing compressed, so that runs can be written in place, and a checksum
+// of every run in place of the error texts. A run whose checksum is wrong was written only in part.
+void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
+                             const TextAttributes& attributes);
+std::int32_t checksum(const SweepResult& result, std::size_t run);
+// How large that file is; the finished one is smaller.
+std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);
+
+}  // namespace remote_touch

@@ -1,0 +1,39 @@
+// The result file of a sweep that runs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "analysis/sweeps/sweep_file.h"
+
+namespace remote_touch {
+
+// The file is written whole at the start, with room for every run, so a disk without room is noticed before
+// work is done, and the file can be read at any time. Every finished run is then written in place at once: a
+// killed program loses none. pre: the caller holds the file's lock (file_lock.h).
+class SweepInProgress {
+ public:
+  // already_there: the file is in progress and holds this result. Else it is written. Throws InputError when
+  // it cannot be written.
+  SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
+                  const TextAttributes& attributes, bool already_there);
+  ~SweepInProgress();
+  SweepInProgress(const SweepInProgress&) = delete;
+  SweepInProgress& operator=(const SweepInProgress&) = delete;
+
+  // Stores the values and the state of one run. One call at a time. Throws InputError when the disk refuses.
+  void record(const SweepResult& result, std::size_t run);
+  // After this, everything recorded outlasts a power cut. Throws also when the file was replaced or removed.
+  void flush();
+
+ private:
+  void put(std::int64_t offset, const void* value, std::size_t size);
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::vector<std::int64_t> measure_offsets_;
+  std::int64_t state_offset_ = 0, checksum_offset_ = 0;
+};
+
+}  // namespace remote_touch

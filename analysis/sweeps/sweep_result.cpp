@@ -1,0 +1,60 @@
+#include "analysis/sweeps/sweep_result.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace remote_touch {
+
+void SweepResult::start(bool refined) {
+  const std::size_t runs = run_count();
+  for (Column& measure : measures)
+    measure.values = std::vector<double>(runs, std::numeric_limits<double>::quiet_NaN());
+  state.assign(runs, RunState::not_sampled);
+  round.assign(refined ? runs : 0, -1);
+  error.assign(runs, {});
+}
+
+std::size_t SweepResult::cell_count() const {
+  std::size_t count = 1;
+  for (const Column& axis : axes) count *= axis.length();
+  return count;
+}
+
+std::vector<std::size_t> SweepResult::place(std::size_t cell) const {
+  std::vector<std::size_t> place(axes.size());
+  for (std::size_t i = axes.size(); i-- > 0; cell /= axes[i].length()) place[i] = cell % axes[i].length();
+  return place;
+}
+
+std::size_t SweepResult::cell_at(const std::vector<std::size_t>& place) const {
+  std::size_t cell = 0;
+  for (std::size_t i = 0; i < axes.size(); ++i) cell = cell * axes[i].length() + place[i];
+  return cell;
+}
+
+std::vector<std::size_t> SweepResult::runs_in(RunState wanted) const {
+  std::vector<std::size_t> runs;
+  for (std::size_t run = 0; run < state.size(); ++run)
+    if (state[run] == wanted) runs.push_back(run);
+  return runs;
+}
+
+const std::vector<double>& SweepResult::measure(const std::string& name) const {
+  for (const Column& measure : measures)
+    if (measure.name == name) return std::get<std::vector<double>>(measure.values);
+  throw std::out_of_range("the sweep has no measure " + name);
+}
+
+Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell, double above) {
+  Tally tally;
+  for (int replicate = 0; replicate < result.replicates; ++replicate) {
+    const std::size_t run = result.run(cell, replicate);
+    if (result.state[run] != RunState::done) continue;
+    ++tally.runs;
+    tally.events += measure[run] > above ? 1 : 0;
+  }
+  return tally;
+}
+
+}  // namespace remote_touch

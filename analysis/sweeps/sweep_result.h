@@ -1,0 +1,58 @@
+// The outcome of a parameter sweep: axes, and over them one array for each measure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "analysis/columns/column.h"
+
+namespace remote_touch {
+
+enum class RunState : std::int32_t {
+  not_sampled = 0,  // refinement did not ask for it
+  pending = 1,
+  done = 2,
+  failed = 3,    // error tells why
+  elsewhere = 4  // another shard's
+};
+
+// Cells are the nodes of the axes' grid, counted with the last axis running first; every cell has room for
+// the same number of replicates. A run is one replicate of one cell; all arrays are over runs.
+struct SweepResult {
+  std::vector<Column> axes;  // one row for each value; names instead of numbers as an enumeration
+  int replicates = 1;
+  std::vector<Column> measures;  // NaN where the run is not done
+  std::vector<RunState> state;
+  std::vector<std::int32_t> round;  // of refinement, in which a run was asked for; empty without refinement
+  std::vector<std::string> error;
+
+  // Gives the arrays their length, every run not_sampled. pre: axes, replicates and measures are set.
+  void start(bool refined);
+
+  std::size_t cell_count() const;
+  std::size_t run_count() const { return cell_count() * static_cast<std::size_t>(replicates); }
+  std::size_t run(std::size_t cell, int replicate) const {
+    return cell * static_cast<std::size_t>(replicates) + static_cast<std::size_t>(replicate);
+  }
+  std::size_t cell_of(std::size_t run) const { return run / static_cast<std::size_t>(replicates); }
+  int replicate_of(std::size_t run) const {
+    return static_cast<int>(run % static_cast<std::size_t>(replicates));
+  }
+  // The place of a cell on each axis, and back.
+  std::vector<std::size_t> place(std::size_t cell) const;
+  std::size_t cell_at(const std::vector<std::size_t>& place) const;
+
+  std::vector<std::size_t> runs_in(RunState wanted) const;            // rising
+  const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
+};
+
+// How often an event happened in the finished runs of a cell.
+struct Tally {
+  int events = 0, runs = 0;
+};
+// The event: the measure is above the threshold.
+Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
+            double above = 0.5);
+
+}  // namespace remote_touch

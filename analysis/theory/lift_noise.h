@@ -1,0 +1,26 @@
+// What noise does to the quantities of 4.4, measured over lifts without acceleration.
+#pragma once
+
+#include <vector>
+
+#include "analysis/theory/lift_updates.h"
+#include "analysis/theory/pop_through_bound.h"
+
+namespace remote_touch {
+
+// Updates up to this frame are left out: the estimate begins at 0 when the cloud meets the proxy.
+struct SettledFrom {
+  int frame = 0;
+};
+
+// Over the updates of all lifts of one noise strength in which the proxy was still above the plane.
+NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
+                         double frame_rate_hz);
+
+// Means of one lift, an observation that is independent of other lifts'. NaN when no update counts.
+struct LiftMeans {
+  double thickness_m, normal_error;
+};
+LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled);
+
+}  // namespace remote_touch

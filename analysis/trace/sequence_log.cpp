@@ -1,0 +1,34 @@
+#include "analysis/trace/sequence_log.h"
+
+namespace remote_touch {
+
+namespace {
+
+void end(SequenceEntry& entry, const Trace& t, std::size_t tick, bool missed) {
+  entry.ended_s = t.time_s[tick];
+  entry.missed = missed;
+  entry.distance_m = t.ended_m[tick], entry.angle_rad = t.ended_rad[tick];
+}
+
+}  // namespace
+
+std::vector<SequenceEntry> sequence_log(const Trace& t) {
+  std::vector<SequenceEntry> log;
+  if (!t.has_guidance()) return log;
+  int step = 0, missed = 0;
+  bool running = false;
+  for (std::size_t i = 0; i < t.length(); ++i) {
+    // Only the step that ran before this tick can have come to its deadline: others began in this very tick.
+    bool late = t.sequence_missed[i] > missed;
+    for (; step < t.sequence_step[i]; ++step) {
+      if (!running) log.push_back({step, t.time_s[i]});
+      end(log.back(), t, i, late);
+      running = late = false;
+    }
+    if (!running && t.sequence_running[i]) log.push_back({step, t.time_s[i]}), running = true;
+    missed = t.sequence_missed[i];
+  }
+  return log;
+}
+
+}  // namespace remote_touch

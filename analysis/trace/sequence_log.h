@@ -1,0 +1,26 @@
+// A task's steps as they went, from the columns of a trace.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+// Of a step that has begun. Times of the ticks; NaN for a step that had not ended when the trace did.
+struct SequenceEntry {
+  int step = 0;  // its number in the task
+  double began_s = 0;
+  double ended_s = std::numeric_limits<double>::quiet_NaN();
+  bool missed = false;  // ended by its deadline
+  // From the tool to its goal when it ended; NaN for a step without one. Of steps that ended in one tick all
+  // have that of the first with a goal.
+  double distance_m = std::numeric_limits<double>::quiet_NaN();
+  double angle_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+// In the order of the steps; empty for a trace without a task.
+std::vector<SequenceEntry> sequence_log(const Trace& trace);
+
+}  // namespace remote_touch

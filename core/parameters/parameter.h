@@ -1,0 +1,45 @@
+// Parameters as data: a configuration struct lists its fields once, in a function `parameters(Struct&)`, and
+// reading, range checks, help and the configuration stored with a result all walk that list.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// One of a few named values, kept in an enumeration of the owner.
+struct Choice {
+  std::vector<std::string> names;
+  std::function<int()> get;
+  std::function<void(int)> set;
+};
+
+// A list of equally long rows of numbers, for example waypoints.
+struct Rows {
+  std::vector<std::string> columns;
+  std::vector<double>* values;  // row after row
+};
+
+struct Parameter {
+  std::string name;  // with the unit as suffix, as it stands in a file
+  std::variant<double*, int*, std::uint64_t*, bool*, std::string*, Vec3*, Choice, Rows> value;
+  double low = 0;  // allowed range of a number, ends included
+  double high = 0;
+  std::string help;  // one line; names the equation when there is one
+};
+
+using Parameters = std::vector<Parameter>;
+
+// A choice held in any enumeration whose values are 0, 1, 2, ... in the order of names.
+template <class Enumeration>
+Choice choice(Enumeration& value, std::vector<std::string> names) {
+  return {std::move(names), [&value] { return static_cast<int>(value); },
+          [&value](int i) { value = static_cast<Enumeration>(i); }};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+// Settings of the point cloud proxy, Table 4.2, and the readings of an equation that can be chosen.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
+enum class FreeRoot { ahead, smallest_magnitude };  // of (4.9); the second is the printed text
+enum class ContactRule { tangent_plane, regions };  // (4.6), (5.16), or every touching region by itself
+enum class ExitRule { towards_hip, out_of_contact };  // in contact with the HIP outside: (4.7) or (5.17)
+enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
+enum class DampingSign { plus, minus };  // of the k_d term inside the bracket of (4.16); minus is printed
+enum class ForceGate { latest_contact, contact_now };  // when (4.16) is sent; the second is printed
+enum class SlaveCommand { proxy, hip };  // a hard constraint on the slave robot, or a soft one, 5.2
+
+struct ProxyParameters {
+  double r1_m = 0.00499;
+  double r2_m = 0.00501;
+  double r3_m = 0.01;
+  double theta_deg = 0.1;
+  double gamma = 0.3;
+  double xi = 0.1;
+  double stiffness_N_per_m = 600;
+  double damping_Ns_per_m = 0;
+  int steps_per_tick = 30;
+  int closing_steps = 10;
+  bool velocity_estimate = true;
+  double longest_prediction_s = 0.1;
+  StepRule step_rule = StepRule::variable;
+  double fixed_step_m = 1e-4;
+  FreeRoot free_root = FreeRoot::ahead;
+  ContactRule contact_rule = ContactRule::tangent_plane;
+  ExitRule exit_rule = ExitRule::towards_hip;
+  VelocityForce velocity_force = VelocityForce::minus;
+  DampingSign damping_sign = DampingSign::plus;
+  ForceGate force_gate = ForceGate::latest_contact;
+  SlaveCommand slave_command = SlaveCommand::proxy;
+  bool slave_prediction = false;  // not in the dissertation
+
+  // The contact point lies in the middle of the contact region, 4.2.1.
+  double contact_radius_m() const { return 0.5 * (r1_m + r2_m); }
+};
+
+Parameters parameters(ProxyParameters& p);
+// What contradicts what, as one line; empty when the settings fit together.
+std::string conflict(const ProxyParameters& p);
+
+}  // namespace remote_touch

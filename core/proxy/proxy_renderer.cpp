@@ -1,0 +1,227 @@
+#include "core/proxy/proxy_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/proxy/proxy_step.h"
+#include "core/proxy/touching_regions.h"
+
+namespace remote_touch {
+
+namespace {
+// A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
+constexpr double kFarthestHip_m = 1e6;
+}  // namespace
+
+ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
+    : p_(parameters),
+      kernels_(kernels),
+      near_(parameters.r3_m, kernels),
+      velocity_(parameters.longest_prediction_s),
+      coupling_(parameters, haptic_rate_hz) {}
+
+bool ProxyRenderer::is_newer(const Frame& frame) const {
+  return frame_index_ < 0 || frame.captured_s > frame_captured_s_;
+}
+
+// Whether the frame is newer than all before.
+bool ProxyRenderer::take(const Frame& frame) {
+  if (!is_newer(frame)) {
+    stale_frame_ = true;
+    return false;
+  }
+  replace_points(frame.points);
+  frame_index_ = frame.index;
+  frame_captured_s_ = frame.captured_s;
+  frame_arrived_s_ = frame.arrives_s;
+  return true;
+}
+
+void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points) {
+  near_.set_points(std::move(points));
+  has_look_ = false;
+  is_clear_ = false;
+}
+
+void ProxyRenderer::on_frame(const Frame& frame) {
+  if (!take(frame) || !p_.velocity_estimate) return;
+  carry(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
+}
+
+void ProxyRenderer::on_frame(const Frame& frame, const SurfaceMotion& motion) {
+  if (!take(frame)) return;
+  velocity_.on_measured(frame.captured_s, motion.velocity_m_per_s, motion.normal_W);
+  carry(motion.carry_m);
+}
+
+void ProxyRenderer::carry(const Vec3& way_m) {
+  proxy_W_ += way_m;
+  carried_m_ += way_m;
+  contact_proxy_W_ += way_m;
+}
+
+RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
+  const Vec3& hip_W = device.position_W;
+  RenderOutput out;
+  out.proxy_W = proxy_W_, out.normal_W = normal_W_;
+  out.slave_W = slave_W_;
+  out.frame_index = frame_index_;
+  out.carried_m = std::exchange(carried_m_, Vec3::Zero());
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
+    // Hold still and let go: a force from a lost position would be a guess.
+    coupling_.release();
+    out.status = RenderStatus::device_not_finite;
+    return out;
+  }
+  if (!placed_) proxy_W_ = hip_W, placed_ = true;
+  if (frame_index_ >= 0) {
+    out.steps = move(hip_W);
+    if (near_.has_regions()) out.steps += close(hip_W);
+    report(hip_W, out);
+    out.force_N = render_force(hip_W, time_s, out);
+    if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
+  } else {
+    out.proxy_W = proxy_W_ = hip_W;
+    out.nearest_m = std::numeric_limits<double>::infinity();
+    out.converged = true;
+    out.status = RenderStatus::no_frame;
+    clear_W_ = hip_W;
+  }
+  out.slave_W = slave_W_ = slave_command(hip_W, time_s);
+  stale_frame_ = false;
+  return out;
+}
+
+// State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it; kept while it rests.
+const ProxyRenderer::Look& ProxyRenderer::look() {
+  if (has_look_ && proxy_W_ == looked_from_W_) return look_;
+  look_.points = near_.around(proxy_W_).view();
+  look_.survey = survey(look_.points, proxy_W_);
+  look_.state = classify(look_.survey.nearest, p_);
+  looked_from_W_ = proxy_W_;
+  has_look_ = true;
+  return look_;
+}
+
+// pre: the points are those of the present list of neighbours.
+Survey ProxyRenderer::survey(const PointsView& points, const Vec3& p_W) const {
+  const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
+  return kernels_.survey(points, p_W.data(), regions);
+}
+
+// The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
+// bit for bit: every further step would do the same.
+int ProxyRenderer::move(const Vec3& hip_W) {
+  bool touched = false;
+  for (int k = 1; k <= p_.steps_per_tick; ++k) {
+    const Vec3 u = hip_W - proxy_W_;
+    const Look& here = look();
+    normal_W_ = unit_normal(here.survey, normal_W_);
+    if (here.state == ContactState::contact) {
+      in_contact_ = true;
+      contact_proxy_W_ = proxy_W_;
+      contact_stiffness_N_per_m_ = stiffness(here.survey);
+    }
+    touched |= here.state != ContactState::free;
+    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
+
+    if (stops_at_convergence_ && here.state == ContactState::contact &&
+        has_converged(here.state, normal_W_, u, p_))
+      return k - 1;
+
+    const Vec3 s = next_step(here, u);
+    velocity_.on_step(s);  // (4.13)
+    const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
+    if (here.state == ContactState::free && moved == hip_W)
+      in_contact_ = false;  // nothing holds the proxy back
+    const bool settled = moved == proxy_W_;
+    proxy_W_ = moved;
+    if (settled || k == p_.steps_per_tick) {
+      if (!touched) in_contact_ = false;
+      return k;
+    }
+  }
+  return 0;
+}
+
+// Beyond the dissertation: where regions overlap the way out of one may end in another, and the budget of
+// steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
+// back. Returns the number of steps.
+int ProxyRenderer::close(const Vec3& hip_W) {
+  if (p_.closing_steps == 0) return 0;
+  int steps = 0;
+  for (; steps < p_.closing_steps && look().state == ContactState::entrenched; ++steps) {
+    normal_W_ = unit_normal(look_.survey, normal_W_);
+    proxy_W_ += next_step(look_, hip_W - proxy_W_);
+  }
+  if (is_clear_ && look().state == ContactState::entrenched) proxy_W_ = clear_W_;
+  return steps;
+}
+
+Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
+  switch (here.state) {
+    case ContactState::free:
+      return free_step(near_, proxy_W_, u, p_);
+    case ContactState::entrenched:
+      return entrenched_step(here.points, kernels_, proxy_W_, normal_W_, u, p_);
+    case ContactState::contact:
+      break;
+  }
+  if (p_.contact_rule == ContactRule::tangent_plane) return contact_step(normal_W_, u, p_);
+  const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m);
+  return region_step(near_, proxy_W_, goal, u, p_);
+}
+
+// The output describes the position that the tick ends in; the state of the method is not touched.
+void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
+  const Look& here = look();
+  out.proxy_W = proxy_W_;
+  out.state = here.state;
+  if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
+  out.normal_W = unit_normal(here.survey, normal_W_);
+  out.surface_velocity_m_per_s = velocity_.m_per_s();
+  // The list of neighbours goes further than r3 in some directions: what it finds there is chance.
+  out.nearest_m =
+      here.survey.nearest <= p_.r3_m ? here.survey.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(here.survey.touching);
+  const Vec3 u = hip_W - proxy_W_;
+  if (p_.contact_rule == ContactRule::regions && here.state == ContactState::contact)
+    out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
+  else
+    out.converged = has_converged(here.state, out.normal_W, u, p_);
+  if (here.state == ContactState::entrenched && out.normal_W.isZero(0))
+    out.status = RenderStatus::degenerate_normal;
+}
+
+// The frame shows the surface as it was when it was captured. Like (4.15), the prediction takes it to go on
+// along v_hat; a position that would lie in a region of the newest frame is not sent.
+Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
+  if (p_.slave_command == SlaveCommand::hip) return hip_W;
+  if (!p_.slave_prediction || !in_contact_) return clear_W_;
+  const double age_s = std::clamp(time_s - frame_captured_s_, 0.0, velocity_.horizon_s());
+  const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
+  const Survey there = survey(near_.around(ahead_W).view(), ahead_W);
+  has_look_ = false;  // what the proxy saw may have made room
+  return classify(there.nearest, p_) == ContactState::entrenched ? clear_W_ : ahead_W;
+}
+
+Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderOutput& out) {
+  const bool send =
+      p_.force_gate == ForceGate::latest_contact ? in_contact_ : out.state == ContactState::contact;
+  if (!send) {
+    coupling_.release();
+    return Vec3::Zero();
+  }
+  const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
+  // Bounded: when frames stop to come, the surface is no longer taken to go on.
+  const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
+  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_);
+}
+
+// (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.
+double ProxyRenderer::stiffness(const Survey& survey) const {
+  return survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : p_.stiffness_N_per_m;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,83 @@
+// 3-DOF rendering of streaming point clouds with a spherical proxy: chapter 4, and with fixture radii in the
+// cloud chapter 5. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
+#pragma once
+
+#include "core/proxy/proxy_parameters.h"
+#include "core/proxy/virtual_coupling.h"
+#include "core/rendering/renderer.h"
+#include "core/rendering/surface_velocity.h"
+#include "core/search/neighbourhood.h"
+
+namespace remote_touch {
+
+// How a surface moved from one frame to the next.
+struct SurfaceMotion {
+  Vec3 carry_m = Vec3::Zero();  // what the proxy is moved by
+  double velocity_m_per_s = 0;  // along the normal, positive towards the proxy
+  Vec3 normal_W = Vec3::Zero();
+};
+
+class ProxyRenderer final : public Renderer {
+ public:
+  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+
+  void reserve(std::size_t points) override { near_.reserve(points, true, true); }
+  void on_frame(const Frame& frame) override;
+  // The same with a motion that was measured otherwise; (4.3) and (4.13) then have no part in it.
+  void on_frame(const Frame& frame, const SurfaceMotion& motion);
+  // Other points in place of the newest frame's.
+  void replace_points(std::shared_ptr<const NeighbourSearch> points);
+  // Moves the proxy with a surface.
+  void carry(const Vec3& way_m);
+  // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
+  void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
+  bool is_newer(const Frame& frame) const;
+  const Vec3& proxy_W() const { return proxy_W_; }
+  bool in_contact() const { return in_contact_; }
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  bool take(const Frame& frame);
+  struct Look {  // what the proxy sees from where it is
+    Survey survey;
+    ContactState state;
+    PointsView points;
+  };
+  const Look& look();
+  int move(const Vec3& hip_W);
+  int close(const Vec3& hip_W);
+  Vec3 next_step(const Look& here, const Vec3& u);
+  Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
+  void report(const Vec3& hip_W, RenderOutput& out);
+  double stiffness(const Survey& survey) const;
+  Survey survey(const PointsView& points, const Vec3& p_W) const;
+  Vec3 slave_command(const Vec3& hip_W, double time_s);
+
+  const ProxyParameters p_;
+  const Kernels& kernels_;
+  Neighbourhood near_;
+  SurfaceVelocity velocity_;
+  VirtualCoupling coupling_;
+
+  Look look_;  // from looked_from_W_, while has_look_
+  Vec3 looked_from_W_ = Vec3::Zero();
+  bool has_look_ = false;
+
+  Vec3 proxy_W_ = Vec3::Zero();
+  Vec3 normal_W_ = Vec3::Zero();
+  Vec3 clear_W_ = RenderOutput{}.slave_W;  // the latest proxy position outside all regions
+  bool is_clear_ = false;                  // outside those of the newest frame
+  Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
+  bool placed_ = false;                    // the proxy starts at the first HIP
+  bool in_contact_ = false;                // until the proxy is free and unhindered again
+  Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
+  double contact_stiffness_N_per_m_ = 0;
+  double frame_captured_s_ = 0, frame_arrived_s_ = 0;
+  int frame_index_ = -1;
+  Vec3 carried_m_ = Vec3::Zero();  // by (4.3) since the last tick
+  bool stale_frame_ = false;
+  bool stops_at_convergence_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,28 @@
+// Force rendering, 4.2.6: a spring and damper between the HIP and the contact point of the proxy.
+#pragma once
+
+#include "core/geometry/vector.h"
+#include "core/proxy/proxy_parameters.h"
+
+namespace remote_touch {
+
+class VirtualCoupling {
+ public:
+  // haptic_rate_hz is f_h of (4.16).
+  VirtualCoupling(const ProxyParameters& parameters, double haptic_rate_hz)
+      : p_(parameters), haptic_rate_hz_(haptic_rate_hz) {}
+
+  // (4.15), (4.16): the force on the hand, N, towards the proxy; zero while the HIP is within r_c of the
+  // proxy. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector, stiffness in N/m.
+  Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m);
+  // No contact: the next force starts without a finite difference.
+  void release() { has_previous_ = false; }
+
+ private:
+  const ProxyParameters p_;
+  double haptic_rate_hz_;
+  double previous_length_ = 0;
+  bool has_previous_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,54 @@
+// Gaussian noise from a counter-based generator: the value belongs to (seed, cell, replicate, frame, point),
+// so any point of any frame of any sweep cell can be made alone, in any order, by any thread, with the same
+// bits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+
+namespace remote_touch {
+
+// What a run is keyed by; cell and replicate are those of a sweep and 0 outside one.
+struct NoiseKey {
+  std::uint64_t seed = 1;
+  std::uint64_t cell = 0;       // below 2^32
+  std::uint64_t replicate = 0;  // below 2^32
+};
+
+// Independent uses of one key.
+enum class NoiseUse : std::uint32_t {
+  point_position = 0,
+  depth = 1,
+  delivery = 2,
+  motion = 3,
+  colour = 4,
+  dropout = 5,
+  sensor_point = 6,
+  sensor_frame = 7,
+};
+
+// No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
+inline constexpr double kLargestNormal = 6.661;
+
+// pre: frame < 2^28.
+inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t frame) {
+  return {{static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32)},
+          {frame | static_cast<std::uint32_t>(use) << 28, static_cast<std::uint32_t>(key.cell),
+           static_cast<std::uint32_t>(key.replicate)}};
+}
+
+// The random words of one point of the stream, as numbers evenly spread in (0, 1); the normals of the same
+// point are made of the same words.
+std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
+
+// What a normal must be, at least `least` towards positive values (or negative, where towards is below 0), as
+// a question about the two random words that it is made of: its radius falls with the first, its sign follows
+// from the second. Nothing is asked for least <= 0. The answer errs to yes only, by a millionth, so it does
+// not depend on the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the sign wanted;
+// 63: a sign is wanted.
+std::uint64_t asks_of(double least, double towards);
+
+}  // namespace remote_touch

@@ -1,0 +1,38 @@
+// What crosses the seam between a sensor and a renderer, and between a device and a renderer.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/geometry/vector.h"
+#include "core/search/neighbour_search.h"
+#include "core/virtual_fixtures/guidance_target.h"
+
+namespace remote_touch {
+
+// What a renderer makes of a frame beforehand, see Renderer::prepare().
+class FramePreparation {
+ public:
+  virtual ~FramePreparation() = default;
+};
+
+// One point cloud of the stream. Latency is data: the renderer sees the frame at arrives_s.
+struct Frame {
+  int index = 0;
+  double captured_s = 0;
+  double arrives_s = 0;
+  std::shared_ptr<const NeighbourSearch> points;
+  std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
+  std::shared_ptr<const FramePreparation> prepared = nullptr;
+};
+
+// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit
+// each.
+struct DeviceState {
+  Vec3 position_W = Vec3::Zero();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  std::uint32_t buttons = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,37 @@
+// Which frame of a stream is the newest. A frame captured no later than it is dropped, and told of once.
+#pragma once
+
+#include <utility>
+
+#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
+
+namespace remote_touch {
+
+class FrameOrder {
+ public:
+  // Whether the frame is newer than all before; it is then the newest.
+  bool take(const Frame& frame) {
+    if (index_ >= 0 && !(frame.captured_s > captured_s_)) {
+      dropped_ = true;
+      return false;
+    }
+    index_ = frame.index, captured_s_ = frame.captured_s;
+    return true;
+  }
+  int newest() const { return index_; }  // -1 before the first
+
+  // The status of a tick, where nothing more serious is to be said: whether a frame was dropped since the
+  // last one.
+  RenderStatus status(RenderStatus otherwise) {
+    const bool dropped = std::exchange(dropped_, false);
+    return dropped && otherwise == RenderStatus::ok ? RenderStatus::stale_frame_dropped : otherwise;
+  }
+
+ private:
+  int index_ = -1;
+  double captured_s_ = 0;
+  bool dropped_ = false;
+};
+
+}  // namespace remote_touch

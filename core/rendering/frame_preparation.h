@@ -1,0 +1,36 @@
+// What a renderer reads of a cloud in place of its columns, made once a frame, beforehand or when it is
+// taken.
+#pragma once
+
+#include <memory>
+
+#include "core/kernels/kernels.h"
+#include "core/rendering/frame.h"
+#include "core/search/neighbour_search.h"
+
+namespace remote_touch {
+
+// Form: has assign(const PointCloud&), such as a tree.
+template <class Form>
+struct PreparedForm final : FramePreparation {
+  Form form;
+};
+
+template <class Form>
+std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& points,
+                                                        const Kernels& kernels) {
+  const auto made = std::make_shared<PreparedForm<Form>>();
+  PointCloud room;
+  made->form.assign(points.every_point(kernels, room));
+  return made;
+}
+
+// That of the frame, made now unless it was prepared. Allocates only then.
+template <class Form>
+std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels) {
+  auto prepared = std::dynamic_pointer_cast<const PreparedForm<Form>>(frame.prepared);
+  if (!prepared) prepared = prepared_form<Form>(*frame.points, kernels);
+  return {prepared, &prepared->form};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,94 @@
+// The seam of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "core/geometry/vector.h"
+#include "core/rendering/frame.h"
+
+namespace remote_touch {
+
+enum class ContactState { free = 0, contact = 1, entrenched = 2 };
+
+// Why an output is not an ordinary one. device_not_finite also stands for a HIP more than 1000 km away. The
+// most serious reason wins.
+enum class RenderStatus {
+  ok = 0,
+  stale_frame_dropped = 1,
+  degenerate_normal = 2,
+  no_frame = 3,
+  device_not_finite = 4
+};
+
+// What a renderer of a rigid tool adds, chapter 6. The tool frame has its origin in the centre of mass of the
+// tool, which is RenderOutput::proxy_W.
+struct ToolOutput {
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();  // takes tool coordinates to the world
+  Vec3 torque_Nm = Vec3::Zero();  // on the hand, about the HIP, world frame
+  // Of the pose at the end of the tick; RenderOutput::contact_count is the number of points that touch.
+  int active_constraints = 0;     // rows of (6.5) that hold the tool, at most 6
+  int contact_clusters = 0;       // groups of touching points, 10 mm cells of the tool frame
+  double penetration_m = 0;       // of the deepest point of the newest frame; 0 or more
+  int detections = 0;             // collision detections made in this tick
+  bool budget_exhausted = false;  // the tick ended before the tool came to rest
+  int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
+};
+
+// What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
+struct GuidanceOutput {
+  bool pulls = false;  // a guidance fixture is active and the newest frame shows its target
+  Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
+  // Where it pulls to, world frame; NaN where it does not.
+  Vec3 goal_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  Eigen::Quaterniond goal_orientation_W{Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN())};
+  int sequence_step = 0;          // the task's current step; as many as it has after the last
+  bool sequence_running = false;  // the step has begun
+  int sequence_missed = 0;        // steps that ended by their deadline so far
+  // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
+  double ended_m = std::numeric_limits<double>::quiet_NaN();
+  double ended_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+// Metres, newtons, world frame. force_N acts on the hand that holds the device.
+struct RenderOutput {
+  Vec3 proxy_W = Vec3::Zero();
+  Vec3 force_N = Vec3::Zero();
+  // Where the slave robot is to go, 5.2: never a position of the proxy inside a region, so a command is
+  // repeated while there is no better one. NaN before the first.
+  Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  ContactState state = ContactState::free;  // of proxy_W
+  Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
+  double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)
+  double nearest_m = 0;                 // distance of proxy_W to the nearest region, r_n of (5.5); infinite
+                                        // beyond the renderer's reach
+  Vec3 carried_m = Vec3::Zero();        // how far frame updates moved the proxy since the last tick, (4.3)
+  int steps = 0;                        // proxy steps made in this tick
+  bool converged = false;               // (4.8)
+  int contact_count = 0;                // points within r2
+  int frame_index = -1;                 // newest frame in use, -1 before the first
+  RenderStatus status = RenderStatus::ok;
+  std::optional<ToolOutput> tool;          // a 3-DOF renderer has none
+  std::optional<GuidanceOutput> guidance;  // of experiments with guidance or a sequence
+};
+
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  // What takes long of taking a frame, so that on_frame() is short: sets frame.prepared, for renderers of the
+  // same kind and settings. May run beside on_frame() and step(). The answers are the same without.
+  virtual void prepare(Frame& /*frame*/) const {}
+  // Room for frames of so many points, or of images of so many pixels, both sides rounded up to multiples of
+  // 16; with it on_frame() of a prepared frame allocates nothing. It lets the one before go: see that it is
+  // held elsewhere when memory must not be given back either.
+  virtual void reserve(std::size_t /*points*/) {}
+  // A new cloud, prepared or not. A frame captured no later than the newest one is dropped, and the next
+  // output says so.
+  virtual void on_frame(const Frame& frame) = 0;
+  // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: trouble is a
+  // status.
+  virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
+};
+
+}  // namespace remote_touch

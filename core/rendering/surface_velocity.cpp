@@ -1,0 +1,40 @@
+#include "core/rendering/surface_velocity.h"
+
+#include <algorithm>
+
+namespace remote_touch {
+
+Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
+  const double since = has_frame_ ? captured_s - captured_s_ : 0;
+  const double carried = velocity_m_per_s_ * std::min(since, longest_interval_s_);
+  interval_s_ = awaits_step_ ? interval_s_ + since : since;
+  carried_m_ = awaits_step_ ? carried_m_ + carried : carried;
+  captured_s_ = captured_s;
+  has_frame_ = true;
+  normal_ = normal;
+  awaits_step_ = interval_s_ > 0;
+  return carried * normal_;
+}
+
+// (4.13), v_hat + n.s / interval, where the proxy was carried all the way; where (4.3) was bounded, what it
+// was carried and the step together are what the surface moved.
+void SurfaceVelocity::on_step(const Vec3& step) {
+  if (!awaits_step_) return;
+  awaits_step_ = false;
+  velocity_m_per_s_ = std::max(0.0, (carried_m_ + normal_.dot(step)) / interval_s_);
+}
+
+double SurfaceVelocity::horizon_s() const {
+  return std::max(longest_interval_s_, interval_s_);
+}
+
+void SurfaceVelocity::on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal) {
+  interval_s_ = has_frame_ ? captured_s - captured_s_ : 0;
+  captured_s_ = captured_s;
+  has_frame_ = true;
+  awaits_step_ = false;
+  velocity_m_per_s_ = velocity_m_per_s;
+  normal_ = normal;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,44 @@
+// Point cloud velocity estimate, 4.2.5: how fast the surface moves along the proxy's normal, towards the
+// proxy.
+#pragma once
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+class SurfaceVelocity {
+ public:
+  // longest_interval_s bounds how far ahead (4.3) extrapolates when frames are missing.
+  explicit SurfaceVelocity(double longest_interval_s) : longest_interval_s_(longest_interval_s) {}
+
+  // A new frame, with the normal estimated just before it. Returns the correction s_j of (4.3), to be added
+  // to the proxy. The interval is the time between the two frames' captures: 1/f_c for a steady stream.
+  // Frames that follow each other without a step between them count as one.
+  Vec3 on_frame(double captured_s, const Vec3& normal);
+  // The first proxy step after a frame corrects the estimate, (4.13); later steps change nothing. It may be a
+  // step of any state: a free step back to the surface tells that the estimate was too high. Never negative,
+  // never reset.
+  void on_step(const Vec3& step);
+
+  // In place of both, where the motion is measured otherwise: the velocity along the normal, of either sign.
+  void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
+
+  double m_per_s() const { return velocity_m_per_s_; }
+  // v_hat as a vector, along the normal of the last frame.
+  Vec3 vector() const { return velocity_m_per_s_ * normal_; }
+  // How long after a frame v_hat may be trusted: longest_interval_s, or the stream's own interval when that
+  // is longer.
+  double horizon_s() const;
+
+ private:
+  double longest_interval_s_;
+  double velocity_m_per_s_ = 0;  // v_0 = 0
+  double captured_s_ = 0;
+  double interval_s_ = 0;  // since the frame before the last step; 0 before the second frame
+  double carried_m_ = 0;   // how far the proxy was moved along the normal in that time
+  Vec3 normal_ = Vec3::Zero();
+  bool has_frame_ = false;
+  bool awaits_step_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,193 @@
+#include "core/search/neighbour_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace remote_touch {
+
+const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointCloud& room) const {
+  constexpr double kEverywhere_m = 1e6;
+  GatheredPoints all;
+  all.reserve(size(), has_fixture_radius(), has_stiffness());
+  gather({Vec3::Zero(), kEverywhere_m}, kernels, all);
+  const PointsView view = all.view();
+  const auto column = [&](const double* from) {
+    return from ? std::vector<double>(from, from + all.size()) : std::vector<double>();
+  };
+  room = {};
+  room.x = column(view.x), room.y = column(view.y), room.z = column(view.z);
+  room.fixture_radius_m = column(view.radius), room.stiffness_N_per_m = column(view.stiffness);
+  return room;
+}
+
+CloudSearch::CloudSearch(PointCloud cloud) : cloud_(std::move(cloud)) {
+  for (const double r : cloud_.fixture_radius_m)
+    largest_fixture_radius_ = std::max(largest_fixture_radius_, r);
+}
+
+PointRun CloudSearch::run(std::size_t first, std::size_t count) const {
+  const auto column = [first](const std::vector<double>& values) {
+    return values.empty() ? nullptr : values.data() + first;
+  };
+  return {cloud_.x.data() + first,           cloud_.y.data() + first,
+          cloud_.z.data() + first,           column(cloud_.fixture_radius_m),
+          column(cloud_.stiffness_N_per_m),  nullptr,
+          static_cast<std::uint32_t>(first), count};
+}
+
+void BruteForceSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  out.add(run(0, cloud_.size()), ball, kernels);
+}
+
+// --- image window ---
+
+namespace {
+
+struct PixelRange {
+  int first, last;  // ends included; empty when first > last
+};
+
+// Pixels along one axis that can see the ball: the tangents from the camera's centre to a circle at (lateral,
+// z). pre: z > radius, so that both tangents are in front of the camera.
+PixelRange tangent_range(double lateral, double z, double radius, double focal, double centre, double slack,
+                         int count) {
+  const double squared = z * z - radius * radius, scale = focal / squared;
+  const double spread = radius * std::sqrt(std::max(0.0, lateral * lateral + squared));
+  const double low = scale * (lateral * z - spread) + centre - slack;
+  const double high = scale * (lateral * z + spread) + centre + slack;
+  // Clamped as double: far off to the side the pixel does not fit an int. Shifted to be positive, truncation
+  // rounds down, where std::floor is a call on the oldest machines.
+  const int top = count + 2;
+  return {top - static_cast<int>(top - std::clamp(low, -1.0, count + 1.0)),
+          static_cast<int>(std::clamp(high, -2.0, count - 1.0) + 2.0) - 2};
+}
+
+}  // namespace
+
+ImageWindowSearch::ImageWindowSearch(PointCloud cloud) : CloudSearch(std::move(cloud)) {
+  if (!cloud_.image) throw std::invalid_argument("ImageWindowSearch: the cloud has no image layout");
+  X_CW_ = cloud_.image->X_WC.inverse();
+  nearest_depth_m_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    const double depth = X_CW_.linear().row(2).dot(cloud_.point(i)) + X_CW_.translation().z();
+    nearest_depth_m_ = depth < nearest_depth_m_ ? depth : nearest_depth_m_;  // NaN is not less
+  }
+}
+
+void ImageWindowSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  const CameraIntrinsics& camera = cloud_.image->camera;
+  const Vec3 c_C = X_CW_ * ball.centre;
+  // Rounding of the transform and of the points, far above what double leaves at room scale.
+  const double radius = widened(ball).radius * (1 + 1e-9) + 1e-9;
+  PixelRange columns{0, camera.width - 1}, rows{0, camera.height - 1};
+  // Behind all that was measured there is nothing to find in front of it: a ball at the camera need not see
+  // it all.
+  if (!(c_C.z() + radius >= nearest_depth_m_)) return;
+  if (c_C.z() > 1.001 * radius) {
+    const double slack = cloud_.image->pixel_slack;
+    columns = tangent_range(c_C.x(), c_C.z(), radius, camera.fx, camera.cx, slack, camera.width);
+    rows = tangent_range(c_C.y(), c_C.z(), radius, camera.fy, camera.cy, slack, camera.height);
+    columns.first = std::max(columns.first, 0), rows.first = std::max(rows.first, 0);
+  }
+  if (columns.first > columns.last || rows.first > rows.last) return;
+  const auto width = static_cast<std::size_t>(columns.last - columns.first + 1);
+  PointRun window = run(static_cast<std::size_t>(rows.first) * camera.width + columns.first, width);
+  window.rows = static_cast<std::size_t>(rows.last - rows.first + 1);
+  window.stride = static_cast<std::size_t>(camera.width);
+  out.add(window, ball, kernels);
+}
+
+// --- uniform grid ---
+
+UniformGridSearch::UniformGridSearch(PointCloud cloud, double cell_m)
+    : CloudSearch(std::move(cloud)), columns_(cloud_.columns()) {
+  if (!(cell_m > 0)) throw std::invalid_argument("UniformGridSearch: cell size must be positive");
+  cloud_.grid_columns = 0;
+  choose_cells(cell_m);
+  sort_points_by_cell();
+}
+
+void UniformGridSearch::choose_cells(double cell_m) {
+  low_.setConstant(std::numeric_limits<double>::infinity());
+  high_ = -low_;
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    const Vec3 p = cloud_.point(i);
+    if (!p.allFinite()) continue;
+    low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
+  }
+  if (!low_.allFinite()) low_.setZero(), high_.setZero();
+  const double allowed = 4.0 * static_cast<double>(cloud_.size()) + 64.0;
+  const auto cells_along = [&](int axis) { return std::floor((high_[axis] - low_[axis]) / cell_m) + 1; };
+  while (cells_along(0) * cells_along(1) * cells_along(2) > allowed) cell_m *= 1.25;
+  cells_per_m_ = 1 / cell_m;
+  for (int axis = 0; axis < 3; ++axis) cells_[axis] = static_cast<int>(cells_along(axis));
+}
+
+// Clamped, for a query may lie anywhere. Monotonic, so a ball's bounding box meets the cell of each of its
+// points.
+int UniformGridSearch::cell_along(int axis, double coordinate) const {
+  const double cell = std::floor((coordinate - low_[axis]) * cells_per_m_);
+  return static_cast<int>(std::clamp(cell, 0.0, static_cast<double>(cells_[axis] - 1)));
+}
+
+// Counting sort; points that measured nothing go last, outside every cell.
+void UniformGridSearch::sort_points_by_cell() {
+  const std::size_t cell_count = static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2];
+  std::vector<std::uint32_t> cell_of(cloud_.size());
+  cell_start_.assign(cell_count + 2, 0);
+  for (std::size_t i = 0; i < cloud_.size(); ++i) {
+    const Vec3 p = cloud_.point(i);
+    std::size_t cell = cell_count;
+    if (p.allFinite())
+      cell = (static_cast<std::size_t>(cell_along(0, p.x())) * cells_[1] + cell_along(1, p.y())) * cells_[2] +
+             cell_along(2, p.z());
+    cell_of[i] = static_cast<std::uint32_t>(cell);
+    ++cell_start_[cell + 1];
+  }
+  for (std::size_t cell = 0; cell <= cell_count; ++cell) cell_start_[cell + 1] += cell_start_[cell];
+  std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
+  original_index_.resize(cloud_.size());
+  for (std::size_t i = 0; i < cloud_.size(); ++i)
+    original_index_[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
+
+  const auto reorder = [this](auto& column) {
+    if (column.empty()) return;
+    auto sorted = column;
+    for (std::size_t i = 0; i < column.size(); ++i) sorted[i] = column[original_index_[i]];
+    column.swap(sorted);
+  };
+  reorder(cloud_.x), reorder(cloud_.y), reorder(cloud_.z);
+  reorder(cloud_.fixture_radius_m), reorder(cloud_.stiffness_N_per_m), reorder(cloud_.colour);
+  reorder(cloud_.nx), reorder(cloud_.ny), reorder(cloud_.nz);
+}
+
+void UniformGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  const double reach = widened(ball).radius * (1 + 1e-9);
+  int first[3], last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    if (ball.centre[axis] + reach < low_[axis] || ball.centre[axis] - reach > high_[axis]) return;
+    first[axis] = cell_along(axis, ball.centre[axis] - reach);
+    last[axis] = cell_along(axis, ball.centre[axis] + reach);
+  }
+  for (int i = first[0]; i <= last[0]; ++i) {
+    for (int j = first[1]; j <= last[1]; ++j) {
+      const std::size_t column = (static_cast<std::size_t>(i) * cells_[1] + j) * cells_[2];
+      const std::uint32_t begin = cell_start_[column + first[2]], end = cell_start_[column + last[2] + 1];
+      if (begin == end) continue;
+      PointRun cells = run(begin, end - begin);
+      cells.index = original_index_.data() + begin;
+      out.add(cells, ball, kernels);
+    }
+  }
+}
+
+std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m) {
+  if (cloud.image) return std::make_unique<ImageWindowSearch>(std::move(cloud));
+  if (cloud.size() <= 256) return std::make_unique<BruteForceSearch>(std::move(cloud));
+  return std::make_unique<UniformGridSearch>(std::move(cloud), cell_m);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,106 @@
+// Finding the points near a position. Every search returns the same set: all points whose forbidden regions
+// meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0. They
+// differ in which points they look at.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "core/search/gathered_points.h"
+
+namespace remote_touch {
+
+class NeighbourSearch {
+ public:
+  virtual ~NeighbourSearch() = default;
+  // Adds the points whose regions meet the ball to out, which has room for size() points. Does not call
+  // finish(). One reader at a time: an implementation may keep what it made for the next call.
+  virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
+  virtual std::size_t size() const = 0;
+  // Every point that was measured, for those who look at them all, in the order of the search. This one
+  // writes what gather() finds into room: positions, and radii and stiffness where there are some, but no
+  // normals and no colours. A search over a stored cloud gives the cloud itself, so all its columns, and the
+  // rows of missing measurements too.
+  virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& room) const;
+  virtual bool has_fixture_radius() const { return false; }
+  // Some radius is above 0: there are forbidden regions, chapter 5.
+  virtual bool has_regions() const { return false; }
+  virtual bool has_stiffness() const { return false; }
+  // No r_f of the cloud is larger, m.
+  virtual double largest_fixture_radius_m() const { return 0; }
+  // Of an organised frame: how wide its rows are. The point in a row and column has the number row x columns
+  // + column in GatheredPoints::index(), whatever the order of the search. 0: points in no order.
+  virtual int organised_columns() const { return 0; }
+};
+
+// A search over a stored cloud.
+class CloudSearch : public NeighbourSearch {
+ public:
+  explicit CloudSearch(PointCloud cloud);
+  std::size_t size() const override { return cloud_.size(); }
+  bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
+  bool has_regions() const override { return largest_fixture_radius_ > 0; }
+  bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
+  double largest_fixture_radius_m() const override { return largest_fixture_radius_; }
+  int organised_columns() const override { return cloud_.columns(); }
+  const PointCloud& cloud() const { return cloud_; }
+  const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
+
+ protected:
+  PointRun run(std::size_t first, std::size_t count) const;
+  // In which the points lie whose regions meet the ball: wider by the largest r_f of the cloud.
+  Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + largest_fixture_radius_}; }
+  PointCloud cloud_;
+
+ private:
+  double largest_fixture_radius_ = 0;
+};
+
+// Looks at every point: the oracle for the others, and the best choice for a few hundred points.
+class BruteForceSearch final : public CloudSearch {
+ public:
+  using CloudSearch::CloudSearch;
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+};
+
+// Looks at the window of the image that the ball projects into, 4.2.2. Needs no preparation per frame.
+// pre: cloud.image is set and true.
+class ImageWindowSearch final : public CloudSearch {
+ public:
+  explicit ImageWindowSearch(PointCloud cloud);
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+
+ private:
+  RigidTransform X_CW_;
+  double nearest_depth_m_;  // of the whole image
+};
+
+// Looks at the cells of a uniform grid that the ball's bounding box meets. Points are stored cell after cell,
+// so cells that follow each other along z are one run.
+class UniformGridSearch final : public CloudSearch {
+ public:
+  // cell_m is coarsened until there are at most about four cells a point. Throws std::invalid_argument if <=
+  // 0.
+  UniformGridSearch(PointCloud cloud, double cell_m);
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+  int organised_columns() const override { return columns_; }
+
+ private:
+  int cell_along(int axis, double coordinate) const;
+  void choose_cells(double cell_m);
+  void sort_points_by_cell();
+
+  Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
+  double cells_per_m_ = 1;
+  int cells_[3] = {1, 1, 1};
+  int columns_;                                // of the points as they came: here they stand in another order
+  std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
+  std::vector<std::uint32_t> original_index_;  // of each stored position
+};
+
+// The image window for an organised cloud, brute force for a small one, the grid otherwise.
+std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m = 0.004);
+
+}  // namespace remote_touch

@@ -1,0 +1,56 @@
+// The points around a moving proxy, gathered once and kept while the proxy stays near.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
+
+namespace remote_touch {
+
+// A kept list belongs to a small cube of space, not to the way the proxy came: a position always meets the
+// same list, so results do not depend on history or on the search used. A few are kept, because a proxy on
+// noisy points goes to and fro between neighbouring cubes.
+class Neighbourhood {
+ public:
+  // reach: every point with r_n <= reach of the position asked about is in the list (and some beyond).
+  Neighbourhood(double reach, const Kernels& kernels);
+
+  // For clouds of so many points.
+  void reserve(std::size_t points, bool with_radius, bool with_stiffness);
+  // A new cloud. Allocates when it is the largest so far.
+  void set_points(std::shared_ptr<const NeighbourSearch> points);
+  // The points around p. Valid until the next call.
+  const GatheredPoints& around(const Vec3& p);
+  // All points with r_n <= radius of p, gathered anew, and some beyond. Valid until the next call.
+  const GatheredPoints& within(const Vec3& p, double radius);
+  // (4.9), (5.9): how far a ball of that radius moves from p along the unit vector u before it meets a point;
+  // limit when nothing is met before. Looks at the whole swept tube.
+  double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
+
+  bool has_regions() const { return points_->has_regions(); }
+
+  // M of kernels.h for sums over the present list.
+  double sum_grid() const { return kept_[present_].sum_grid; }
+
+ private:
+  struct Kept {
+    Vec3 centre = Vec3::Zero();
+    bool valid = false;
+    double sum_grid = 1.5;
+    GatheredPoints points = {};
+  };
+  void gather(Kept& kept);
+
+  double reach_;
+  double pitch_;  // edge of the cubes
+  double list_radius_;
+  const Kernels& kernels_;
+  std::shared_ptr<const NeighbourSearch> points_;
+  std::array<Kept, 4> kept_;
+  std::size_t present_ = 0;
+  GatheredPoints tube_;  // what was gathered for one call
+};
+
+}  // namespace remote_touch

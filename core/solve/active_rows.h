@@ -1,0 +1,96 @@
+// The rows that hold the solution of a quadratic program, and how they change: the inner part of the method
+// of Goldfarb and Idnani (1983). For quadratic_program.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/solve/packed.h"
+
+namespace remote_touch {
+
+// Rows are of unit length. What a product of a row with a y of coordinates up to 1 is rounded by:
+inline constexpr double kRounding = 1e-14;
+// A row is a combination of others when the square of its part outside of them is below:
+inline constexpr double kParallelSquared = 1e-16;
+
+// The rows that hold y, as the columns of q R: q is orthonormal, and R is kept as its inverse. What lies
+// beyond count is zero, so that products run over all N and have no branches.
+template <int N>
+struct ActiveRows {
+  int count = 0;
+  int number[N] = {};
+  double multiplier[N] = {};
+  Square<N> q, inverse;
+
+  // Moves y until it fulfils a row, with the rows that hold y tight and their multipliers at 0 or above: a
+  // row whose multiplier reaches 0 on the way leaves. Returns false where no way leads there.
+  bool take_in(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
+    double its_multiplier = 0;
+    for (;;) {
+      Packed<N> inside = q.transposed_times(unit_row), outside = unit_row;
+      outside.add(-1, q.times(inside));
+      if (outside.dot(outside) < 0.5) {  // much has cancelled; twice is enough (Daniel et al. 1976)
+        const Packed<N> more = q.transposed_times(outside);
+        inside.add(1, more), outside.add(-1, q.times(more));
+      }
+      const Packed<N> share = inverse.times(inside);  // of each row that holds y in unit_row
+      const double squared = outside.dot(outside);
+      const bool is_free = squared > kParallelSquared;
+      double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
+                            : std::numeric_limits<double>::infinity();
+      int leaves = -1;
+      for (int j = 0; j < count; ++j)
+        if (share[j] > kRounding && multiplier[j] < step * share[j])
+          step = multiplier[j] / share[j], leaves = j;
+      if (!(step < std::numeric_limits<double>::infinity())) return false;
+      if (is_free) y.add(step, outside);
+      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * share[j]);
+      its_multiplier += step;
+      if (leaves < 0) {
+        append(row, its_multiplier, outside, share, 1 / std::sqrt(squared));
+        return true;
+      }
+      remove(leaves);
+    }
+  }
+
+  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& share,
+              double scale) {
+    number[count] = row, multiplier[count] = its_multiplier;
+    q.column[count].add(scale, outside);
+    inverse.column[count].add(-scale, share);
+    inverse.column[count].set(count, scale);
+    ++count;
+  }
+
+  // A reflection turns the basis until its last direction is the one that this row alone needs.
+  void remove(int gone) {
+    --count;
+    Packed<N> v;
+    for (int j = 0; j < N; ++j) v.set(j, inverse.column[j][gone]);
+    const double length = std::sqrt(v.dot(v)), last = v[count];
+    v.set(count, last + std::copysign(length, last));
+    const double factor = 1 / (length * (length + std::abs(last)));
+    q.reflect(v, factor), inverse.reflect(v, factor);
+    q.column[count] = inverse.column[count] = {};
+    number[gone] = number[count], multiplier[gone] = multiplier[count];
+    for (int j = 0; j < N; ++j) {
+      inverse.column[j].set(gone, inverse.column[j][count]);
+      inverse.column[j].set(count, 0);
+    }
+  }
+
+  // Takes away the distances of y to the rows that hold it, in which the steps have left their rounding, and
+  // finds the multipliers that belong to y.
+  void settle(const Packed<N>& distance, const Packed<N>& target, Packed<N>& y) {
+    y.add(1, q.times(inverse.transposed_times(distance)));
+    Packed<N> moved = y;
+    moved.add(-1, target);
+    const Packed<N> exact = inverse.times(q.transposed_times(moved));
+    for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, exact[j]);
+  }
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,153 @@
+#include "core/tool/contact/contact_list.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+// The collision list reaches a little less far than the field.
+constexpr double kLongestReach_m = kFieldMargin_m - 2e-4;
+constexpr double kTouch_m = 1e-4;       // a disk closer to the tool than this is touched
+constexpr double kSearch_m = 3e-4;      // a disk closer than this has its nearest place searched
+constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
+
+}  // namespace
+
+ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
+                         const Kernels& kernels)
+    : p_(parameters),
+      kernels_(kernels),
+      finder_(std::move(tool), kernels),
+      disks_(parameters.disk_share, ContactThinning::kCell_m) {}
+
+void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
+  finder_.on_frame(std::move(cloud));
+  const TiledCloud& points = finder_.cloud();
+  widest_disk_m_ = p_.disk_share * points.widest_spacing_m();
+  reserve(points.room());
+  disks_.on_frame(points);
+}
+
+void ContactList::reserve(std::size_t room) {
+  finder_.reserve(room), disks_.reserve(room);
+  contacts_.reserve(room), collisions_.reserve(room);
+  near_.reserve(room), nearest_.reserve(room);
+  clusters_.reserve(room);
+}
+
+std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
+  thinning_.thin(contacts);
+  return contacts;
+}
+
+bool ContactList::is_worth_a_search(std::size_t disk) const {
+  return disks_.lower_m(disk) <= kSearch_m;
+}
+
+ToolContact ContactList::contact(std::size_t i, double side) const {
+  const SurfaceDisk disk = disks_.disk(i);
+  if (!is_worth_a_search(i)) return far_contact(disk, disks_.lower_m(i));
+  const VoxelTool& tool = finder_.tool();
+  const DiskPlace nearest = disks_.is_flat(i) ? DiskPlace{disk.p_T, disk.at} : nearest_place(tool, disk);
+  return near_contact(tool, disk, nearest, side);
+}
+
+// No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
+double ContactList::bound_m(std::size_t disk) const {
+  const bool exact = is_worth_a_search(disk) && disks_.is_flat(disk);
+  return exact ? disks_.distance_m(disk) : disks_.lower_m(disk);
+}
+
+void ContactList::gather_near() {
+  near_.clear();
+  for (std::size_t i = 0; i < disks_.size(); ++i)
+    if (disks_.lower_m(i) <= p_.look_ahead_m) near_.push_back({bound_m(i), static_cast<std::uint32_t>(i), 0});
+}
+
+// Of every cell of the tool the deepest contact, with as few searches as their bounds allow: there can be
+// thousands of disks, and only the deepest of a cell is made into a contact.
+void ContactList::gather_deepest(double side) {
+  thinning_.begin();
+  nearest_.clear();
+  for (NearDisk& near : near_) {
+    const std::size_t cell = thinning_.cell(disks_.cell(near.disk));
+    near.cell = static_cast<std::uint32_t>(cell);
+    if (cell == ContactThinning::kNoCell) continue;
+    if (cell == nearest_.size())
+      nearest_.push_back(near);
+    else if (near.bound_m < nearest_[cell].bound_m)
+      nearest_[cell] = near;
+  }
+  for (const NearDisk& near : nearest_) contacts_.push_back(contact(near.disk, side));
+  for (const NearDisk& near : near_) {
+    if (near.cell >= nearest_.size() || near.disk == nearest_[near.cell].disk) continue;
+    ToolContact& deepest = contacts_[near.cell];
+    if (!(-near.bound_m > deepest.depth_m)) continue;
+    const ToolContact other = contact(near.disk, side);
+    if (other.depth_m > deepest.depth_m) deepest = other;
+  }
+}
+
+NearContacts ContactList::near(const ToolPose& pose, double side) {
+  const double reach_m = std::min(p_.look_ahead_m + widest_disk_m_, kLongestReach_m);
+  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
+  contacts_.clear();
+  disks_.look(finder_, kernels_, pose, reach_m);
+  gather_near();
+  if (near_.size() > ContactThinning::kMost)
+    gather_deepest(side);
+  else
+    for (const NearDisk& near : near_) contacts_.push_back(contact(near.disk, side));
+  for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
+  found.contacts = thinned(contacts_);
+  return found;
+}
+
+VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  const TiledCloud& cloud = finder_.cloud();
+  VoxelContacts found;
+  contacts_.clear(), collisions_.clear();
+  for (const std::uint32_t point : finder_.in_tool(pose)) {
+    const Vec3 n_W = cloud.normal(point);
+    if (!n_W.allFinite()) continue;
+    const Vec3 p_T = R_TW * (cloud.point(point) - pose.p_W);
+    const bool inside = finder_.voxel(p_T) == Voxel::interior;
+    found.touched = true, found.collided |= inside;
+    (inside ? collisions_ : contacts_).push_back({p_T, R_TW * n_W, inside ? 1.0 : 0.0, 1});
+  }
+  found.contacts = thinned(found.collided ? collisions_ : contacts_);
+  return found;
+}
+
+Touched ContactList::touched(const ToolPose& pose) {
+  const bool disks = p_.contact_rule == TouchRule::look_ahead;
+  const double shown_m = std::max(p_.look_ahead_m, 2 * finder_.tool().grid.size_m);
+  const double reach_m = std::min(shown_m + (disks ? widest_disk_m_ : 0), kLongestReach_m);
+  Touched all;
+  all.nearest_m = std::numeric_limits<double>::infinity();
+  clusters_.clear();
+  disks_.look(finder_, kernels_, pose, reach_m);
+  for (std::size_t i = 0; i < disks_.size(); ++i) {
+    all.nearest_m = std::min(all.nearest_m, disks_.distance_m(i));
+    // No voxel of the tool is farther from its surface than that.
+    const bool may_be_in = disks_.distance_m(i) <= 2 * finder_.tool().grid.size_m;
+    const Voxel voxel = may_be_in ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
+    if (voxel == Voxel::free && !(disks && disks_.lower_m(i) <= kTouch_m &&
+                                  nearest_place(finder_.tool(), disks_.disk(i)).at.distance_m <= kTouch_m))
+      continue;
+    all.state =
+        std::max(all.state, voxel == Voxel::interior ? ContactState::entrenched : ContactState::contact);
+    ++all.points;
+    clusters_.push_back(cell_number(disks_.p_T(i), kClustersPer_m));
+  }
+  if (all.nearest_m > shown_m) all.nearest_m = std::numeric_limits<double>::infinity();
+  std::sort(clusters_.begin(), clusters_.end());
+  all.clusters = static_cast<int>(std::unique(clusters_.begin(), clusters_.end()) - clusters_.begin());
+  return all;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,51 @@
+// Fewer contacts where there are more than the motion needs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/tool/dynamics/motion_program.h"
+
+namespace remote_touch {
+
+// Sorts contacts by the cell of the tool frame and the octant of directions that they belong to. Allocates on
+// construction only.
+class ContactThinning {
+ public:
+  // Far more cells than a tool of a hand's size has within reach of a surface; what comes later has none.
+  static constexpr std::size_t kMostCells = 4096;  // a power of two
+  static constexpr std::size_t kNoCell = ~std::size_t{0};
+
+  ContactThinning() : slots_(kMostCells) {}
+
+  void begin();
+  // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
+  std::size_t cell(std::uint64_t cell_and_octant);
+
+  // Keeps the deepest contact of every cell, in place, as long as there are more than the motion can take.
+  // Cells of kCell_m at first: a step turns the tool by so little that two points of 4 mm ask for the same
+  // motion within a tenth of a millimetre, and what is left over the next detection finds. Then larger ones,
+  // for contacts have to stay spread over the tool.
+  static constexpr double kCell_m = 4e-3;
+  static constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
+  void thin(std::vector<ToolContact>& contacts, std::size_t most = kMost);
+
+ private:
+  void thin_in_cells(std::vector<ToolContact>& contacts, double cell_m);
+  struct Slot {
+    std::uint64_t key = 0;
+    std::uint32_t cell = 0;
+    std::uint32_t stamp = 0;  // of the begin() that it belongs to
+  };
+  Slot* slot_of(std::uint64_t key);
+
+  std::vector<Slot> slots_;
+  std::uint32_t stamp_ = 0, cells_ = 0;
+};
+
+// Which cube of a grid over the tool frame a place lies in, as one number.
+std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
+// The same, and which coordinates of a way are negative.
+std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& way_T, double cells_per_m);
+
+}  // namespace remote_touch

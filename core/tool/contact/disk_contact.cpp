@@ -1,0 +1,126 @@
+#include "core/tool/contact/disk_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kLines = 2;               // one for an edge of the tool, two for a corner
+constexpr int kCuts = 4;                // of a line
+constexpr double kGrazing = 0.2;        // a disk at a smaller angle to the gradient is met at its edge
+constexpr double kStep_m = 2e-4;        // lower edges are climbed, not run into
+constexpr double kBlindGradient = 0.5;  // shorter, and the field is at a ridge: it has no direction
+
+Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
+  return at.gradient_T - at.gradient_T.dot(disk.n_T) * disk.n_T;
+}
+
+// Down the field in the plane of the disk, to the lowest place of a line that begins at `place`. Along a line
+// the field of a convex tool is convex, and over an edge nearly a pair of lines: where the tangents at the
+// ends meet is a better end (Kelley's cutting planes). Returns whether it went anywhere.
+bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
+  const Vec3 along = slope_in_plane(disk, place.at);
+  const double steep = along.norm();
+  if (steep < kFlatSlope) return false;
+  const Vec3 start_T = place.p_T, way_T = -along / steep, offset = start_T - disk.p_T;
+  // to the rim: |offset + t way| = radius
+  const double ahead = offset.dot(way_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
+  struct End {
+    double t;
+    FieldSample at;
+    double slope;
+  };
+  const auto end = [&](double t) {
+    const FieldSample at = sample_field(tool, start_T + t * way_T);
+    return End{t, at, at.gradient_T.dot(way_T)};
+  };
+  End low{0, place.at, -steep}, high = end(std::sqrt(std::max(0.0, ahead * ahead + inside)) - ahead);
+  place.at_rim = high.slope < -kFlatSlope && high.at.distance_m < low.at.distance_m;
+  for (int cut = 0; cut < kCuts && !place.at_rim && high.slope - low.slope > kFlatSlope; ++cut) {
+    const double meet = (low.at.distance_m - high.at.distance_m + high.slope * high.t - low.slope * low.t) /
+                        (high.slope - low.slope);
+    if (!(meet > low.t && meet < high.t)) break;
+    const End between = end(meet);
+    (between.slope < 0 ? low : high) = between;
+  }
+  const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
+  place.p_T = start_T + best.t * way_T;
+  place.at = best.at;
+  // On an edge the gradients of both sides make up one without a slope along the line: it alone tells the
+  // side of a disk that is met at a grazing angle.
+  if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
+    const double share = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
+    place.at.gradient_T = share * low.at.gradient_T + (1 - share) * high.at.gradient_T;
+  }
+  return best.t > 0;
+}
+
+// A flat tool on a flat surface: disks beside it lie in the plane of its face, and would be walls to its
+// sides. Where the field rises as the place leaves the plane, no more of the tool is there than a step of
+// kStep_m: +1 or -1, the side that the tool is on; 0 where it reaches on.
+double side_of_flush(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place) {
+  const auto leaves = [&](double side) {
+    const Vec3 beyond = place.p_T - side * kStep_m * disk.n_T;
+    return sample_field(tool, beyond).distance_m - place.at.distance_m > 0.5 * kStep_m;
+  };
+  const bool front = leaves(1), back = leaves(-1);
+  return front == back ? 0 : front ? 1 : -1;
+}
+
+// Which side of the disk the field is on, +1 where the sensor is; 0 where the disk meets it edge-on.
+double facing_side(const SurfaceDisk& disk, const FieldSample& at, double steep) {
+  const double facing = -at.gradient_T.dot(disk.n_T);
+  if (std::abs(facing) <= kGrazing * steep) return 0;
+  return facing < 0 ? -1 : 1;
+}
+
+// Which side of the disk the tool is on, likewise.
+double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& place, double known_side) {
+  if (place.at.distance_m < 0 && known_side != 0) return known_side;
+  const double steep = place.at.gradient_T.norm();
+  // Deep inside, at a ridge of the field, nothing tells; at a corner of the tool it is short too.
+  if (place.at.distance_m < -tool.grid.size_m && steep < kBlindGradient) return 1;
+  return facing_side(disk, place.at, steep);
+}
+
+// Out of the tool, and up where the field is flat.
+Vec3 way_out(const FieldSample& at, double steep) {
+  return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
+}
+
+}  // namespace
+
+double lower_bound_m(const SurfaceDisk& disk) {
+  if (!disk.has_normal()) return disk.at.distance_m;
+  return disk.at.distance_m - disk.radius_m * slope_in_plane(disk, disk.at).norm();
+}
+
+DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk) {
+  DiskPlace place{disk.p_T, disk.at};
+  if (!disk.has_normal() || !(disk.radius_m > 0)) return place;
+  for (int line = 0; line < kLines && slide(tool, disk, place) && !place.at_rim; ++line) continue;
+  return place;
+}
+
+ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
+                         double known_side) {
+  double side = disk.has_normal() ? side_of(tool, disk, nearest, known_side) : 0;
+  const bool known = nearest.at.distance_m < 0 && known_side != 0;
+  bool as_plane = side != 0 && (!nearest.at_rim || known);
+  if (!as_plane && disk.has_normal()) {
+    const double flush = side_of_flush(tool, disk, nearest);
+    if (flush != 0) side = flush, as_plane = true;
+  }
+  const Vec3 out = as_plane ? Vec3(side * disk.n_T) : way_out(nearest.at, nearest.at.gradient_T.norm());
+  return {nearest.p_T, out, -nearest.at.distance_m, side};
+}
+
+ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
+  const double steep = disk.at.gradient_T.norm();
+  const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
+  return {disk.p_T, way_out(disk.at, steep), -lower_bound_m, side};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,52 @@
+// The points near a tool as disks in its field: what near() and touched() of a contact list both need.
+#pragma once
+
+#include <memory>
+
+#include "core/search/gathered_points.h"
+#include "core/tool/contact/disk_contact.h"
+#include "core/tool/contact/touch_finder.h"
+
+namespace remote_touch {
+
+// Asked for the same pose again it has the answer already.
+class NearDisks {
+ public:
+  NearDisks(double disk_share, double cell_m) : share_(disk_share), cells_per_m_(1 / cell_m) {}
+
+  void on_frame(const TiledCloud& cloud);  // allocates where room was not reserved
+  void reserve(std::size_t room);          // for clouds of that room
+  // All disks whose middle is within reach_m, and some farther ones; in the order of the cloud's tiles.
+  void look(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
+
+  std::size_t size() const { return count_; }
+  double lower_m(std::size_t i) const { return lower_[i]; }  // lower_bound_m()
+  // The disk has a normal and lies so flat in the field that no place of it is nearer than its middle.
+  bool is_flat(std::size_t i) const { return slope_[i] < kFlatSlope; }
+  double distance_m(std::size_t i) const { return distance_[i]; }
+  Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
+  // cell_and_octant() of its middle and the way out of the tool from there.
+  std::uint64_t cell(std::size_t i) const { return cell_[i]; }
+  SurfaceDisk disk(std::size_t i) const {
+    return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};
+  }
+
+ private:
+  struct Columns {
+    Room<double> x, y, z;
+
+    Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  };
+  void finish_outside(const VoxelTool& tool);
+
+  const double share_, cells_per_m_;
+  Columns p_T_, n_T_, gradient_T_;
+  Room<double> radius_, distance_, slope_, lower_;
+  Room<std::uint64_t> cell_;
+  std::size_t count_ = 0;
+  bool is_known_ = false;  // for:
+  ToolPose pose_;
+  double reach_m_ = 0;
+};
+
+}  // namespace remote_touch

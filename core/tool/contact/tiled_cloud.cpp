@@ -1,0 +1,161 @@
+#include "core/tool/contact/tiled_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/kernels/kernels.h"
+#include "core/search/morton_order.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
+constexpr std::uint32_t kTileSide_px = 8;
+const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
+
+// The smallest sphere around the middle of the box of count items.
+template <class Item>  // (i) -> BoundingSphere
+BoundingSphere around(std::uint32_t count, const Item& item) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BoundingSphere s = item(i);
+    low = low.cwiseMin(s.centre_W - Vec3::Constant(s.radius_m));
+    high = high.cwiseMax(s.centre_W + Vec3::Constant(s.radius_m));
+  }
+  BoundingSphere all{0.5 * (low + high), 0};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BoundingSphere s = item(i);
+    all.radius_m = std::max(all.radius_m, (s.centre_W - all.centre_W).norm() + s.radius_m);
+  }
+  all.radius_m *= 1 + 1e-12;  // rounding of the distances
+  return all;
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+void TiledCloud::add_point(const PointCloud& cloud, std::uint32_t i) {
+  x_.push_back(cloud.x[i]), y_.push_back(cloud.y[i]), z_.push_back(cloud.z[i]);
+  const Vec3 n =
+      cloud.has_normals() ? cloud.normal(i) : Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  if (!n.allFinite()) ++without_normal_;
+  nx_.push_back(n.x()), ny_.push_back(n.y()), nz_.push_back(n.z());
+}
+
+void TiledCloud::add_tile(const PointCloud& cloud, std::span<const std::uint32_t> points) {
+  if (points.empty()) return;
+  const auto first = static_cast<std::uint32_t>(x_.size());
+  for (const std::uint32_t i : points) add_point(cloud, i);
+  while (x_.size() % kTilePoints != 0)
+    for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->push_back(kFarAway);
+  const auto sphere = around(static_cast<std::uint32_t>(points.size()), [&](std::uint32_t i) {
+    return BoundingSphere{point(first + i), 0};
+  });
+  tiles_.push_back({sphere, first, static_cast<std::uint32_t>(x_.size()) - first});
+}
+
+void TiledCloud::Spheres::add(const BoundingSphere& sphere) {
+  x.push_back(sphere.centre_W.x()), y.push_back(sphere.centre_W.y()), z.push_back(sphere.centre_W.z());
+  radius_m.push_back(sphere.radius_m);
+}
+
+void TiledCloud::gather_groups() {
+  for (std::uint32_t first = 0; first < x_.size(); first += kLanes) {
+    std::uint32_t count = 0;
+    while (count < kLanes && x_[first + count] != kFarAway) ++count;  // padding stands last
+    group_spheres_.add(count == 0 ? kNoSphere : around(count, [&](std::uint32_t i) {
+      return BoundingSphere{point(first + i), 0};
+    }));
+  }
+}
+
+void TiledCloud::gather_tile_spheres() {
+  for (const Tile& tile : tiles_) tile_spheres_.add(tile.sphere);
+  while (tile_spheres_.x.size() % kLanes != 0) tile_spheres_.add(kNoSphere);
+}
+
+void TiledCloud::gather_blocks() {
+  for (std::uint32_t first = 0; first < tiles_.size(); first += kBlockTiles) {
+    const std::uint32_t count = std::min(kBlockTiles, static_cast<std::uint32_t>(tiles_.size()) - first);
+    blocks_.push_back(
+        {around(count, [&](std::uint32_t i) { return tiles_[first + i].sphere; }), first, count});
+  }
+}
+
+void TiledCloud::assign(const PointCloud& cloud) {
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->clear();
+  tile_spheres_.clear(), group_spheres_.clear();
+  tiles_.clear(), blocks_.clear();
+  without_normal_ = 0;
+  if (cloud.image) {
+    // Blocks of 64 x 64 pixels one after the other, so that the tiles of a block lie together.
+    const auto width = static_cast<std::uint32_t>(cloud.image->camera.width),
+               height = static_cast<std::uint32_t>(cloud.image->camera.height);
+    constexpr std::uint32_t kBlockSide_px = 8 * kTileSide_px;
+    std::vector<std::uint32_t> points;
+    for (std::uint32_t v0 = 0; v0 < height; v0 += kBlockSide_px)
+      for (std::uint32_t u0 = 0; u0 < width; u0 += kBlockSide_px)
+        for (std::uint32_t v = v0; v < std::min(v0 + kBlockSide_px, height); v += kTileSide_px)
+          for (std::uint32_t u = u0; u < std::min(u0 + kBlockSide_px, width); u += kTileSide_px) {
+            points.clear();
+            for (std::uint32_t row = v; row < std::min(v + kTileSide_px, height); ++row)
+              for (std::uint32_t column = u; column < std::min(u + kTileSide_px, width); ++column)
+                if (cloud.is_measured(row * width + column)) points.push_back(row * width + column);
+            add_tile(cloud, points);
+          }
+  } else {
+    const std::vector<std::uint32_t> order = morton_order(cloud);
+    for (std::size_t i = 0; i < order.size(); i += kTilePoints)
+      add_tile(cloud, std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i)));
+  }
+  gather_groups();
+  gather_tile_spheres();
+  gather_blocks();
+  measure_spacing(cloud);
+  widest_spacing_m_ = 0;
+  for (const double spacing_m : spacing_m_) widest_spacing_m_ = std::max(widest_spacing_m_, spacing_m);
+}
+
+void TiledCloud::measure_spacing(const PointCloud& cloud) {
+  spacing_m_.assign(x_.size(), 0);
+  if (cloud.image) {
+    // Pixels that see a surface at a slant are farther apart; beyond 70 degrees a depth camera sees little.
+    const Vec3 camera_W = cloud.image->X_WC.translation(), axis_W = cloud.image->X_WC.linear().col(2);
+    for (std::uint32_t i = 0; i < x_.size(); ++i) {
+      if (x_[i] == kFarAway) continue;
+      const Vec3 ray = point(i) - camera_W;
+      const double slant = std::max(1.0 / 3, std::abs(ray.normalized().dot(normal(i))));  // NaN: 1/3
+      spacing_m_[i] = ray.dot(axis_W) / cloud.image->camera.fx / slant;
+    }
+    return;
+  }
+  std::vector<double> nearest, of_tiles;
+  for (const Tile& tile : tiles_) {
+    nearest.clear();
+    for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::uint32_t j = tile.first; j < tile.first + tile.padded_count; ++j) {
+        const double squared = (point(i) - point(j)).squaredNorm();
+        if (squared > kSamePlace_m * kSamePlace_m && squared < least) least = squared;
+      }
+      if (x_[i] != kFarAway && least < 1) nearest.push_back(std::sqrt(least));
+    }
+    of_tiles.push_back(median(nearest));
+  }
+  std::vector<double> sorted = of_tiles;
+  const double usual = median(sorted);
+  for (std::size_t t = 0; t < tiles_.size(); ++t)  // a tile of few points need not hold neighbours
+    std::fill_n(spacing_m_.begin() + tiles_[t].first, tiles_[t].padded_count,
+                of_tiles[t] > 0 ? std::min(of_tiles[t], 2 * usual) : usual);
+}
+
+}  // namespace remote_touch

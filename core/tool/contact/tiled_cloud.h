@@ -1,0 +1,88 @@
+// The points of a frame as the tool's collision detection reads them: in tiles of neighbours with bounding
+// spheres, and blocks of tiles with theirs, so that what is far from the tool is passed over in one test.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "core/kernels/kernels.h"
+
+namespace remote_touch {
+
+// Eight points are a group, eight groups a tile, eight tiles a row, eight rows a block: whatever is left to
+// look at, its parts have consecutive numbers from eight times its own on.
+inline constexpr std::uint32_t kTilePoints = kLanes * kLanes, kBlockTiles = kLanes * kLanes;
+
+struct BoundingSphere {
+  Vec3 centre_W;
+  double radius_m;
+};
+
+// Points first .. first + padded_count - 1, padded with far-away points to kTilePoints.
+struct Tile {
+  BoundingSphere sphere;
+  std::uint32_t first, padded_count;
+};
+
+// Tiles first .. first + count - 1.
+struct TileBlock {
+  BoundingSphere sphere;
+  std::uint32_t first, count;
+};
+
+class TiledCloud {
+ public:
+  // The tiles of an organised cloud are 8 x 8 pixels, others up to 64 points that follow each other along a
+  // space-filling curve. Points that are not finite are left out. Allocates.
+  void assign(const PointCloud& cloud);
+
+  std::span<const TileBlock> blocks() const { return blocks_; }
+  std::span<const Tile> tiles(const TileBlock& block) const {
+    return {tiles_.data() + block.first, block.count};
+  }
+  const double* x() const { return x_.data(); }
+  const double* y() const { return y_.data(); }
+  const double* z() const { return z_.data(); }
+  std::size_t room() const { return x_.size(); }  // padding included
+  PointColumns columns() const {
+    return {x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data(), spacing_m_.data()};
+  }
+  // Of every tile, padded to whole rows, and of every group; a far-away one for those without a point.
+  SphereColumns tile_spheres() const { return tile_spheres_.columns(); }
+  SphereColumns group_spheres() const { return group_spheres_.columns(); }
+
+  Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
+  Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
+  // Distance to the points around it: a pixel of the image at the point's depth; in other clouds the side of
+  // the square that a point of its tile has for itself.
+  double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
+  double widest_spacing_m() const { return widest_spacing_m_; }
+  int without_normal() const { return without_normal_; }
+
+ private:
+  void add_tile(const PointCloud& cloud, std::span<const std::uint32_t> points);
+  void add_point(const PointCloud& cloud, std::uint32_t i);
+  void gather_groups();
+  void gather_tile_spheres();
+  void gather_blocks();
+  void measure_spacing(const PointCloud& cloud);
+
+  std::vector<TileBlock> blocks_;
+  std::vector<Tile> tiles_;
+  std::vector<double> x_, y_, z_, nx_, ny_, nz_;
+  std::vector<double> spacing_m_;
+  struct Spheres {
+    std::vector<double> x, y, z, radius_m;
+
+    void clear() { x.clear(), y.clear(), z.clear(), radius_m.clear(); }
+    void add(const BoundingSphere& sphere);
+    SphereColumns columns() const { return {x.data(), y.data(), z.data(), radius_m.data()}; }
+  };
+  Spheres tile_spheres_, group_spheres_;
+  double widest_spacing_m_ = 0;
+  int without_normal_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,118 @@
+#include "core/tool/contact/touch_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+// The smallest field value of a cell in quarter millimetres below 16 mm, so that a nearer cell counts more
+// and a byte holds it.
+constexpr double kNearnessUnit_m = 2.5e-4, kNearnessZero_m = 0.016;
+
+int nearness(double distance_m) {
+  return static_cast<int>(
+      std::clamp(std::floor((kNearnessZero_m - distance_m) / kNearnessUnit_m), -128.0, 127.0));
+}
+
+// Smallest of the eight nodes of every cell: the trilinear field goes no lower.
+std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
+  const int nx = tool.grid.cells[0], ny = tool.grid.cells[1], nz = tool.grid.cells[2];
+  const std::size_t row = static_cast<std::size_t>(nx) + 1, layer = row * (static_cast<std::size_t>(ny) + 1);
+  std::vector<std::int8_t> table(tool.grid.cell_count() + 3, 0);
+  std::vector<float> column(row);
+#pragma omp parallel for firstprivate(column)
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j) {
+      const float* node =
+          tool.distance_m.data() + static_cast<std::size_t>(k) * layer + static_cast<std::size_t>(j) * row;
+      for (std::size_t i = 0; i < row; ++i)
+        column[i] =
+            std::min(std::min(node[i], node[i + row]), std::min(node[i + layer], node[i + layer + row]));
+      std::int8_t* cell = table.data() + (static_cast<std::size_t>(k) * static_cast<std::size_t>(ny) +
+                                          static_cast<std::size_t>(j)) *
+                                             static_cast<std::size_t>(nx);
+      for (std::size_t i = 0; i + 1 < row; ++i)
+        cell[i] = static_cast<std::int8_t>(nearness(static_cast<double>(std::min(column[i], column[i + 1]))));
+    }
+  return table;
+}
+
+}  // namespace
+
+TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels)
+    : tool_(std::move(tool)), kernels_(kernels), nearness_(nearness_of_cells(*tool_)) {
+  voxels_.reserve(tool_->voxels.size() + 3);
+  for (const Voxel v : tool_->voxels) voxels_.push_back(static_cast<std::int8_t>(v));
+  voxels_.resize(tool_->voxels.size() + 3, 0);
+}
+
+void TouchFinder::on_frame(std::shared_ptr<const TiledCloud> cloud) {
+  cloud_ = std::move(cloud);
+  reserve(cloud_->room());
+}
+
+void TouchFinder::reserve(std::size_t room) {
+  for (auto* list : {&found_, &groups_, &tiles_, &rows_}) list->grow(room + kTilePoints * kBlockTiles);
+}
+
+std::span<const std::uint32_t> TouchFinder::in_tool(const ToolPose& pose) const {
+  return find(pose, tool_->grid.size_m, voxels_.data(), static_cast<int>(Voxel::shell));
+}
+
+std::span<const std::uint32_t> TouchFinder::within(const ToolPose& pose, double distance_m) const {
+  return find(pose, distance_m, nearness_.data(), nearness(distance_m));
+}
+
+std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double distance_m,
+                                                 const std::int8_t* table, int least) const {
+  const VoxelGrid& grid = tool_->grid;
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  CellTransform to_cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 row = R_TW.row(axis).transpose() / grid.size_m;
+    for (int k = 0; k < 3; ++k) to_cells.row[axis][k] = row[k];
+    to_cells.row[axis][3] = -row.dot(pose.p_W) - grid.origin_T[axis] / grid.size_m;
+  }
+  const auto beyond = [&](const BoundingSphere& sphere) {
+    const double reach = tool_->reach_m + distance_m + sphere.radius_m;
+    return (sphere.centre_W - pose.p_W).squaredNorm() > reach * reach;
+  };
+  std::size_t rows = 0;
+  for (const TileBlock& block : cloud_->blocks()) {
+    if (beyond(block.sphere)) continue;
+    for (std::uint32_t tile = 0; tile < block.count; tile += kLanes)
+      rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
+  }
+  if (rows == 0) return {};
+  // From rows to tiles, groups and points. Two voxels: what the field far from the surface may be wrong by,
+  // and more.
+  const std::array<int, 3>& n = grid.cells;
+  const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
+  const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
+                          distance_m / grid.size_m + 2, 1 / grid.size_m};
+  const std::size_t tiles = kernels_.spheres_near(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
+                                                  nearness, code, tiles_.data());
+  const std::size_t groups = kernels_.spheres_near(cloud_->group_spheres(), tiles_.data(), tiles, to_cells,
+                                                   nearness, code, groups_.data());
+  const std::size_t count = kernels_.points_in_cells(cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(),
+                                                     groups, to_cells, cells, least, found_.data());
+  return {found_.data(), count};
+}
+
+Voxel TouchFinder::voxel(const Vec3& p_T) const {
+  const VoxelGrid& grid = tool_->grid;
+  const Vec3 u = (p_T - grid.origin_T) / grid.size_m;
+  std::size_t cell[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(u[axis] >= 0 && u[axis] < grid.cells[static_cast<std::size_t>(axis)])) return Voxel::free;
+    cell[axis] = static_cast<std::size_t>(u[axis]);
+  }
+  const auto columns = static_cast<std::size_t>(grid.cells[0]),
+             rows = static_cast<std::size_t>(grid.cells[1]);
+  return tool_->voxels[(cell[2] * rows + cell[1]) * columns + cell[0]];
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,45 @@
+// The collision list, 6.2.2: which points of the newest frame are in the tool, or near it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+#include "core/search/gathered_points.h"
+#include "core/tool/contact/tiled_cloud.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/voxels/voxel_tool.h"
+
+namespace remote_touch {
+
+// Both lists hold points in the order of the cloud's tiles and stay valid until the next call.
+class TouchFinder {
+ public:
+  TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
+
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
+  void reserve(std::size_t room);                          // for clouds of that room
+  const TiledCloud& cloud() const { return *cloud_; }
+  const VoxelTool& tool() const { return *tool_; }
+
+  // The points in shell or interior voxels.
+  std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
+  // All points whose field value is distance_m or less, and some that lie up to two voxels farther away.
+  // pre: distance_m < kFieldMargin_m.
+  std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const;
+
+  Voxel voxel(const Vec3& p_T) const;
+
+ private:
+  std::span<const std::uint32_t> find(const ToolPose& pose, double distance_m, const std::int8_t* table,
+                                      int least) const;
+
+  std::shared_ptr<const VoxelTool> tool_;
+  const Kernels& kernels_;
+  std::vector<std::int8_t> voxels_, nearness_;  // of every cell, with room to read three bytes more
+  std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
+  mutable Room<std::uint32_t> rows_, tiles_, groups_, found_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,76 @@
+#include "core/tool/dynamics/motion_program.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace remote_touch {
+
+namespace {
+
+// The slack s of all rows is kSlackScale z, and costs z^2 / 2 + kSlackCost z: per metre far more than any
+// contact can be worth, a wish being metres long at most, so it stays zero where the rows agree.
+constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
+
+}  // namespace
+
+MotionProgram::MotionProgram(const VoxelTool& tool) : rigid_(kMostContacts), elastic_(kMostContacts + 1) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tool.inertia_m2);
+  root_ = axes.operatorSqrt();
+  inverse_root_ = axes.operatorInverseSqrt();
+}
+
+Vector6 MotionProgram::row_of(const ToolContact& contact) const {
+  Row row;
+  row << contact.n_T, inverse_root_ * contact.r_T.cross(contact.n_T);
+  return row;
+}
+
+ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const int* active,
+                                      const double* multiplier, std::span<const ToolContact> contacts) const {
+  ConstrainedMotion motion;
+  motion.a_g << y.head<3>(), inverse_root_ * y.tail<3>();
+  for (int i = 0; i < active_count; ++i) {
+    if (!(multiplier[i] > 0)) continue;
+    const ToolContact& contact = contacts[static_cast<std::size_t>(number_[active[i]])];
+    ++motion.active_count;
+    motion.push_T += multiplier[i] * contact.n_T;
+    motion.side += multiplier[i] * contact.side;
+  }
+  return motion;
+}
+
+ConstrainedMotion MotionProgram::solve(const Vector6& wanted_T, std::span<const ToolContact> contacts) {
+  Vector6 target;
+  target << wanted_T.head<3>(), root_ * wanted_T.tail<3>();
+  rigid_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const int row = rigid_.size();
+    if (rigid_.add(row_of(contacts[i]), contacts[i].depth_m)) number_[row] = static_cast<int>(i);
+  }
+  const ProgramResult<6> result = rigid_.nearest(target);
+  if (result.status == ProgramStatus::optimal)
+    return read(result.y, result.active_count, result.active, result.multiplier, contacts);
+
+  using Vector7 = Eigen::Matrix<double, 7, 1>;
+  elastic_.clear();
+  Vector7 row7, target7;
+  for (int row = 0; row < rigid_.size(); ++row) {
+    const ToolContact& contact = contacts[static_cast<std::size_t>(number_[row])];
+    row7 << row_of(contact), kSlackScale;
+    elastic_.add(row7, contact.depth_m);
+  }
+  row7 << Vector6::Zero(), 1;
+  elastic_.add(row7, 0);  // the slack is never negative
+  target7 << target, -kSlackCost;
+  ProgramResult<7> loosened = elastic_.nearest(target7);
+  int kept = 0;  // without the row of the slack
+  for (int i = 0; i < loosened.active_count; ++i) {
+    if (loosened.active[i] == rigid_.size()) continue;
+    loosened.active[kept] = loosened.active[i], loosened.multiplier[kept++] = loosened.multiplier[i];
+  }
+  ConstrainedMotion motion = read(loosened.y.head<6>(), kept, loosened.active, loosened.multiplier, contacts);
+  motion.elastic = true;
+  if (loosened.status != ProgramStatus::optimal || !motion.a_g.allFinite()) motion.a_g.setZero();
+  return motion;
+}
+
+}  // namespace remote_touch

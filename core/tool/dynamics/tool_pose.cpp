@@ -1,0 +1,42 @@
+#include "core/tool/dynamics/tool_pose.h"
+
+namespace remote_touch {
+
+namespace {
+constexpr double kFarthestHip_m = 1e6;  // as for the proxy: a device farther away is no hand's
+}
+
+std::optional<ToolPose> held_by(const DeviceState& device) {
+  const bool usable = device.position_W.allFinite() &&
+                      device.position_W.cwiseAbs().maxCoeff() <= kFarthestHip_m &&
+                      device.orientation_W.coeffs().allFinite() && device.orientation_W.norm() > 0.5;
+  if (!usable) return {};
+  return ToolPose{device.position_W, device.orientation_W.normalized()};
+}
+
+ToolPose moved(const ToolPose& pose, const Vector6& a_g) {
+  return {pose.p_W + a_g.head<3>(), (rotation(a_g.tail<3>()) * pose.q_WT).normalized()};
+}
+
+Vector6 displacement(const ToolPose& from, const ToolPose& to) {
+  Vector6 a_gu;
+  a_gu << to.p_W - from.p_W, rotation_vector(to.q_WT * from.q_WT.conjugate());
+  return a_gu;
+}
+
+Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g) {
+  Vector6 other;
+  other << q * a_g.head<3>(), q * a_g.tail<3>();
+  return other;
+}
+
+double way_m(const Vector6& a_g, double reach_m) {
+  return a_g.head<3>().norm() + a_g.tail<3>().norm() * reach_m;
+}
+
+Vector6 capped(const Vector6& a_g, double reach_m, double longest_m) {
+  const double way = way_m(a_g, reach_m);
+  return way > longest_m ? Vector6(a_g * (longest_m / way)) : a_g;
+}
+
+}  // namespace remote_touch

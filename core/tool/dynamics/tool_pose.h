@@ -1,0 +1,42 @@
+// Poses of a rigid tool and the small motions between them, (6.1), (6.2). A generalised displacement is three
+// metres and three radians per unit step, what the dissertation calls an acceleration. Turns are world-frame
+// rotation vectors: the exponential map from the left.
+#pragma once
+
+#include <optional>
+
+#include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
+#include "core/rendering/frame.h"
+
+namespace remote_touch {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+// The tool's centre of mass and orientation: tool coordinates T to the world W.
+struct ToolPose {
+  Vec3 p_W = Vec3::Zero();
+  Eigen::Quaterniond q_WT = Eigen::Quaterniond::Identity();  // a unit quaternion
+
+  bool operator==(const ToolPose& other) const {
+    return p_W == other.p_W && q_WT.coeffs() == other.q_WT.coeffs();
+  }
+};
+
+// Of a tool that the device holds by its centre of mass; none for a device that is not finite, more than
+// 1000 km away or without an orientation.
+std::optional<ToolPose> held_by(const DeviceState& device);
+
+ToolPose moved(const ToolPose& pose, const Vector6& a_g);
+// (6.2): the displacement that takes one pose to the other in a unit step, in world axes.
+Vector6 displacement(const ToolPose& from, const ToolPose& to);
+
+// The same displacement in other axes, which q takes its own to.
+Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g);
+
+// A bound of the way that any point of the tool makes, |a| + |alpha| reach.
+double way_m(const Vector6& a_g, double reach_m);
+// The same direction, no longer than longest_m by that measure.
+Vector6 capped(const Vector6& a_g, double reach_m, double longest_m);
+
+}  // namespace remote_touch

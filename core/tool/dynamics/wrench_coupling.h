@@ -1,0 +1,39 @@
+// Force and torque between tool and device, 6.2.6.
+#pragma once
+
+#include "core/tool/dynamics/tool_parameters.h"
+#include "core/tool/dynamics/tool_pose.h"
+
+namespace remote_touch {
+
+// On the hand, about the device, world frame.
+struct Wrench {
+  Vec3 force_N = Vec3::Zero();
+  Vec3 torque_Nm = Vec3::Zero();
+};
+
+// A spring between two poses.
+struct WrenchSpring {
+  double stiffness_N_per_m = 0;
+  double gyration_radius_m = 0;  // the rotational stiffness is stiffness times its square
+  double largest_force_N = 0, largest_torque_Nm = 0;
+  TorqueRule torque_rule = TorqueRule::inverse_jacobian;
+};
+
+// That of (6.9) between tool and device, with a stiffness of its own.
+inline WrenchSpring coupling_of(const ToolParameters& p, double stiffness_N_per_m) {
+  return {stiffness_N_per_m, p.gyration_radius_m, p.largest_force_N, p.largest_torque_Nm, p.torque_rule};
+}
+
+// The transpose of the inverse left Jacobian of a turn phi, which takes the derivative of an energy by phi to
+// a torque: with R(phi') = exp(delta) R(phi), phi' - phi = J^-1 delta. pre: shorter than 2 pi.
+Eigen::Matrix3d inverse_left_jacobian(const Vec3& phi);
+
+// (6.9), f = K M a_gu: a spring from the device to the tool, so that the hand is pulled towards the tool. By
+// default it has the energy k |p|^2 / 2 + k r^2 |phi|^2 / 2, r the gyration radius and phi = log(R_device
+// R_tool^T); as printed the torque is k I_W phi, I_W the inertia of the turned tool for 1 kg, which has no
+// energy. Both are cut to their largest length.
+Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inertia_m2, const ToolPose& tool,
+                       const ToolPose& device);
+
+}  // namespace remote_touch

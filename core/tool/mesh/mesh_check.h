@@ -1,0 +1,52 @@
+// Whether a mesh encloses a solid: what has to hold before inside and outside mean anything.
+#pragma once
+
+#include <string>
+
+#include "core/tool/mesh/triangle_mesh.h"
+
+namespace remote_touch {
+
+struct MeshCheck {
+  int vertices = 0;
+  int triangles = 0;
+  int parts = 0;                 // sets of triangles that hang together by their edges
+  int boundary_edges = 0;        // of one triangle
+  int non_manifold_edges = 0;    // of three or more
+  int inconsistent_edges = 0;    // of two triangles that run along them in the same direction
+  int degenerate_triangles = 0;  // a corner twice, or no area
+  int bad_vertices = 0;          // not finite
+  int bad_indices = 0;           // triangles with a corner that is no vertex
+  double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
+
+  bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }
+  // Every edge belongs to two triangles, in opposite directions. Equal vertices must be one.
+  bool closed() const {
+    return readable() && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
+  }
+  bool inverted() const { return closed() && volume_m3 < 0; }
+};
+
+MeshCheck check_mesh(const TriangleMesh& mesh);
+
+// "not closed: 81 boundary edges, 6 non-manifold edges (5 parts, 1795 triangles)", "closed (1 part, ...)".
+std::string text(const MeshCheck& check);
+
+// An edge of the triangles that share it: sorted by low, high, then triangle.
+struct MeshEdge {
+  int low, high;  // vertices
+  int triangle;
+  bool forward;  // the triangle runs from low to high
+};
+std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh);
+
+// For each triangle the number of its part, counted from 0 by the first triangle.
+std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, int& count);
+
+// Of the tetrahedra from a point to all triangles (or those of one part).
+double signed_volume(const TriangleMesh& mesh);
+
+// No area to speak of beside the length of its edges.
+bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
+
+}  // namespace remote_touch

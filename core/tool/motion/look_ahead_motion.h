@@ -1,0 +1,30 @@
+// The look-ahead rule: every point near the tool is a constraint with its signed distance, so the tool slows
+// down before it touches, slides along what it touches, and is pushed out of what it is in, by one and the
+// same program. Not in the dissertation.
+#pragma once
+
+#include "core/tool/contact/near_contacts.h"
+#include "core/tool/motion/tool_motion.h"
+
+namespace remote_touch {
+
+class LookAheadMotion {
+ public:
+  // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
+  LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
+      : p_(parameters), reach_m_(reach_m), program_(tool) {}
+  // As ToolMotion::move().
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated);
+
+ private:
+  Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
+                       ToolMotionReport& report);
+
+  const ToolParameters p_;
+  const double reach_m_;
+  MotionProgram program_;
+  double side_ = 1;        // of the surface that held the tool last: +1 is the sensor's
+  bool settling_ = false;  // a frame came, and the tool is still in its points
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,35 @@
+// Moving the tool towards the device, one tick: the algorithm of 6.2.5 in two rules.
+#pragma once
+
+#include <memory>
+
+#include "core/rendering/renderer.h"
+#include "core/tool/contact/contact_list.h"
+#include "core/tool/dynamics/motion_program.h"
+#include "core/tool/dynamics/tool_parameters.h"
+
+namespace remote_touch {
+
+struct ToolMotionReport {
+  int steps = 0;
+  int detections = 0;
+  bool at_rest = false;         // nothing is left to do for this tick; else the budget was spent
+  int active_count = 0;         // contacts that pushed in the last step
+  Vec3 push_W = Vec3::Zero();   // sum of their multipliers times normals: the direction of contact
+  Vec3 touch_W = Vec3::Zero();  // sum of the normals of what is touched, pushing or not
+  // From the start of the tick to the first change of state: the first step of (4.13).
+  Vec3 first_step_m = Vec3::Zero();
+};
+
+// The seam of the two rules.
+class ToolMotion {
+ public:
+  virtual ~ToolMotion() = default;
+  // Moves the pose towards the device. updated: a frame came in since the last tick. Does not allocate.
+  virtual ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts,
+                                bool updated) = 0;
+};
+
+std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool);
+
+}  // namespace remote_touch

@@ -1,0 +1,102 @@
+#include "core/tool/motion/tool_renderer.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/rendering/frame_preparation.h"
+#include "core/tool/dynamics/wrench_coupling.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
+
+}  // namespace
+
+ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+                           const Kernels& kernels)
+    : p_(parameters),
+      tool_(std::move(tool)),
+      kernels_(kernels),
+      contacts_(tool_, parameters, kernels),
+      motion_(make_tool_motion(parameters, *tool_)),
+      velocity_(parameters.longest_prediction_s) {}
+
+void ToolRenderer::prepare(Frame& frame) const {
+  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
+}
+
+void ToolRenderer::reserve(std::size_t points) {
+  contacts_.reserve(points);
+}
+
+void ToolRenderer::on_frame(const Frame& frame) {
+  if (!order_.take(frame)) return;
+  contacts_.on_frame(form_of<TiledCloud>(frame, kernels_));
+  is_measured_ = false;
+  updated_ = true;
+  if (!p_.velocity_estimate) return;
+  const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
+  pose_.p_W += correction;
+  carried_m_ += correction;
+}
+
+RenderOutput ToolRenderer::step(const DeviceState& device, double) {
+  RenderOutput out;
+  out.frame_index = order_.newest();
+  out.carried_m = std::exchange(carried_m_, Vec3::Zero());
+  out.tool.emplace();
+  const std::optional<ToolPose> held = held_by(device);
+  if (!held) {
+    out.status = RenderStatus::device_not_finite;  // hold still and let go
+  } else {
+    const ToolPose& goal = *held;
+    if (!placed_) pose_ = goal, placed_ = true;
+    if (order_.newest() < 0) {
+      pose_ = goal;
+      out.converged = true;
+      out.status = RenderStatus::no_frame;
+    } else {
+      const ToolMotionReport report = motion_->move(pose_, goal, contacts_, std::exchange(updated_, false));
+      if (!report.push_W.isZero(0))
+        normal_W_ = report.push_W.normalized();
+      else if (report.touch_W.norm() > kNoDirection)
+        normal_W_ = report.touch_W.normalized();
+      velocity_.on_step(report.first_step_m);  // (4.13)
+      out.steps = report.steps;
+      out.converged = report.at_rest;
+      out.tool->active_constraints = report.active_count;
+      out.tool->detections = report.detections;
+      out.tool->budget_exhausted = !report.at_rest;
+    }
+    const Wrench wrench =
+        coupling_wrench(coupling_of(p_, p_.stiffness_N_per_m), tool_->inertia_m2, pose_, goal);
+    out.force_N = wrench.force_N;
+    out.tool->torque_Nm = wrench.torque_Nm;
+  }
+  out.proxy_W = out.slave_W = pose_.p_W;
+  out.tool->orientation_W = pose_.q_WT;
+  out.normal_W = normal_W_;
+  out.surface_velocity_m_per_s = velocity_.m_per_s();
+  measure(out);
+  out.status = order_.status(out.status);
+  return out;
+}
+
+// What the pose at the end of the tick is in contact with: apart from the budget, for it is not the method's.
+void ToolRenderer::measure(RenderOutput& out) {
+  if (!is_measured_ || !(pose_ == measured_at_)) {
+    touched_ = contacts_.touched(pose_);
+    measured_at_ = pose_, is_measured_ = true;
+  }
+  out.state = touched_.state;
+  out.nearest_m = touched_.nearest_m;
+  out.contact_count = touched_.points;
+  out.tool->contact_clusters = touched_.clusters;
+  out.tool->penetration_m = std::max(0.0, -touched_.nearest_m);
+  out.tool->disabled_points = contacts_.finder().cloud().without_normal();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// 6-DOF rendering of streaming point clouds with a rigid tool, chapter 6.
+#pragma once
+
+#include <memory>
+
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
+#include "core/rendering/surface_velocity.h"
+#include "core/tool/contact/contact_list.h"
+#include "core/tool/dynamics/tool_parameters.h"
+#include "core/tool/motion/tool_motion.h"
+
+namespace remote_touch {
+
+// The device holds the tool by its centre of mass. Points without a normal cannot hold the tool under the
+// printed rule, and as points only under the other; their number is in the output.
+class ToolRenderer final : public Renderer {
+ public:
+  // pre: conflict(parameters) is empty.
+  ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+               const Kernels& kernels);
+
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  void measure(RenderOutput& out);
+
+  const ToolParameters p_;
+  const std::shared_ptr<const VoxelTool> tool_;
+  const Kernels& kernels_;
+  ContactList contacts_;
+  std::unique_ptr<ToolMotion> motion_;
+  SurfaceVelocity velocity_;
+
+  ToolPose pose_;
+  Vec3 normal_W_ = Vec3::Zero();  // of contact: where the points push the tool
+  bool placed_ = false;           // the tool starts at the first device pose
+  bool updated_ = false;          // a frame came in since the last tick
+  FrameOrder order_;
+  Vec3 carried_m_ = Vec3::Zero();
+
+  ToolPose measured_at_;  // the last pose measured, while the frame is the same
+  Touched touched_;
+  bool is_measured_ = false;
+};
+
+}  // namespace remote_touch

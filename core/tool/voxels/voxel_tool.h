@@ -1,0 +1,82 @@
+// A rigid tool as the collision detection sees it, 6.2.2: voxels of three values, and the distance field of
+// its mesh. The tool frame T has its origin in the centre of mass and the axes of the mesh; metres.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry/vector.h"
+#include "core/tool/mesh/mesh_check.h"
+#include "core/tool/mesh/mesh_repair.h"
+#include "core/tool/mesh/triangle_mesh.h"
+
+namespace remote_touch {
+
+// A point in the shell is in contact with the tool, one in the interior collides with it.
+enum class Voxel : std::int8_t { free = 0, shell = 1, interior = 2 };
+
+// Cell (i, j, k) spans origin + size (i .. i + 1, j .. j + 1, k .. k + 1). Cells and nodes are stored with i
+// running fastest; there is one node more than cells along every axis.
+struct VoxelGrid {
+  Vec3 origin_T = Vec3::Zero();
+  double size_m = 5e-4;
+  std::array<int, 3> cells{0, 0, 0};
+
+  std::size_t cell_count() const { return std::size_t(cells[0]) * cells[1] * cells[2]; }
+  std::size_t node_count() const {
+    return (std::size_t(cells[0]) + 1) * (std::size_t(cells[1]) + 1) * (std::size_t(cells[2]) + 1);
+  }
+};
+
+struct VoxelTool {
+  TriangleMesh mesh;              // in the tool frame; closed, except for what a repair could not close
+  VoxelGrid grid;                 // encloses the mesh and kFieldMargin_m around it
+  std::vector<Voxel> voxels;      // of every cell, see voxels_of()
+  std::vector<float> distance_m;  // to the mesh at every node, positive outside
+  double volume_m3 = 0;
+  // About the centre of mass in tool axes, of uniform density, divided by the mass: the lower right block of
+  // M of (6.4) for a tool of 1 kg.
+  Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Identity();
+  double reach_m = 0;  // largest distance of a vertex from the origin
+};
+
+// Room of the distance field around the mesh.
+inline constexpr double kFieldMargin_m = 6e-3;
+
+struct FieldSample {
+  double distance_m;  // positive outside the tool
+  Vec3 gradient_T;    // of the trilinear field, out of the tool; about a unit vector, not normalised
+};
+
+// The field between its nodes, trilinear. Outside the grid: the distance to the grid's box plus the field
+// where that is nearest, and the gradient towards p; never more than the true distance by more than a voxel.
+FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
+
+struct VoxelToolSettings {
+  double voxel_m = 5e-4;
+  double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
+  bool repair = false;  // take a mesh that is not closed, see repair_mesh()
+};
+
+// What was done to a mesh and how well voxels fit it.
+struct ToolReport {
+  MeshCheck check;                      // of the mesh as it came
+  Vec3 sides_m = Vec3::Zero();          // of its box, in the size that the tool has
+  bool inverted = false;                // all faces pointed inwards, and were turned
+  MeshRepair repaired;                  // all zero without repair
+  bool by_winding_number = false;       // repaired, and still open
+  std::array<std::size_t, 3> voxels{};  // free, shell, interior
+  double thin_share = 0;                // of the surface farther than two voxels from all interior
+};
+std::string text(const ToolReport& report);
+
+// The mesh scaled, moved with its centre of mass into the origin, and made into voxels and a distance field.
+// name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair), without
+// volume, with vertices that are not finite, with corners that are no vertices, too fine for kMostCells, or
+// thinner than a voxel everywhere.
+inline constexpr double kMostCells = 150e6;
+VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
+                          const std::string& name = "mesh");
+
+}  // namespace remote_touch

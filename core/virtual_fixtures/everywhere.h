@@ -1,0 +1,20 @@
+// Every point of a frame is protected, as in 5.3.3.
+#pragma once
+
+#include "core/virtual_fixtures/fixture_rule.h"
+
+namespace remote_touch {
+
+class Everywhere final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+  };
+  explicit Everywhere(const Settings& settings) : FixtureRule(settings.values) {}
+  std::vector<double> shares(const PointCloud& cloud) const override;
+};
+
+Parameters parameters(Everywhere::Settings& s);
+std::string conflict(const Everywhere::Settings& s);
+
+}  // namespace remote_touch

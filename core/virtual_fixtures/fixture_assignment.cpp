@@ -1,0 +1,76 @@
+#include "core/virtual_fixtures/fixture_assignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A value that is reached is reached exactly.
+double drawn(double from, double to, double share) {
+  return share == 1 ? to : from + share * (to - from);
+}
+
+void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
+  const FixtureValues& values = rule.values();
+  const std::vector<double> shares = rule.shares(cloud);
+  const bool stiff = values.stiffness_N_per_m >= 0;
+  if (stiff && cloud.stiffness_N_per_m.empty())
+    cloud.stiffness_N_per_m.assign(cloud.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double share = shares[i] * strength;
+    if (!(share > 0)) continue;
+    if (values.radius_m >= 0)
+      cloud.fixture_radius_m[i] = drawn(cloud.fixture_radius_m[i], values.radius_m, share);
+    if (!stiff) continue;
+    double& stiffness = cloud.stiffness_N_per_m[i];
+    stiffness =
+        std::isnan(stiffness) ? values.stiffness_N_per_m : drawn(stiffness, values.stiffness_N_per_m, share);
+  }
+}
+
+// Calls act() for what concerns one rule; what it throws is told to be of that rule.
+template <class Act>
+void about_rule(std::size_t i, const Act& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    throw InputError("fixtures." + std::to_string(i), error.what());
+  }
+}
+
+}  // namespace
+
+void FixtureAssignment::assign(PointCloud& cloud, double captured_s, std::uint64_t off) const {
+  if (empty()) return;
+  if (cloud.fixture_radius_m.empty()) cloud.fixture_radius_m.assign(cloud.size(), 0);
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    if (rules_[i]->values().role != FixtureRole::forbidden || !FixtureSwitches::is_on(off, i)) continue;
+    about_rule(i, [&] { apply(*rules_[i], rules_[i]->strength(captured_s), cloud); });
+  }
+}
+
+std::vector<GuidanceTarget> FixtureAssignment::targets(const PointCloud& cloud, double captured_s) const {
+  std::vector<GuidanceTarget> all;
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    if (rules_[i]->values().role != FixtureRole::guidance) continue;
+    about_rule(i, [&] {
+      const double strength = rules_[i]->strength(captured_s);
+      all.push_back(strength > 0 ? guidance_target(cloud, rules_[i]->shares(cloud)) : GuidanceTarget{});
+      all.back().strength = strength;
+    });
+  }
+  return all;
+}
+
+bool FixtureAssignment::changes_with_time() const {
+  return switches_ || std::any_of(rules_.begin(), rules_.end(),
+                                  [](const auto& rule) { return rule->changes_with_time(); });
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,46 @@
+// From a frame to its columns of r_f and k_s, (5.2) and (5.3).
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "core/virtual_fixtures/fixture_rule.h"
+#include "core/virtual_fixtures/fixture_switches.h"
+#include "core/virtual_fixtures/guidance_target.h"
+
+namespace remote_touch {
+
+class FixtureAssignment {
+ public:
+  FixtureAssignment() = default;
+  // switches: forbidden rules that are off are passed over; null: all count.
+  explicit FixtureAssignment(std::vector<std::unique_ptr<const FixtureRule>> rules,
+                             std::shared_ptr<const FixtureSwitches> switches = nullptr)
+      : rules_(std::move(rules)), switches_(std::move(switches)) {}
+
+  // Fills the columns of the cloud, which begin as they come with it: without a column r_f is 0 and k_s the
+  // renderer's own. Then every rule in turn draws the values of its points towards its own, by its share of
+  // the point times its strength at captured_s, so a later rule overrides an earlier one. A point without a
+  // stiffness of its own has nothing to be drawn from: it takes the rule's at once. Guidance rules are passed
+  // over. Without rules nothing is changed. Throws InputError as FixtureRule::shares.
+  void assign(PointCloud& cloud, double captured_s) const { assign(cloud, captured_s, off()); }
+  // The same with these forbidden rules off, as off() told them at some time.
+  void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
+  std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
+
+  // Of every guidance rule in their order, with the rule's strength; of one of strength 0 there is none to be
+  // seen. Throws as assign().
+  std::vector<GuidanceTarget> targets(const PointCloud& cloud, double captured_s) const;
+
+  bool empty() const { return rules_.empty(); }
+  // Two frames of one and the same cloud can differ.
+  bool changes_with_time() const;
+
+ private:
+  std::vector<std::unique_ptr<const FixtureRule>> rules_;
+  std::shared_ptr<const FixtureSwitches> switches_;
+};
+
+}  // namespace remote_touch

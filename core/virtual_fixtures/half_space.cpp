@@ -1,0 +1,35 @@
+#include "core/virtual_fixtures/half_space.h"
+
+namespace remote_touch {
+
+Parameters parameters(HalfSpace::Settings& s) {
+  Parameters list = parameters(s.values);
+  list.push_back({"point_m", &s.point_m, -100, 100, "a point of the plane, world frame"});
+  list.push_back({"normal", &s.normal, -1e6, 1e6, "points into the half-space; its length does not matter"});
+  list.push_back({"transition_m", &s.transition_m, 0, 100,
+                  "the rule's share of a point rises evenly over this distance from the plane; 0: a step"});
+  return list;
+}
+
+std::string conflict(const HalfSpace::Settings& s) {
+  if (!(s.normal.norm() > 1e-9)) return "normal: allowed longer than 0";
+  return conflict(s.values);
+}
+
+HalfSpace::HalfSpace(const Settings& settings)
+    : FixtureRule(settings.values),
+      point_W_(settings.point_m),
+      normal_W_(settings.normal.normalized()),
+      transition_m_(settings.transition_m) {}
+
+std::vector<double> HalfSpace::shares(const PointCloud& cloud) const {
+  std::vector<double> shares(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double height = (cloud.point(i) - point_W_).dot(normal_W_);  // NaN fails every comparison
+    const bool inside = height >= 0;
+    shares[i] = !inside ? 0 : height < transition_m_ ? height / transition_m_ : 1;
+  }
+  return shares;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,31 @@
+// The points of a colour: the sensor sees what is to be protected.
+#pragma once
+
+#include "core/virtual_fixtures/fixture_rule.h"
+
+namespace remote_touch {
+
+class HueRange final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    double from_deg = 340;
+    double to_deg = 20;
+    double least_saturation = 0.3;
+    double least_lightness = 0.1;
+    double most_lightness = 0.9;
+  };
+  explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
+  // Throws InputError when the cloud has no colours.
+  std::vector<double> shares(const PointCloud& cloud) const override;
+
+ private:
+  bool holds(std::uint32_t rgb) const;
+
+  const Settings settings_;
+};
+
+Parameters parameters(HueRange::Settings& s);
+std::string conflict(const HueRange::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,248 @@
+#include "runners/cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "core/parameters/input_error.h"
+#include "runners/provenance/provenance.h"
+
+namespace remote_touch {
+
+namespace {
+
+// One subcommand with its options. act is called when it was asked for; what the options fill lives as long
+// as it does.
+struct Subcommands {
+  CLI::App& app;
+  CommandLine& line;
+  std::function<int()>& act;
+
+  template <class Request>
+  std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
+                                     int (*run)(const CommandLine&, const Request&)) {
+    auto request = std::make_shared<Request>();
+    CLI::App* command = app.add_subcommand(name, meaning);
+    command->callback([&act = act, &line = line, request, run] {
+      act = [&line, request, run] { return run(line, *request); };
+    });
+    return {command, request.get()};
+  }
+};
+
+void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning) {
+  command->add_option("--set", overrides, meaning)->allow_extra_args(false);
+}
+
+void add_lists(Subcommands& commands) {
+  commands.add("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
+               command_list);
+  auto [describe, described] =
+      commands.add("describe", "every parameter: range, default, meaning", command_describe);
+  describe->add_option("name", described->name, "a name of the list")->required();
+  auto [inspect, inspected] = commands.add("inspect", "what is in a result file", command_inspect);
+  inspect->add_option("file", inspected->file, "an HDF5 file")->required();
+}
+
+void add_run(Subcommands& commands) {
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
+  command->add_option("experiment", run->experiment, "a name of the list, a JSON file, or a live session")
+      ->required();
+  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
+  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run->timing, "also store the wall clock of each tick");
+}
+
+void add_sweep(Subcommands& commands) {
+  auto [command, sweep] =
+      commands.add("sweep", "run an experiment over a grid of parameters; resumes by itself", command_sweep);
+  command->add_option("sweep", sweep->sweep, "a name of the list, or a JSON file")->required();
+  add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
+  command->add_option("-o,--output", sweep->output,
+                      "the HDF5 file to write or to go on with; {shard} stands for the shard, 2of7");
+  command->add_option("--threads", sweep->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--shard", sweep->shard,
+                      "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
+  command->add_flag("--dry-run", sweep->dry_run,
+                    "check every cell, estimate time and file size, write nothing");
+}
+
+void add_merge_and_replay(Subcommands& commands) {
+  auto [command, merge] = commands.add("merge", "put the shards of a sweep together", command_merge);
+  command->add_option("shards", merge->shards, "the files of all shards")->required();
+  command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
+
+  auto [again, replay] =
+      commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
+  again->add_option("map", replay->map, "the result of a sweep")->required();
+  again->add_option("--cell", replay->cell, "place on each axis, counted from 0, for example 3,40")
+      ->required();
+  again->add_option("--replicate", replay->replicate, "counted from 0");
+  again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
+}
+
+void add_figure(Subcommands& commands) {
+  auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", command_figure);
+  command->add_option("names", figure->names, "figures of the list, or all")->required();
+  command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+  command
+      ->add_option("--coarse", figure->coarse,
+                   "maps of every Nth value of their axes, to look at: no claim of theirs is judged")
+      ->check(CLI::Range(1, 10));
+}
+
+void add_scorecard(Subcommands& commands) {
+  auto [command, scorecard] = commands.add(
+      "scorecard", "renderers against each other over many scenes and noise levels: HDF5 and a page",
+      command_scorecard);
+  command->add_option("contenders", scorecard->contenders, "of the list (default: all)");
+  command->add_option("--scene", scorecard->scenes, "of the list (default: all)");
+  command->add_option("-o,--output", scorecard->folder, "the folder to write into, or to go on with")
+      ->required();
+  command
+      ->add_option("--seeds", scorecard->seeds, "runs of each scene and noise level, each with its own noise")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command->add_option("--threads", scorecard->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+}
+
+void add_compare(Subcommands& commands) {
+  auto [command, compare] = commands.add(
+      "compare", "two results side by side: 0 same, 1 regressed, 2 could not compare", command_compare);
+  command->add_option("baseline", compare->baseline, "a trace, sweep, figure or hashes")->required();
+  command->add_option("candidate", compare->candidate, "another of the same kind")->required();
+  command
+      ->add_option("--tolerance", compare->tolerances,
+                   "COLUMN=ABSOLUTE[,RELATIVE], * for every column; without it exact")
+      ->allow_extra_args(false);
+  command->add_flag("--paired", compare->paired,
+                    "judge sweeps by paired tests over regions: single runs may differ");
+  command->add_option("--margin", compare->margin, "largest change of a share of runs that counts as none")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--shift-margin", compare->shift_margin,
+                   "the same for measures that are no events: of runs up less runs down, and of the mean")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--alpha", compare->alpha, "probability of calling a region changed when none is")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--json", compare->json, "also write everything to this file");
+  command->add_option("--junit", compare->junit, "also write JUnit's XML");
+  command->add_option("--plot", compare->plot,
+                      "also write the deviation over time as a figure (HDF5, for scripts/plot)");
+
+  auto [hash, hashes] = commands.add(
+      "hashes", "the running hash of a trace alone, to find where runs on two machines part", command_hashes);
+  hash->add_option("trace", hashes->trace, "a trace")->required();
+  hash->add_option("--every", hashes->every, "keep every n-th tick");
+  hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
+}
+
+void add_baseline(Subcommands& commands) {
+  CLI::App* parent =
+      commands.app.add_subcommand("baseline", "stored results that later programs are held against");
+  parent->require_subcommand(1);
+  Subcommands below{*parent, commands.line, commands.act};
+  auto [command, check] =
+      below.add("check", "make every stored result again and compare", command_baseline_check);
+  command->add_option("names", check->names, "some of them (default: all, and none may be missing)");
+  command->add_option("--folder", check->folder, "where they are")->capture_default_str();
+  command->add_option("--json", check->json, "also write everything to this file");
+  command->add_option("--junit", check->junit, "also write JUnit's XML");
+
+  auto [other, bless] =
+      below.add("bless", "store a result, with the spread over builds", command_baseline_bless);
+  other->add_option("names", bless->names, "of the baselines, or all")->required();
+  other->add_option("--reason", bless->reason, "why these numbers are right");
+  other->add_option("--run", bless->run,
+                    "a new baseline: the experiment, a name or a JSON file in the folder");
+  other->add_option("--sweep", bless->sweep, "a new baseline: the sweep");
+  add_set(other, bless->overrides, "parameter=value of a new baseline");
+  other->add_option("--also", bless->also, "a build of the same source by another compiler")
+      ->allow_extra_args(false);
+  other->add_flag("--one-compiler", bless->one_compiler, "measure the spread without one");
+  other->add_option("--folder", bless->folder, "where to store")->capture_default_str();
+}
+
+void add_repro_and_verify(Subcommands& commands) {
+  auto [command, repro] = commands.add(
+      "repro", "the command that makes a result again; with --run, does it and compares", command_repro);
+  command->add_option("file", repro->file, "a trace, sweep or figure")->required();
+  command->add_flag("--run", repro->run, "make it again from the stored configuration and compare");
+  command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
+
+  auto [other, verify] = commands.add(
+      "verify", "metamorphic checks of renderers: what must stay true when a scene is told differently",
+      command_verify);
+  other->add_option("renderers", verify->renderers, "of the list (default: all of three degrees of freedom)");
+  add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
+  other->add_option("--junit", verify->junit, "also write JUnit's XML");
+}
+
+void add_live(Subcommands& commands) {
+  auto [command, live] =
+      commands.add("live", "run an experiment in real time, with a sensor and a haptic device", command_live);
+  command->add_option("experiment", live->experiment, "a name of the list, a JSON file, or a live session")
+      ->required();
+  add_set(command, live->overrides, "parameter=value, for example safety.largest_force_N=3");
+  command->add_option("--device", live->device, "SCHEME:ADDRESS, see remote-touch devices")
+      ->capture_default_str();
+  command->add_option("--depth", live->depth, "SCHEME:ADDRESS, see remote-touch devices")
+      ->capture_default_str();
+  command->add_option("--duration", live->duration_s, "seconds (default: until SIGINT)")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--record", live->record, "the HDF5 file for what device and sensor tell");
+  command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
+  command->add_option("--report", live->report,
+                      "the HDF5 file for times and counts, a figure for scripts/plot; also at SIGUSR1");
+  commands.add("devices", "sensors and haptic devices: what is compiled in, what is found, why not",
+               command_devices);
+  auto [other, jitter] = commands.add("jitter", "how punctual this machine's haptic loop is", command_jitter);
+  other->add_option("--duration", jitter->duration_s, "seconds")
+      ->check(CLI::Range(0.01, 86400.0))
+      ->capture_default_str();
+  other->add_option("--rate", jitter->rate_hz, "ticks a second")
+      ->check(CLI::Range(1.0, 100000.0))
+      ->capture_default_str();
+}
+
+// An unknown command is named, which CLI11 leaves to guess.
+InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining(true);
+  CLI::App* place = &app;
+  while (!place->get_subcommands().empty()) place = place->get_subcommands().front();
+  if (place->get_subcommands(nullptr).empty() || left.empty())
+    return InputError(error.what(), "see remote-touch --help");
+  std::string known;
+  for (const CLI::App* command : place->get_subcommands(nullptr))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return InputError(left.front(), "unknown; allowed " + known);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
+  CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "remote-touch " + version());
+  app.fallthrough();
+  app.add_flag("-q,--quiet", line.quiet, "no progress");
+  std::function<int()> act;
+  Subcommands commands{app, line, act};
+  for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,
+                         add_compare, add_baseline, add_repro_and_verify, add_live})
+    add(commands);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw usage_error(app, error);
+  }
+  line.kernels = &choose_kernels();
+  return act();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,148 @@
+// The subcommands. Each prints results on stdout, trouble as exceptions, and returns the exit code.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+
+namespace remote_touch {
+
+enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3 };
+
+// What every command shares.
+struct CommandLine {
+  bool quiet = false;
+  const Kernels* kernels = nullptr;
+  const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
+  // Set by SIGUSR1 and SIGUSR2; who answers sets them back.
+  std::atomic<bool>* report = nullptr;
+  std::atomic<bool>* rearm = nullptr;
+};
+
+struct ListRequest {};
+int command_list(const CommandLine& line, const ListRequest& request);
+
+struct DescribeRequest {
+  std::string name;
+};
+int command_describe(const CommandLine& line, const DescribeRequest& request);
+
+struct RunRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string output;
+  bool timing = false;
+};
+int command_run(const CommandLine& line, const RunRequest& request);
+
+struct FigureRequest {
+  std::vector<std::string> names;
+  std::string folder;
+  int coarse = 1;  // every so manieth value of a map's axes
+};
+int command_figure(const CommandLine& line, const FigureRequest& request);
+
+struct SweepRequest {
+  std::string sweep;
+  std::vector<std::string> overrides;
+  std::string output;  // {shard} in it stands for the shard, "3of7"
+  std::string shard;   // empty: as the environment says, else the whole sweep
+  int threads = 0;     // 0: as OpenMP decides
+  bool dry_run = false;
+};
+int command_sweep(const CommandLine& line, const SweepRequest& request);
+
+struct ScorecardRequest {
+  std::vector<std::string> contenders, scenes;  // empty: all
+  std::string folder;
+  int seeds = 20;
+  int threads = 0;  // 0: as OpenMP decides
+};
+int command_scorecard(const CommandLine& line, const ScorecardRequest& request);
+
+struct MergeRequest {
+  std::vector<std::string> shards;
+  std::string output;
+};
+int command_merge(const CommandLine& line, const MergeRequest& request);
+
+struct ReplayRequest {
+  std::string map;
+  std::string cell;  // "3,4"
+  int replicate = 0;
+  std::string output;
+};
+int command_replay(const CommandLine& line, const ReplayRequest& request);
+
+struct CompareRequest {
+  std::string baseline, candidate;
+  std::vector<std::string> tolerances;  // "force=1e-9,1e-6"
+  bool paired = false;
+  double margin = 0.02, shift_margin = 0.1, alpha = 0.01;
+  std::string json, junit, plot;  // files to write; empty: none
+};
+int command_compare(const CommandLine& line, const CompareRequest& request);
+
+struct BaselineCheckRequest {
+  std::vector<std::string> names;  // empty: all, and none may be missing
+  std::string folder = "data/baselines";
+  std::string json, junit;
+};
+int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request);
+
+struct BaselineBlessRequest {
+  std::vector<std::string> names;
+  std::string reason;
+  std::string folder = "data/baselines";
+  std::string run, sweep;
+  std::vector<std::string> overrides, also;
+  bool one_compiler = false;
+};
+int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& request);
+
+struct VerifyRequest {
+  std::vector<std::string> renderers;  // empty: all
+  std::vector<std::string> overrides;  // "r1_m=0.004"
+  std::string junit;
+};
+int command_verify(const CommandLine& line, const VerifyRequest& request);
+
+struct ReproRequest {
+  std::string file;
+  bool run = false;
+  std::string config;  // a file to write the configuration to; empty: none
+};
+int command_repro(const CommandLine& line, const ReproRequest& request);
+
+struct HashesRequest {
+  std::string trace;
+  int every = 1;
+  std::string output;
+};
+int command_hashes(const CommandLine& line, const HashesRequest& request);
+
+struct LiveRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string device = "sim:", depth = "sim:";
+  std::string record, output, report;  // files to write; empty: none
+  double duration_s = 0;
+};
+int command_live(const CommandLine& line, const LiveRequest& request);
+
+struct DevicesRequest {};
+int command_devices(const CommandLine& line, const DevicesRequest& request);
+
+struct JitterRequest {
+  double duration_s = 10, rate_hz = 1000;
+};
+int command_jitter(const CommandLine& line, const JitterRequest& request);
+
+struct InspectRequest {
+  std::string file;
+};
+int command_inspect(const CommandLine& line, const InspectRequest& request);
+
+}  // namespace remote_touch

@@ -1,0 +1,85 @@
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/deviation_figure.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/whole_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/shell_command.h"
+#include "runners/provenance/provenance.h"
+#include "runners/regression/comparison/comparison_report.h"
+#include "runners/regression/comparison/comparison_text.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+// "force=1e-9", or "force=1e-9,1e-6": absolute, relative.
+void add_tolerance(const std::string& text, Tolerances& tolerances) {
+  const auto refuse = [&] {
+    throw InputError(
+        "--tolerance " + text,
+        "allowed COLUMN=ABSOLUTE or COLUMN=ABSOLUTE,RELATIVE with numbers of 0 or more; * is every column");
+  };
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) refuse();
+  Tolerance tolerance;
+  const char *next = text.data() + equals + 1, *end = text.data() + text.size();
+  for (double* part : {&tolerance.absolute, &tolerance.relative}) {
+    const auto [stop, error] = std::from_chars(next, end, *part);
+    if (error != std::errc() || !(*part >= 0) || std::isinf(*part)) refuse();
+    next = stop;
+    if (next == end) break;
+    if (*next++ != ',' || part == &tolerance.relative) refuse();
+  }
+  if (next != end) refuse();
+  tolerances[text.substr(0, equals)] = tolerance;
+}
+
+// What makes the plot again.
+std::string normalised(const CompareRequest& request) {
+  std::vector<std::string> words = {"remote-touch", "compare", request.baseline, request.candidate};
+  for (const std::string& tolerance : request.tolerances)
+    words.insert(words.end(), {"--tolerance", tolerance});
+  return shell_command(words);
+}
+
+void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
+  if (!request.plot.empty() && comparison.kind != "trace")
+    throw InputError("--plot " + request.plot, "of " + comparison.kind + "; allowed with two traces");
+}
+
+void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {
+  const StoredTrace baseline(request.baseline), candidate(request.candidate);
+  const Json config = {{"baseline_digest", attribute(baseline.attributes(), "digest")},
+                       {"candidate_digest", attribute(candidate.attributes(), "digest")}};
+  write_figure(request.plot, deviation_figure(baseline, candidate, *comparison.columns),
+               provenance(config.dump(), normalised(request), line.kernels->isa));
+}
+
+}  // namespace
+
+int command_compare(const CommandLine& line, const CompareRequest& request) {
+  ComparisonRules rules;
+  for (const std::string& text : request.tolerances) add_tolerance(text, rules.tolerances);
+  rules.paired = request.paired;
+  rules.rule = {request.margin, request.shift_margin, request.alpha};
+  for (const std::string& file : {request.json, request.junit, request.plot}) {
+    if (file.empty()) continue;
+    for (const std::string& input : {request.baseline, request.candidate}) require_other(file, input);
+    require_writable(file);
+  }
+  const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
+  require_plot_of_traces(request, comparison);
+  print_comparison(comparison);
+  if (!request.json.empty()) write_report(request.json, comparison_json(comparison));
+  if (!request.junit.empty()) write_report(request.junit, junit({suite_of(comparison, request.baseline)}));
+  if (!request.plot.empty()) write_plot(line, request, comparison);
+  return static_cast<int>(comparison.outcome);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,45 @@
+#include <cstdio>
+
+#include "analysis/measures/measures.h"
+#include "runners/cli/commands.h"
+#include "runners/experiment/catalog.h"
+#include "runners/experiment/experiment.h"
+#include "runners/figures/figures.h"
+#include "runners/scorecard/contest.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+namespace {
+void row(const char* name, const std::string& text) {
+  std::printf("  %-18s %s\n", name, text.c_str());
+}
+}  // namespace
+
+int command_list(const CommandLine&, const ListRequest&) {
+  std::puts("scenarios");
+  for (const auto& entry : scenarios()) row(entry.name, entry.summary);
+  std::puts("fixture rules");
+  for (const auto& entry : fixtures()) row(entry.name, entry.summary);
+  std::puts("renderers");
+  for (const auto& entry : renderers()) row(entry.name, entry.summary);
+  std::puts("trajectories");
+  for (const auto& entry : trajectories()) row(entry.name, entry.summary);
+  std::puts("experiments");
+  for (const auto& stored : stored_experiments())
+    row(stored.name, Experiment::load(stored.name).settings().title);
+  std::puts("sweeps");
+  for (const auto& stored : stored_sweeps()) row(stored.name, Sweep::load(stored.name).title());
+  std::puts("contenders");
+  for (const Contender& contender : chosen_contenders({})) row(contender.name.c_str(), contender.title);
+  std::puts("scenes");
+  for (const ContestScene& scene : chosen_scenes({})) row(scene.name.c_str(), scene.title);
+  std::puts("figures");
+  for (const auto& entry : figures()) row(entry.name, entry.summary);
+  std::puts("measures");
+  for (const auto& measure : measures())
+    row(measure.name, std::string(measure.meaning) + ", " + measure.unit);
+  return kDone;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,83 @@
+#include "runners/live/loop/live_run.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/whole_file.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/shell_command.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/provenance.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string normalised(const LiveRequest& request) {
+  std::vector<std::string> words = {"remote-touch", "live",    request.experiment, "--device",
+                                    request.device, "--depth", request.depth};
+  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
+  return shell_command(words);
+}
+
+void tell(const std::string& text) {
+  std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
+}
+
+// A haptic device must be let go whatever ends the program, and a program that is halted holds on to it.
+void see_to_every_end() {
+  struct sigaction interrupt {};
+  sigaction(SIGINT, nullptr, &interrupt);
+  sigaction(SIGQUIT, &interrupt, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGTSTP, SIG_IGN);
+}
+
+// While it runs: a file that cannot be written does not end it.
+void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
+  tell("so far\n" + text(report));
+  if (!file.empty()) write_figure(file, live_figure(report), origin);
+} catch (const std::exception& error) {
+  tell(error.what());
+}
+
+}  // namespace
+
+int command_live(const CommandLine& line, const LiveRequest& request) {
+  const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  for (const std::string& file : {request.record, request.output, request.report})
+    if (!file.empty()) require_writable(file);
+  LiveOptions options;
+  options.device = request.device, options.depth = request.depth;
+  options.duration_s = request.duration_s;
+  options.record = request.record;
+  options.kernels = line.kernels;
+  options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;
+  options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
+                                  input_hashes(experiment.inputs()));
+  if (!line.quiet) options.tell = tell;
+  options.on_report = [&](const LiveReport& report) {
+    report_now(report, request.report, options.provenance);
+  };
+  see_to_every_end();
+  const LiveResult result = run_live(experiment, options);
+
+  std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
+              result.real_time.c_str(), result.ended.c_str());
+  const LiveReport report = live_report(result.log, result.counts);
+  if (result.force_share < 1)
+    std::printf("  the device got %.3g of every force and torque, for its largest stiffness\n",
+                result.force_share);
+  std::fputs(text(report).c_str(), stdout);
+  if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
+  const std::string sum = request.output.empty() ? digest(result.log.trace.columns())
+                                                 : write_trace(request.output, result.log.trace,
+                                                               options.provenance, result.log.step_s);
+  std::printf("  digest of the trace: %s\n", sum.c_str());
+  return result.failed ? kCheckFailed : kDone;
+}
+
+}  // namespace remote_touch

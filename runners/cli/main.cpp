@@ -1,0 +1,78 @@
+// remote-touch: signals, the choice of kernels, errors.
+#include <malloc.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/parameters/input_error.h"
+#include "runners/cli/command_line.h"
+#include "runners/simulation/simulation.h"
+
+namespace {
+
+using namespace remote_touch;
+
+std::atomic<bool> stop_requested{false}, report_requested{false}, rearm_requested{false};
+
+void request_stop(int) {
+  stop_requested = true;
+}
+
+void request_report(int) {
+  report_requested = true;
+}
+
+void request_rearm(int) {
+  rearm_requested = true;
+}
+
+// REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
+const Kernels& chosen_kernels() {
+  const char* wanted = std::getenv("REMOTE_TOUCH_ISA");
+  const Isa best = best_isa();
+  if (wanted == nullptr) return kernels_for(best);
+  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
+    if (isa <= best && kernels_for(isa).isa == std::string(wanted)) return kernels_for(isa);
+  throw InputError(std::string("REMOTE_TOUCH_ISA = ") + wanted,
+                   std::string("allowed x86-64 up to ") + kernels_for(best).isa + " on this machine");
+}
+
+// One line, whatever the user's names contain.
+void complain(std::string problem) {
+  std::replace(problem.begin(), problem.end(), '\n', ' ');
+  std::fprintf(stderr, "remote-touch: %s\n", problem.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
+  std::signal(SIGUSR1, request_report);
+  std::signal(SIGUSR2, request_rearm);
+  try {
+    CommandLine line;
+    line.stop = &stop_requested;
+    line.report = &report_requested;
+    line.rearm = &rearm_requested;
+    const int code = run_command_line(argc, argv, line, chosen_kernels);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw InputError("standard output", "cannot be written; allowed a place with room");
+    return code;
+  } catch (const Interrupted&) {
+    complain("interrupted; nothing half-written was left behind");
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return kBadInput;
+}

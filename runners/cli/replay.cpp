@@ -1,0 +1,96 @@
+#include <bit>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/storage/whole_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/progress.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/sweep/sweep_replay.h"
+
+namespace remote_touch {
+
+namespace {
+
+// "3,4": the place on each axis, counted from 0.
+std::size_t cell_of(const std::string& text, const SweepResult& result) {
+  std::string allowed;
+  for (const Column& axis : result.axes)
+    allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
+  std::vector<std::size_t> place;
+  const char *next = text.data(), *end = text.data() + text.size();
+  while (next <= end && place.size() <= result.axes.size()) {
+    std::size_t number = 0;
+    const auto [stop, error] = std::from_chars(next, end, number);
+    if (error != std::errc() || (stop != end && *stop != ',')) break;
+    place.push_back(number);
+    next = stop + 1;
+  }
+  bool fits = next == end + 1 && place.size() == result.axes.size();
+  for (std::size_t i = 0; fits && i < place.size(); ++i) fits = place[i] < result.axes[i].length();
+  if (!fits) throw InputError("--cell " + text, "allowed " + allowed);
+  return result.cell_at(place);
+}
+
+// Prints each measure beside the stored one. True when they agree bit for bit, or nothing is stored.
+bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
+  const bool stored = result.state[run] == RunState::done;
+  bool same = true;
+  for (std::size_t i = 0; i < result.measures.size(); ++i) {
+    const double now = sweep.measures()[i].of(trace);
+    const double then = std::get<std::vector<double>>(result.measures[i].values)[run];
+    const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
+    same &= equal || !stored;
+    std::printf("  %-20s %12.6g %-6s %s", result.measures[i].name.c_str(), now,
+                result.measures[i].units.c_str(), stored ? equal ? "as stored\n" : "" : "not stored\n");
+    if (stored && !equal) std::printf("stored %.17g, now %.17g\n", then, now);
+  }
+  return same;
+}
+
+// Why the values may be others: who made the sweep, and which of the run's recordings have changed since.
+void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
+  std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
+  std::vector<RecordingPart> parts;  // all that the sweep reads of them: it has one hash for that
+  for (const RecordingPart& part : sweep.inputs())
+    for (const RecordingPart& mine : experiment.inputs())
+      if (part.path == mine.path) parts.push_back(part);
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "inputs"), input_hashes(parts)))
+    if (input.now != "absent")
+      std::printf("  from %s: %s; now %s\n", input.path.c_str(), input.before.c_str(), input.now.c_str());
+}
+
+}  // namespace
+
+int command_replay(const CommandLine& line, const ReplayRequest& request) {
+  require_other(request.output, request.map);
+  const StoredSweep stored = read_sweep(request.map);
+  const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
+  const SweepResult& result = stored.result;
+  const SweepResult planned = sweep.plan();
+  if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())
+    throw InputError(request.map, "damaged (its arrays do not fit its configuration)");
+  const std::size_t cell = cell_of(request.cell, result);
+  if (request.replicate < 0 || request.replicate >= result.replicates)
+    throw InputError("--replicate " + std::to_string(request.replicate),
+                     "allowed 0 to " + std::to_string(result.replicates - 1));
+  require_writable(request.output);
+
+  Progress progress("replay", line.quiet);
+  SimulationOptions options;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  options.progress = [&](double share) { progress.update(share); };
+  const std::size_t run = result.run(cell, request.replicate);
+  const Replay replay = replay_run(stored, sweep, run, options, request.output);
+  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), replay.trace.length(),
+              replay.digest.c_str());
+  if (agrees(sweep, result, run, replay.trace)) return kDone;
+  print_origin(stored, sweep, replay.experiment);
+  return kCheckFailed;
+}
+
+}  // namespace remote_touch

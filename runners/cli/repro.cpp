@@ -1,0 +1,244 @@
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+#include "analysis/columns/fingerprint.h"
+#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/tick_hashes.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/scorecard/scorecard.h"
+#include "analysis/storage/whole_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/progress.h"
+#include "runners/cli/shell_command.h"
+#include "runners/figures/figures.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/provenance.h"
+#include "runners/regression/comparison/comparison_text.h"
+#include "runners/settings/configuration_difference.h"
+#include "runners/sweep/sweep_run.h"
+
+namespace remote_touch {
+
+namespace {
+
+// For a shell to skip, whatever the text holds.
+void comment(const std::string& text) {
+  std::string lines = "# ";
+  for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+  std::printf("%s\n", lines.c_str());
+}
+
+// "3,4"; anything else gives a place that no sweep has.
+std::vector<std::size_t> place_of(const std::string& cell) {
+  std::vector<std::size_t> place;
+  std::istringstream in(cell);
+  for (std::string number; std::getline(in, number, ',');)
+    place.push_back(std::strtoull(number.c_str(), nullptr, 10));
+  return place;
+}
+
+// A stored result, and the program's own build to hold against it.
+class Repro {
+ public:
+  Repro(const CommandLine& line, const std::string& file) : Repro(line, Hdf5Reader(file)) {}
+
+  std::string of(const char* name) const { return attribute(attributes_, name); }
+
+  // Comments about the build, then what to type.
+  void print() const {
+    comment(file_ + ": version " + of("version") + ", commit " + of("git_commit") +
+            (of("git_dirty") == "yes" ? " with local changes, " : ", ") + of("compiler") + ", " +
+            of("flags") + (of("isa").empty() ? "" : ", " + of("isa")));
+    for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
+      if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
+        comment("this program has another " + name + ": " + value);
+    if (!of("inputs").empty()) comment("it read:\n" + of("inputs"));
+    if (kind_ == "figure")
+      print_figure_command();
+    else if (command_makes_it())
+      print_command();
+    else
+      print_detour();
+  }
+
+  void write_config(const std::string& target) const {
+    if (kind_ == "figure")
+      throw InputError("--config", "of a figure; allowed with a trace, a sweep or hashes");
+    require_other(target, file_);
+    const std::string text = of("config") + "\n";
+    write_whole_file(target, text.data(), text.size());
+    std::printf("# configuration written to %s\n", target.c_str());
+  }
+
+  // Makes it again from its configuration and compares every number.
+  ResultComparison again() const {
+    Progress progress("repro", line_.quiet);
+    ResultComparison result = kind_ == "trace"    ? trace_again(progress)
+                              : kind_ == "hashes" ? hashes_again(progress)
+                              : kind_ == "sweep"  ? sweep_again()
+                                                  : figure_again(progress);
+    result.baseline = file_, result.candidate = "this program";
+    return result;
+  }
+
+ private:
+  Repro(const CommandLine& line, const Hdf5Reader& result)
+      : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {
+    if (kind_ == "figure" && of("figure") == kScorecardFigure)
+      throw InputError(file_, "is a scorecard, which " + of("command") +
+                                  " -o FOLDER makes again; allowed a file of its runs/");
+  }
+
+  // A replay's command is that of its sweep, and then its own.
+  void print_command() const {
+    auto all = commands_of(of("command"));
+    all[0].insert(all[0].end(), {"-o", all.size() > 1 ? "map.h5" : "again.h5"});
+    add_shard(all[0]);
+    std::printf("%s\n", shell_command(all[0]).c_str());
+    if (all.size() < 2) return;
+    all[1].insert(all[1].begin() + 2, "map.h5");
+    all[1].insert(all[1].end(), {"-o", "again.h5"});
+    std::printf("%s\n", shell_command(all[1]).c_str());
+  }
+
+  void print_figure_command() const {
+    std::vector<std::string> words = words_of(of("command"));
+    if (words.size() < 3 || words[0] != "remote-touch" || (words[1] != "figure" && words[1] != "compare"))
+      return comment("no command of this program made it");
+    const bool is_plot = words[1] == "compare";
+    words.insert(words.end(), {is_plot ? "--plot" : "-o", is_plot ? "again.h5" : "again"});
+    std::printf("%s\n", shell_command(words).c_str());
+  }
+
+  // From the configuration alone.
+  void print_detour() const {
+    if (of("command").starts_with("remote-touch scorecard "))
+      comment("it is of a scorecard, " + of("command") + " -o FOLDER; alone:");
+    else
+      comment("its command no longer makes this configuration (another file, or another default)");
+    std::vector<std::string> words = {"remote-touch", kind_ == "sweep" ? "sweep" : "run", "again.json", "-o",
+                                      "again.h5"};
+    add_shard(words);
+    std::printf("%s\n%s\n", shell_command({"remote-touch", "repro", file_, "--config", "again.json"}).c_str(),
+                shell_command(words).c_str());
+  }
+  void add_shard(std::vector<std::string>& words) const {
+    if (!of("shard").empty()) words.insert(words.end(), {"--shard", of("shard")});
+  }
+
+  bool command_makes_it() const {
+    const auto all = commands_of(of("command"));
+    try {
+      const std::string now = configuration_of(all);
+      return !now.empty() && configuration_differences(of("config"), now).empty();
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+  // What the commands would make now; empty for other commands than
+  //   remote-touch run|sweep SUBJECT --set a=b ...
+  //   remote-touch sweep SUBJECT --set a=b ...; remote-touch replay --cell 3,4 --replicate 0
+  static std::string configuration_of(const std::vector<std::vector<std::string>>& commands) {
+    const std::vector<std::string>& words = commands.front();
+    if (words.size() < 3 || words[0] != "remote-touch") return {};
+    std::vector<std::string> overrides;
+    for (std::size_t i = 4; i < words.size(); i += 2) overrides.push_back(words[i]);
+    if (commands.size() == 1 && words[1] == "run") return Experiment::load(words[2], overrides).to_json();
+    if (words[1] != "sweep") return {};
+    const Sweep sweep = Sweep::load(words[2], overrides);
+    return commands.size() == 1 ? sweep.to_json() : configuration_of(sweep, commands[1]);
+  }
+  static std::string configuration_of(const Sweep& sweep, const std::vector<std::string>& replay) {
+    if (replay.size() != 6 || replay[0] != "remote-touch" || replay[1] != "replay") return {};
+    const SweepResult plan = sweep.plan();
+    const std::vector<std::size_t> place = place_of(replay[3]);
+    const int replicate = std::atoi(replay[5].c_str());
+    if (place.size() != plan.axes.size() || replicate < 0 || replicate >= plan.replicates) return {};
+    for (std::size_t i = 0; i < place.size(); ++i)
+      if (place[i] >= plan.axes[i].length()) return {};
+    return sweep.experiment(plan.cell_at(place), replicate).to_json();
+  }
+
+  std::vector<Column> columns_again(const Experiment& experiment, Progress& progress) const {
+    SimulationOptions options;
+    options.kernels = line_.kernels, options.stop = line_.stop, options.hash_frames = true;
+    options.progress = [&](double share) { progress.update(share); };
+    return simulate(experiment, options).columns();
+  }
+  TextAttributes ours(const std::string& config, const std::string& inputs) const {
+    return provenance(config, of("command"), of("isa").empty() ? "" : line_.kernels->isa, inputs);
+  }
+
+  ResultComparison trace_again(Progress& progress) const {
+    const Experiment experiment = Experiment::from_json(of("config"), file_ + " config");
+    const ColumnsInMemory made(columns_again(experiment, progress));
+    const StoredTrace stored(file_);
+    return compare_trace(stored, attributes_, made,
+                         ours(experiment.to_json(), input_hashes(experiment.inputs())), {});
+  }
+  ResultComparison hashes_again(Progress& progress) const {
+    const Experiment experiment = Experiment::from_json(of("config"), file_ + " config");
+    const Column all = columns_again(experiment, progress).back();
+    TickHashes made;
+    for (const std::uint64_t hash : std::get<std::vector<std::uint64_t>>(all.values)) {
+      made.tick.push_back(static_cast<std::int32_t>(made.tick.size()));
+      made.hash.push_back(hash);
+    }
+    return compare_hashes(read_hashes(file_),
+                          {made, ours(experiment.to_json(), input_hashes(experiment.inputs()))});
+  }
+  ResultComparison sweep_again() const {
+    const StoredSweep stored = read_sweep(file_);
+    if (!of("shard").empty() || stored.in_progress)
+      throw InputError(file_, "is a part of a sweep; allowed a finished one, whole or merged");
+    const Sweep sweep = Sweep::from_json(of("config"), file_ + " config");
+    SweepRunOptions options;
+    options.kernels = line_.kernels, options.stop = line_.stop;
+    return compare_sweep(stored.result, stored.attributes, run_sweep(sweep, options),
+                         ours(sweep.to_json(), input_hashes(sweep.inputs())), {});
+  }
+  // That the figure's command asked for.
+  int coarse() const {
+    const std::vector<std::string> words = words_of(of("command"));
+    const auto option = std::find(words.begin(), words.end(), "--coarse");
+    return option == words.end() || option + 1 == words.end() ? 1
+                                                              : std::max(1, std::atoi((option + 1)->c_str()));
+  }
+  ResultComparison figure_again(Progress& progress) const {
+    for (const FigureEntry& entry : figures()) {
+      if (entry.name != of("figure")) continue;
+      const Laboratory laboratory(
+          *line_.kernels, line_.stop, [&](double share) { progress.update(share); }, coarse());
+      std::vector<Column> columns;
+      for (const Table& table : entry.make(laboratory).tables)
+        for (Column column : table.columns) {
+          column.name = table.name + "/" + column.name;
+          columns.push_back(std::move(column));
+        }
+      return compare_figure(StoredFigure(Hdf5Reader(file_)), ColumnsInMemory(std::move(columns)), {});
+    }
+    throw InputError(file_, "is figure " + of("figure") + ", which this program does not know");
+  }
+
+  const CommandLine& line_;
+  std::string file_, kind_;
+  TextAttributes attributes_;
+};
+
+}  // namespace
+
+int command_repro(const CommandLine& line, const ReproRequest& request) {
+  const Repro repro(line, request.file);
+  repro.print();
+  if (!request.config.empty()) repro.write_config(request.config);
+  if (!request.run) return kDone;
+  std::fflush(stdout);
+  const ResultComparison comparison = repro.again();
+  print_comparison(comparison);
+  return static_cast<int>(comparison.outcome);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,76 @@
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/measures/measures.h"
+#include "analysis/storage/whole_file.h"
+#include "analysis/trace/sequence_log.h"
+#include "core/geometry/rotation.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/progress.h"
+#include "runners/cli/shell_command.h"
+#include "runners/experiment/experiment.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/provenance.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+// What makes the result again: no output path, no verbosity.
+std::string normalised(const RunRequest& request) {
+  std::vector<std::string> words = {"remote-touch", "run", request.experiment};
+  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
+  return shell_command(words);
+}
+
+// The log of a task: a line for every step.
+void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    SequenceStep step = steps[i];
+    const auto action = std::get<Choice>(parameters(step).front().value);
+    std::printf("  sequence.%zu %s%s%s: ", i, action.names[static_cast<std::size_t>(action.get())].c_str(),
+                step.fixture.empty() ? "" : " ", step.fixture.c_str());
+    if (i >= log.size()) {
+      std::puts("has not begun");
+      continue;
+    }
+    const SequenceEntry& entry = log[i];
+    std::printf("began at %.3f s", entry.began_s);
+    if (std::isnan(entry.ended_s))
+      std::printf(", has not ended");
+    else
+      std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
+    if (step.done == StepEnd::reached && !std::isnan(entry.distance_m))
+      std::printf(", %.2g m and %.2g deg from the goal", entry.distance_m,
+                  entry.angle_rad / kRadiansPerDegree);
+    std::puts("");
+  }
+}
+
+}  // namespace
+
+int command_run(const CommandLine& line, const RunRequest& request) {
+  const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  require_writable(request.output);
+  Progress progress(request.experiment, line.quiet);
+  std::vector<double> durations;
+  SimulationOptions options;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  options.hash_frames = true;
+  options.progress = [&](double share) { progress.update(share); };
+  if (request.timing) options.step_duration_s = &durations;
+  const TextAttributes origin = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
+                                           input_hashes(experiment.inputs()));
+  const Trace trace = simulate(experiment, options);
+  const std::string sum = write_trace(request.output, trace, origin, durations);
+  std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
+  for (const Measure& measure : measures())
+    std::printf("  %-20s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);
+  print_sequence(experiment.sequence(), sequence_log(trace));
+  return kDone;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,130 @@
+#include <omp.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/whole_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/progress.h"
+#include "runners/provenance/provenance.h"
+#include "runners/scorecard/evaluation.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+void make_folders(const std::filesystem::path& folder) {
+  for (const char* part : {"runs", "traces"}) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder / part, failure);
+    if (failure)
+      throw InputError((folder / part).string(),
+                       "cannot be made (" + failure.message() + "); allowed a writable folder");
+  }
+}
+
+// Without the scenes whose recording is not here.
+std::string configuration_of(const ContestPlan& plan) {
+  std::vector<ContestScene> scenes;
+  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
+  return configuration(plan.contest.contenders, scenes, plan.contest.replicates);
+}
+
+// What a folder's scorecard has, this one must have too: its page and result are replaced.
+void require_all_of(const std::filesystem::path& file, const ContestPlan& plan) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return;
+  const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
+                                  false);  // broken: not an object
+  const Json wanted = Json::parse(configuration_of(plan));
+  for (const char* kind : {"contenders", "scenes"}) {
+    if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
+      throw InputError(file.string(), "is no scorecard, and would be replaced; allowed another folder");
+    for (const auto& item : stored[kind].items())
+      if (!wanted.contains(kind) || !wanted[kind].contains(item.key()))
+        throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
+                                            ", and would be replaced; allowed those and others too, or "
+                                            "another folder");
+  }
+}
+
+// Runs that ended with an error; they count as no success.
+int report_failed_runs(const std::vector<ContestSweep>& sweeps) {
+  std::size_t failed = 0;
+  std::string first;
+  for (const ContestSweep& sweep : sweeps) {
+    const StoredSweep stored = read_sweep(sweep.file);
+    const auto runs = stored.result.runs_in(RunState::failed);
+    if (!runs.empty() && first.empty()) first = sweep.name + ": " + stored.result.error[runs.front()];
+    failed += runs.size();
+  }
+  if (failed == 0) return kDone;
+  std::printf("%zu runs failed; the first: %s\n", failed, first.c_str());
+  return kCheckFailed;
+}
+
+std::string normalised(const ScorecardRequest& request) {
+  std::string command = "remote-touch scorecard";
+  for (const std::string& name : request.contenders) command += " " + name;
+  if (!request.scenes.empty()) command += " --scene";
+  for (const std::string& name : request.scenes) command += " " + name;
+  return command + " --seeds " + std::to_string(request.seeds);
+}
+
+void print(const Scorecard& card) {
+  for (const SceneScore& scene : card.scenes) {
+    std::printf("%s\n", scene.name.c_str());
+    for (std::size_t c = 0; c < card.contenders.size(); ++c) {
+      std::printf("  %-18s", card.contenders[c].c_str());
+      for (const Share& share : scene.success[c]) std::printf(" %3d/%d", share.events, share.runs);
+      std::printf("\n");
+    }
+  }
+}
+
+}  // namespace
+
+int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
+  if (request.threads > 0) omp_set_num_threads(request.threads);
+  const ContestPlan plan = plan_of(
+      {chosen_contenders(request.contenders), chosen_scenes(request.scenes), request.seeds, request.folder});
+  const std::vector<ContestSweep> sweeps = plan.sweeps();
+  require_same_contest(sweeps);
+  require_all_of(std::filesystem::path(request.folder) / "scorecard.h5", plan);
+  make_folders(request.folder);
+  try {
+    Progress progress("scorecard", line.quiet);
+    do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double share) {
+      progress.update((static_cast<double>(done) + share) / static_cast<double>(all));
+    });
+    Progress after("traces and page", line.quiet);
+    const ScorecardPage page =
+        evaluate(plan, *line.kernels, line.stop,
+                 [&](std::size_t done, std::size_t all) { after.update(done, all, 0, "scenes"); });
+    const std::filesystem::path folder = request.folder;
+    const Figure figure = scorecard_figure(page.card);
+    const std::string sum = write_figure(folder / "scorecard.h5", figure,
+                                         provenance(configuration_of(plan), normalised(request), ""));
+    const std::string text = html(page);
+    write_whole_file(folder / "index.html", text.data(), text.size());
+    print(page.card);
+    for (const auto& [name, why] : plan.skipped)
+      std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
+    std::printf("%s: %zu scenes, %zu contenders, digest %s\n", (folder / "index.html").c_str(),
+                page.card.scenes.size(), page.card.contenders.size(), sum.c_str());
+    return report_failed_runs(sweeps);
+  } catch (const Interrupted&) {
+    std::fprintf(stderr,
+                 "remote-touch: interrupted; finished runs are kept in %s, and the same command goes on\n",
+                 request.folder.c_str());
+    return kInterrupted;
+  }
+}
+
+}  // namespace remote_touch

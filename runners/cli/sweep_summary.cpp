@@ -1,0 +1,51 @@
+#include "runners/cli/sweep_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/cli/commands.h"
+
+namespace remote_touch {
+
+namespace {
+
+void print_measure(const Column& measure) {
+  double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+  std::size_t count = 0;
+  for (const double value : std::get<std::vector<double>>(measure.values)) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value), high = std::max(high, value), sum += value;
+    ++count;
+  }
+  if (count > 0)
+    std::printf("  %-20s mean %-10.6g %.6g .. %.6g %s\n", measure.name.c_str(),
+                sum / static_cast<double>(count), low, high, measure.units.c_str());
+}
+
+}  // namespace
+
+std::string extent_text(const SweepResult& result) {
+  std::string text;
+  for (const Column& axis : result.axes) text += (text.empty() ? "" : " x ") + std::to_string(axis.length());
+  return text;
+}
+
+int print_summary(const std::string& file, const SweepResult& result) {
+  const auto failed = result.runs_in(RunState::failed);
+  std::printf("%s: %s cells, %zu runs done, %zu failed", file.c_str(), extent_text(result).c_str(),
+              result.runs_in(RunState::done).size(), failed.size());
+  if (!result.round.empty())
+    std::printf(" in %d rounds", 1 + *std::max_element(result.round.begin(), result.round.end()));
+  if (const auto elsewhere = result.runs_in(RunState::elsewhere).size(); elsewhere > 0)
+    std::printf(", %zu in other shards", elsewhere);
+  std::printf(", digest %s\n", digest(result).c_str());
+  for (const Column& measure : result.measures) print_measure(measure);
+  if (failed.empty()) return kDone;
+  std::printf("  the first failure: %s\n", result.error[failed.front()].c_str());
+  return kCheckFailed;
+}
+
+}  // namespace remote_touch

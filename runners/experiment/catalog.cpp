@@ -1,0 +1,147 @@
+#include "runners/experiment/catalog.h"
+
+#include "core/proxy/proxy_renderer.h"
+#include "core/rivals/god_object_renderer.h"
+#include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/penalty_renderer.h"
+#include "core/tracked_sheet/tracked_sheet_renderer.h"
+#include "core/virtual_fixtures/everywhere.h"
+#include "core/virtual_fixtures/half_space.h"
+#include "core/virtual_fixtures/hue_range.h"
+#include "core/virtual_fixtures/near_point.h"
+#include "runners/live/loop/session_scene.h"
+#include "runners/tool_files/loaded_spheres.h"
+#include "runners/tool_files/loaded_tool.h"
+#include "runners/trajectories/follow_surface.h"
+#include "runners/trajectories/image_press.h"
+#include "runners/trajectories/image_scan.h"
+#include "runners/trajectories/poses.h"
+#include "runners/trajectories/press.h"
+#include "runners/trajectories/random_walk.h"
+#include "runners/trajectories/waypoints.h"
+#include "scenarios/camera/beating_heart.h"
+#include "scenarios/camera/camera_scene.h"
+#include "scenarios/camera/valve_tank.h"
+#include "scenarios/recordings/image_mask.h"
+#include "scenarios/recordings/recorded_scene.h"
+#include "scenarios/synthetic/flat_grid.h"
+#include "scenarios/synthetic/listed_points.h"
+#include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/moving_shape.h"
+#include "scenarios/synthetic/open_box.h"
+#include "scenarios/synthetic/sheet.h"
+#include "scenarios/synthetic/slot.h"
+#include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/wedge.h"
+
+namespace remote_touch {
+
+namespace {
+
+template <class Product, class Settings, class... Seam>
+std::unique_ptr<Blueprint<Seam...>> blueprint() {
+  return std::make_unique<BlueprintFor<Product, Settings, Seam...>>();
+}
+
+template <class Product>
+ScenarioEntry scenario(const char* name, const char* summary) {
+  return {name, summary,
+          blueprint<Product, typename Product::Settings, Scenario, const NoiseKey&, const Kernels&>};
+}
+
+template <class Product>
+FixtureEntry fixture(const char* name, const char* summary) {
+  return {name, summary, blueprint<Product, typename Product::Settings, FixtureRule>};
+}
+
+template <class Product>
+TrajectoryEntry trajectory(const char* name, const char* summary) {
+  return {name, summary, blueprint<Product, typename Product::Settings, Trajectory, const Scenario&>};
+}
+
+template <class Product, class Settings>
+RendererEntry renderer(const char* name, Freedoms freedoms, HeldBy held_by, const char* summary) {
+  return {{name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>}, freedoms, held_by};
+}
+
+const ScenarioEntry kScenarios[] = {
+    scenario<FlatGrid>("flat-grid", "a flat 100 x 100 cloud that rests, 4.3.1"),
+    scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
+    scenario<MovingShape>("moving-shape",
+                          "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
+    scenario<TriangleWave>("triangle-wave", "sharp edges of growing height, 4.3.3"),
+    scenario<CameraScene>("camera-scene",
+                          "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
+    scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
+    scenario<BeatingHeart>("beating-heart",
+                           "a simulated depth camera looks down on a beating organ on a table"),
+    scenario<ValveTank>("valve-tank",
+                        "a simulated colour and depth camera looks at two valves in turbid water, 7.5.1"),
+    scenario<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
+    scenario<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
+    scenario<Wedge>("wedge", "two walls that lean apart, close on a tool and open again"),
+    scenario<MovingPlane>("moving-plane", "a flat cloud with normals that rests, then lifts a tool"),
+    scenario<Sheet>("sheet", "one flat panel with normals, to be touched from the back too"),
+    scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
+    scenario<SessionScene>("live-session",
+                           "the frames of a recorded live session, when the live renderer got them"),
+};
+
+const FixtureEntry kFixtures[] = {
+    fixture<Everywhere>("everywhere", "every point, 5.3.3"),
+    fixture<HalfSpace>("half-space", "the points on one side of a plane, 5.3.2"),
+    fixture<NearPoint>("near-point", "the points around a picked one: a place, or what a pixel sees"),
+    fixture<HueRange>("hue-range", "the points of a colour"),
+    fixture<ImageMask>("image-mask", "the points whose pixels a mask image marks"),
+};
+
+const TrajectoryEntry kTrajectories[] = {
+    trajectory<Waypoints>("waypoints", "listed points, each with its speed"),
+    trajectory<Poses>("poses", "listed poses of six degrees of freedom, each with the time of the way there"),
+    trajectory<SessionHand>("live-session", "the hand of a recorded live session, tick for tick"),
+    trajectory<RandomWalk>("random-walk", "a smooth random motion of six degrees of freedom"),
+    trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
+    trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),
+    trajectory<ImageScan>("image-scan", "along an image row, a set depth behind the first frame's surface"),
+    trajectory<ImagePress>("image-press",
+                           "where a pixel looks, a set depth behind the newest frame's surface"),
+};
+
+const RendererEntry kRenderers[] = {
+    renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three, HeldBy::points,
+                                             "3-DOF point cloud proxy, chapters 4 and 5"),
+    renderer<TrackedSheetRenderer, TrackedSheetParameters>(
+        "tracked-sheet", Freedoms::three, HeldBy::sheet,
+        "3-DOF proxy on a sheet that is tracked and denoised"),
+    renderer<PenaltyRenderer, PenaltyParameters>("penalty", Freedoms::three, HeldBy::nothing,
+                                                 "a rival: direct rendering, a spring and no proxy"),
+    renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
+        "implicit-surface", Freedoms::three, HeldBy::points,
+        "a rival: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+    renderer<GodObjectRenderer, GodObjectParameters>(
+        "god-object", Freedoms::three, HeldBy::mesh,
+        "a rival: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
+    renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six, HeldBy::points,
+                                               "6-DOF rendering of a rigid tool, chapter 6"),
+    renderer<LoadedSpheres, LoadedSpheres::Settings>(
+        "sphere-tree", Freedoms::six, HeldBy::regions,
+        "6-DOF forbidden regions: a tool of spheres against those around points, chapter 7"),
+};
+
+}  // namespace
+
+std::span<const ScenarioEntry> scenarios() {
+  return kScenarios;
+}
+std::span<const FixtureEntry> fixtures() {
+  return kFixtures;
+}
+std::span<const TrajectoryEntry> trajectories() {
+  return kTrajectories;
+}
+std::span<const RendererEntry> renderers() {
+  return kRenderers;
+}
+
+}  // namespace remote_touch

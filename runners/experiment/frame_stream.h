@@ -1,0 +1,75 @@
+// The way of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
+// are assigned fixtures, and it arrives late, at irregular times, or not at all.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/depth/depth_pipeline.h"
+#include "core/random/noise.h"
+#include "core/rendering/renderer.h"
+#include "core/virtual_fixtures/fixture_assignment.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// What happens to frames between capture and arrival, each for itself, drawn from the run's noise key.
+struct Delivery {
+  double latency_s = 0;         // shortest time from capture to arrival
+  double jitter_s = 0;          // up to so much is added, evenly spread; frames may overtake each other
+  double drop_probability = 0;  // of a frame that never arrives
+};
+
+// What is made of a frame's points before they are sent.
+struct FrameProcessing {
+  std::unique_ptr<DepthPipeline> depth;  // null: the points are sent as the scenario shows them
+  FixtureAssignment fixtures;
+
+  bool changes_points() const { return depth || !fixtures.empty(); }
+  // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is no
+  // depth image to be processed, or a fixture rule cannot be applied to it.
+  void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
+};
+
+// Fingerprint of a frame's points and its time of capture.
+std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
+
+class FrameStream {
+ public:
+  // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
+  // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
+  // frame is made for newest_hash(). With made_points frames come with every point made, which are the same
+  // points, so that nobody pays for the noise of those that he asks for.
+  FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
+              const NoiseKey& key, bool hash_frames, bool made_points = false);
+
+  // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
+  // Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture rule
+  // cannot be applied to it.
+  void deliver_until(double time_s, Renderer& renderer);
+  // Fingerprint of the newest frame handed over, 0 before the first or where it is not made.
+  std::uint64_t newest_hash() const { return hash_; }
+
+ private:
+  struct OnTheWay {
+    double arrives_s;
+    int frame;
+  };
+  bool exists(int frame) const;
+  int seen(int frame) const;  // the scenario's frame that this one shows
+  double captured_s(int frame) const;
+  void send(int frame);
+  void fill(Frame& frame) const;  // with its points and targets
+  std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
+
+  const Scenario& scenario_;
+  FrameProcessing processing_;
+  Delivery delivery_;
+  NoiseKey key_;
+  bool hash_frames_, made_points_;
+  int next_ = 0;  // to be sent
+  std::vector<OnTheWay> on_the_way_;
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,139 @@
+#include "runners/live/devices/deadline_socket.h"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+// EAGAIN for everything that says to try again later.
+int kind_of(int error) {
+  return error == EWOULDBLOCK || error == EINTR ? EAGAIN : error;
+}
+
+}  // namespace
+
+DeadlineSocket::~DeadlineSocket() {
+  close();
+}
+
+DeadlineSocket::DeadlineSocket(DeadlineSocket&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+
+DeadlineSocket& DeadlineSocket::operator=(DeadlineSocket&& other) noexcept {
+  std::swap(handle_, other.handle_);
+  return *this;
+}
+
+void DeadlineSocket::close() noexcept {
+  if (handle_ >= 0) ::close(handle_);
+  handle_ = -1;
+}
+
+void DeadlineSocket::cut() noexcept {
+  if (handle_ >= 0) ::shutdown(handle_, SHUT_RDWR);
+}
+
+std::string DeadlineSocket::connect_to_host(const std::string& host, const std::string& port,
+                                            double deadline_s) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(host.c_str(), port.c_str(), &wanted, &found);
+  if (error != 0) return ::gai_strerror(error);
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> all(found, ::freeaddrinfo);
+  int why = EHOSTUNREACH;
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    close();
+    handle_ = ::socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    why = handle_ < 0 ? errno : connect_within(one->ai_addr, one->ai_addrlen, deadline_s);
+    if (why != 0) continue;
+    const int at_once = 1;
+    ::setsockopt(handle_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    return "";
+  }
+  close();
+  return std::strerror(why);
+}
+
+std::string DeadlineSocket::connect_to_path(const std::string& path, double deadline_s) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return "the path is too long for a socket";
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  close();
+  handle_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int why = handle_ < 0 ? errno : connect_within(&address, sizeof address, deadline_s);
+  if (why == 0) return "";
+  close();
+  return std::strerror(why);
+}
+
+int DeadlineSocket::connect_within(const void* address, unsigned size, double deadline_s) noexcept {
+  if (::connect(handle_, static_cast<const sockaddr*>(address), size) == 0) return 0;
+  if (errno != EINPROGRESS) return errno;
+  if (const int error = wait(POLLOUT, deadline_s)) return error;
+  int error = 0;
+  socklen_t length = sizeof error;
+  ::getsockopt(handle_, SOL_SOCKET, SO_ERROR, &error, &length);
+  return error;
+}
+
+// Looks once also after the deadline: a thread that was not running meanwhile finds what has come.
+int DeadlineSocket::wait(short events, double deadline_s) noexcept {
+  for (;;) {
+    const double left_s = std::max(0.0, deadline_s - steady_s());
+    timespec left{};
+    left.tv_sec = static_cast<time_t>(left_s);
+    left.tv_nsec = static_cast<long>(1e9 * (left_s - std::floor(left_s)));
+    pollfd one{handle_, events, 0};
+    const int ready = ::ppoll(&one, 1, &left, nullptr);
+    if (ready > 0) return 0;
+    if (ready == 0) return ETIMEDOUT;
+    if (errno != EINTR) return errno;
+  }
+}
+
+int DeadlineSocket::wait_readable(double deadline_s) noexcept {
+  return wait(POLLIN, deadline_s);
+}
+
+DeadlineSocket::Transfer DeadlineSocket::read_ready(void* data, std::size_t size) noexcept {
+  const ssize_t got = ::recv(handle_, data, size, MSG_DONTWAIT);
+  if (got > 0) return {static_cast<std::size_t>(got), 0};
+  return {0, got == 0 ? ECONNRESET : kind_of(errno)};
+}
+
+DeadlineSocket::Transfer DeadlineSocket::read_some(void* data, std::size_t size, double deadline_s) noexcept {
+  for (;;) {
+    const Transfer got = read_ready(data, size);
+    if (got.error != EAGAIN) return got;
+    if (const int error = wait(POLLIN, deadline_s)) return {0, error};
+  }
+}
+
+DeadlineSocket::Transfer DeadlineSocket::write_some(const void* data, std::size_t size,
+                                                    double deadline_s) noexcept {
+  for (;;) {
+    const ssize_t put = ::send(handle_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (put >= 0) return {static_cast<std::size_t>(put), 0};
+    if (kind_of(errno) != EAGAIN) return {0, errno};
+    if (const int error = wait(POLLOUT, deadline_s)) return {0, error};
+  }
+}
+
+}  // namespace remote_touch

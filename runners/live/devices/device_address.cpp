@@ -1,0 +1,69 @@
+#include "runners/live/devices/device_address.h"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+namespace remote_touch {
+
+namespace {
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+std::string short_text(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& address,
+                             const std::vector<std::string>& known)
+    : written_(scheme + ":" + address) {
+  const std::size_t mark = address.find('?');
+  place_ = address.substr(0, mark);
+  if (mark == std::string::npos) return;
+  std::istringstream settings(address.substr(mark + 1));
+  for (std::string setting; std::getline(settings, setting, '&');) {
+    const std::size_t equals = setting.find('=');
+    const std::string key = setting.substr(0, equals);
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw refusal("has no setting \"" + key + "\"; allowed " + list_of(known));
+    if (equals == std::string::npos || equals + 1 == setting.size())
+      throw refusal("the setting " + key + " has no value; write " + key + "=VALUE");
+    if (!settings_.emplace(key, setting.substr(equals + 1)).second)
+      throw refusal("the setting " + key + " is there twice; allowed once");
+  }
+}
+
+std::string DeviceAddress::word(const std::string& key, const std::string& otherwise) const {
+  const auto found = settings_.find(key);
+  return found == settings_.end() ? otherwise : found->second;
+}
+
+std::string DeviceAddress::choice(const std::string& key, const std::vector<std::string>& allowed) const {
+  const std::string chosen = word(key, allowed.front());
+  if (std::find(allowed.begin(), allowed.end(), chosen) == allowed.end())
+    throw refusal(key + " is \"" + chosen + "\"; allowed " + list_of(allowed));
+  return chosen;
+}
+
+double DeviceAddress::number(const std::string& key, double otherwise, double smallest,
+                             double largest) const {
+  if (!has(key)) return otherwise;
+  const std::string text = word(key, "");
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  // Written so that what is no number is refused too.
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= smallest && value <= largest))
+    throw refusal(key + " is \"" + text + "\"; allowed a number from " + short_text(smallest) + " to " +
+                  short_text(largest));
+  return value;
+}
+
+}  // namespace remote_touch

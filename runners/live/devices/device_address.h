@@ -1,0 +1,35 @@
+// The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
+// scheme, a place and settings.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+class DeviceAddress {
+ public:
+  // address: without the scheme. Throws InputError when it has a setting that is not known, or one twice.
+  DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
+
+  const std::string& place() const { return place_; }  // empty where the user named none
+  // As the user wrote it, for messages.
+  const std::string& written() const { return written_; }
+
+  bool has(const std::string& key) const { return settings_.count(key) > 0; }
+  std::string word(const std::string& key, const std::string& otherwise) const;
+  // One of allowed; without the setting, the first of them.
+  std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
+  double number(const std::string& key, double otherwise, double smallest, double largest) const;
+
+  InputError refusal(const std::string& problem) const { return InputError(written_, problem); }
+
+ private:
+  std::string written_, place_;
+  std::map<std::string, std::string> settings_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,76 @@
+#include "runners/live/devices/device_table.h"
+
+#include <utility>
+
+#include "runners/live/devices/entact.h"
+#include "runners/live/devices/force_dimension.h"
+#include "runners/live/devices/haply.h"
+#include "runners/live/devices/open_haptics.h"
+#include "runners/live/devices/simulated_device.h"
+#include "runners/live/devices/spacenav.h"
+#include "runners/live/devices/uri.h"
+#include "runners/live/loop/session_scene.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const Experiment& experiment,
+                                             const Kernels& kernels) {
+  if (!address.empty())
+    throw InputError("--device sim:" + address, "allowed sim:, for the experiment's trajectory and operator");
+  auto script = experiment.build_trajectory(*experiment.build_scenario(kernels));
+  return std::make_unique<SimulatedDevice>(std::move(script), experiment.build_hand(),
+                                           DevicePlacement(experiment.live()),
+                                           experiment.settings().haptic_rate_hz);
+}
+
+// The recorded hand, in real time; it feels nothing.
+std::unique_ptr<HapticDevice> open_session(const std::string& address, const Experiment& experiment,
+                                           const Kernels& kernels) {
+  const auto scenario = experiment.build_scenario(kernels);
+  const double rate_hz = experiment.settings().haptic_rate_hz;
+  return std::make_unique<SimulatedDevice>(
+      std::make_unique<SessionHand>(SessionHand::Settings{address}, *scenario),
+      SimulatedHand({}, {}, 1 / rate_hz), DevicePlacement(experiment.live()), rate_hz);
+}
+
+template <std::unique_ptr<HapticDevice> (*open)(const std::string&)>
+std::unique_ptr<HapticDevice> open_at(const std::string& address, const Experiment&, const Kernels&) {
+  return open(address);
+}
+
+constexpr DeviceEntry kDevices[] = {
+    {"sim", "sim:", "the experiment's trajectory, with its operator who feels the force; no hardware",
+     open_simulated,
+     [] {
+       return Availability{true, true, "simulated"};
+     }},
+    {"fd", "fd:NUMBER", "Force Dimension omega, sigma, delta, lambda, and Novint Falcon",
+     open_at<open_force_dimension>, force_dimension_availability},
+    {"touch", "touch:NAME", "Touch, Touch X and Phantoms, by OpenHaptics", open_at<open_open_haptics>,
+     open_haptics_availability},
+    {"entact", "entact:IP", "Entact W5D and W7D", open_at<open_entact>, entact_availability},
+    {"haply", "haply:ws://127.0.0.1:10001", "Haply Inverse3, by the WebSocket of its service",
+     open_at<open_haply>, haply_availability},
+    {"spnav", "spnav:PATH", "3Dconnexion SpaceMouse, by spacenavd; input only", open_at<open_spacenav>,
+     [] { return spacenav_availability(); }},
+    {"replay", "replay:FILE", "the hand of a recorded live session; no hardware", open_session,
+     [] {
+       return Availability{true, true, "reads files"};
+     }},
+};
+
+}  // namespace
+
+std::span<const DeviceEntry> devices() {
+  return kDevices;
+}
+
+std::unique_ptr<HapticDevice> open_device(const std::string& text, const Experiment& experiment,
+                                          const Kernels& kernels) {
+  const Uri uri = parse_uri("--device", text);
+  return find_scheme(devices(), "--device", uri).open(uri.address, experiment, kernels);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+// Every haptic device that --device can name: one line each.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "runners/experiment/experiment.h"
+#include "runners/live/devices/availability.h"
+#include "runners/live/devices/haptic_device.h"
+
+namespace remote_touch {
+
+struct DeviceEntry {
+  const char* scheme;
+  const char* example;
+  const char* summary;
+  std::unique_ptr<HapticDevice> (*open)(const std::string& address, const Experiment& experiment,
+                                        const Kernels& kernels);
+  Availability (*availability)();
+};
+
+std::span<const DeviceEntry> devices();
+
+// Throws InputError when the device cannot be opened.
+std::unique_ptr<HapticDevice> open_device(const std::string& uri, const Experiment& experiment,
+                                          const Kernels& kernels);
+
+}  // namespace remote_touch

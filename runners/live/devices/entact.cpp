@@ -1,0 +1,197 @@
+#include "runners/live/devices/entact.h"
+
+#include <array>
+#include <atomic>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/devices/gated_device.h"
+#include "runners/live/devices/known_fault.h"
+#include "runners/live/devices/shared_library.h"
+#include "runners/live/devices/vendor_axes.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The EntactAPI: mm, mm/s, rad/s, N and N mm, x towards the user, y to the right, z up.
+struct Eapi {
+  Eapi();
+
+  using Handle = void*;
+  enum Mode { disabled = 0, force_control = 1 };
+  static constexpr int kOk = 1;
+
+  SharedLibrary library;
+  int (*open)(Handle handles[], int size) = nullptr;  // tells how many answered
+  int (*connect_device)(Handle handles[], int index, char ip_address[]) = nullptr;
+  int (*close)() = nullptr;
+  int (*set_mode)(Handle, int mode) = nullptr;
+  int (*home_device)(Handle) = nullptr;
+  int (*read_task_position)(Handle, double* position, int size) = nullptr;
+  int (*read_task_velocity)(Handle, double* velocity, int size) = nullptr;
+  int (*write_force)(Handle, double* force, int size) = nullptr;
+  // Not in every version.
+  int (*is_homed)(Handle) = nullptr;
+  int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
+};
+
+const SharedLibrary::Place kPlace{
+    {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"};
+
+Eapi::Eapi() : library(kPlace) {
+  library.find("openEAPI", open);
+  library.find("connectDeviceEAPI", connect_device);
+  library.find("closeEAPI", close);
+  library.find("setModeEAPI", set_mode);
+  library.find("homeDeviceEAPI", home_device);
+  library.find("readTaskPositionEAPI", read_task_position);
+  library.find("readTaskVelocityEAPI", read_task_velocity);
+  library.find("writeForceEAPI", write_force);
+  library.find_optional("isHomedEAPI", is_homed);
+  library.find_optional("getDeviceInfoEAPI", get_device_info);
+}
+
+constexpr double kMPerMm = 1e-3, kNmmPerNm = 1e3;
+
+class Entact : public GatedDevice {
+ public:
+  Entact(const std::string& address, const std::string& subject);
+  ~Entact() override;
+  Entact(const Entact&) = delete;
+  Entact& operator=(const Entact&) = delete;
+
+  const DeviceTraits& traits() const override { return traits_; }
+
+ private:
+  DeviceFault sense(DeviceReading& reading) noexcept override;
+  DeviceFault switch_on() noexcept override;
+  DeviceFault exert(const Wrench& wrench) noexcept override;
+  void switch_off() noexcept override;
+
+  void connect(std::string address, const std::string& subject);
+  void home(const std::string& subject);
+  std::string product() const;
+  int tell(const Wrench& wrench) noexcept;
+
+  Eapi eapi_;
+  Eapi::Handle handle_ = nullptr;
+  DeviceTraits traits_;
+  std::atomic<bool> has_motors_on_{false};
+};
+
+Entact::Entact(const std::string& address, const std::string& subject) {
+  try {
+    connect(address, subject);
+    home(subject);
+  } catch (...) {
+    eapi_.close();
+    throw;
+  }
+  traits_.name = product();
+  traits_.sensed_axes = traits_.actuated_axes = 6;  // of the turns, the W5D exerts two
+}
+
+Entact::~Entact() {
+  let_go();
+  eapi_.close();
+}
+
+// By value: the vendor takes the address as one it may write.
+void Entact::connect(std::string address, const std::string& subject) {
+  std::array<Eapi::Handle, 16> handles{};
+  const bool is_found = address.empty()
+                            ? eapi_.open(handles.data(), static_cast<int>(handles.size())) > 0
+                            : eapi_.connect_device(handles.data(), 0, address.data()) == Eapi::kOk;
+  handle_ = handles[0];
+  if (!is_found || handle_ == nullptr)
+    throw InputError(subject,
+                     "no device answers; allowed one that is powered, in this network and in no other "
+                     "program's hands");
+  eapi_.set_mode(handle_, Eapi::disabled);
+}
+
+// Homing is known to fail now and then where it should not.
+void Entact::home(const std::string& subject) {
+  if (eapi_.is_homed != nullptr && eapi_.is_homed(handle_) == Eapi::kOk) return;
+  for (int attempt = 0; attempt < 20; ++attempt)
+    if (eapi_.home_device(handle_) == Eapi::kOk) return;
+  throw InputError(subject, "cannot be homed; hold the handle in its calibration position and open it again");
+}
+
+std::string Entact::product() const {
+  std::array<char, 128> model{}, name{};
+  if (eapi_.get_device_info == nullptr ||
+      eapi_.get_device_info(handle_, model.data(), name.data(), static_cast<int>(model.size()) - 1) !=
+          Eapi::kOk)
+    return "Entact";
+  const std::string text = model.data();
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
+// The position, then the turn by rows.
+DeviceFault Entact::sense(DeviceReading& reading) noexcept {
+  if (const DeviceFault fault = switch_on()) return fault;
+  std::array<double, 12> pose{};
+  std::array<double, 6> velocity{};
+  if (eapi_.read_task_position(handle_, pose.data(), 12) != Eapi::kOk)
+    return {"Entact: the pose cannot be read", -1};
+  if (eapi_.read_task_velocity(handle_, velocity.data(), 6) != Eapi::kOk)
+    return {"Entact: the velocity cannot be read", -1};
+  reading.position_m = from_user_right_up(Vec3(pose.data())) * kMPerMm;
+  reading.velocity_m_per_s = from_user_right_up(Vec3(velocity.data())) * kMPerMm;
+  reading.turning_rad_per_s = from_user_right_up(Vec3(velocity.data() + 3));
+  reading.buttons = 0;  // it has none that the library knows
+  const Eigen::Matrix3d turn =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.data() + 3);
+  if (!is_rotation(turn)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(turn_from_user_right_up(turn));
+  return {};
+}
+
+int Entact::tell(const Wrench& wrench) noexcept {
+  const Vec3 f = to_user_right_up(wrench.force_N), t = to_user_right_up(wrench.torque_Nm) * kNmmPerNm;
+  std::array<double, 6> told{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
+  return eapi_.write_force(handle_, told.data(), 6);
+}
+
+// Force control is entered with no force, and a force must be told before the device tells where it is.
+DeviceFault Entact::switch_on() noexcept {
+  if (is_let_go()) return kLetGo;
+  if (has_motors_on_) return {};
+  if (eapi_.set_mode(handle_, Eapi::force_control) != Eapi::kOk)
+    return {"Entact: the motors cannot be switched on", -1};
+  if (tell({}) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
+  has_motors_on_ = true;
+  return {};
+}
+
+DeviceFault Entact::exert(const Wrench& wrench) noexcept {
+  if (tell(wrench) != Eapi::kOk) return {"Entact: the force cannot be set", -1};
+  return {};
+}
+
+// Without motors a force is not told: nothing says that such a call would be answered.
+void Entact::switch_off() noexcept {
+  if (has_motors_on_.exchange(false)) tell({});
+  eapi_.set_mode(handle_, Eapi::disabled);
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_entact(const std::string& address) {
+  return std::make_unique<Entact>(address, address.empty() ? "entact" : "entact:" + address);
+}
+
+Availability entact_availability() {
+  Availability availability;
+  try {
+    const Eapi eapi;
+    availability.found = true;
+    availability.detail = eapi.library.file() + ": devices are looked for when one is opened";
+  } catch (const InputError& error) {
+    availability.detail = error.what();
+  }
+  return availability;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,212 @@
+#include "runners/live/devices/force_dimension.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/devices/gated_device.h"
+#include "runners/live/devices/known_fault.h"
+#include "runners/live/devices/shared_library.h"
+#include "runners/live/devices/vendor_axes.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The DHD of version 3: SI units, x towards the user, y to the right, z up. Below 0 is an error; above it, a
+// note on the timing or on motors at their limit.
+struct Dhd {
+  Dhd();
+
+  SharedLibrary library;
+  int (*get_device_count)() = nullptr;
+  int (*open_id)(char id) = nullptr;
+  int (*close)(char id) = nullptr;
+  bool (*has_wrist)(char id) = nullptr;
+  int (*enable_force)(unsigned char on, char id) = nullptr;
+  unsigned (*get_button_mask)(char id) = nullptr;
+  int (*get_position_and_orientation_frame)(double* x, double* y, double* z, double frame[3][3],
+                                            char id) = nullptr;
+  int (*get_linear_velocity)(double* x, double* y, double* z, char id) = nullptr;
+  int (*get_angular_velocity_rad)(double* x, double* y, double* z, char id) = nullptr;
+  int (*set_force_and_torque_and_gripper_force)(double fx, double fy, double fz, double tx, double ty,
+                                                double tz, double gripper, char id) = nullptr;
+  const char* (*error_get_last_str)() = nullptr;
+  // Those that older versions lack.
+  int (*error_get_last)() = nullptr;
+  const char* (*get_system_name)(char id) = nullptr;
+  bool (*has_active_wrist)(char id) = nullptr;
+  int (*stop)(char id) = nullptr;
+  double (*get_max_force)(char id) = nullptr;
+  double (*get_max_torque)(char id) = nullptr;
+};
+
+const SharedLibrary::Place kPlace{
+    {"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"};
+
+Dhd::Dhd() : library(kPlace) {
+  library.find("dhdGetDeviceCount", get_device_count);
+  library.find("dhdOpenID", open_id);
+  library.find("dhdClose", close);
+  library.find("dhdHasWrist", has_wrist);
+  library.find("dhdEnableForce", enable_force);
+  library.find("dhdGetButtonMask", get_button_mask);
+  library.find("dhdGetPositionAndOrientationFrame", get_position_and_orientation_frame);
+  library.find("dhdGetLinearVelocity", get_linear_velocity);
+  library.find("dhdGetAngularVelocityRad", get_angular_velocity_rad);
+  library.find("dhdSetForceAndTorqueAndGripperForce", set_force_and_torque_and_gripper_force);
+  library.find("dhdErrorGetLastStr", error_get_last_str);
+  library.find_optional("dhdErrorGetLast", error_get_last);
+  library.find_optional("dhdGetSystemName", get_system_name);
+  library.find_optional("dhdHasActiveWrist", has_active_wrist);
+  library.find_optional("dhdStop", stop);
+  library.find_optional("dhdGetMaxForce", get_max_force);
+  library.find_optional("dhdGetMaxTorque", get_max_torque);
+}
+
+constexpr std::array<KnownFault, 5> kFaults{{
+    {2, "Force Dimension: the device does not communicate"},
+    {5, "Force Dimension: the device is gone"},
+    {7, "Force Dimension: the device did not answer in time"},
+    {12, "Force Dimension: the device is not ready"},
+    {20, "Force Dimension: another program has the device"},
+}};
+
+class ForceDimension : public GatedDevice {
+ public:
+  ForceDimension(int number, const std::string& subject);
+  ~ForceDimension() override;
+  ForceDimension(const ForceDimension&) = delete;
+  ForceDimension& operator=(const ForceDimension&) = delete;
+
+  const DeviceTraits& traits() const override { return traits_; }
+
+ private:
+  DeviceFault sense(DeviceReading& reading) noexcept override;
+  DeviceFault switch_on() noexcept override;
+  DeviceFault exert(const Wrench& wrench) noexcept override;
+  void switch_off() noexcept override;
+
+  void learn_traits();
+  int tell(const Vec3& force_N, const Vec3& torque_Nm) noexcept;
+  DeviceFault last_fault(const char* what) const noexcept;
+
+  Dhd dhd_;
+  char id_ = -1;
+  DeviceTraits traits_;
+};
+
+ForceDimension::ForceDimension(int number, const std::string& subject) {
+  const int count = dhd_.get_device_count();
+  if (count <= 0)
+    throw InputError(
+        subject,
+        "no device is connected; allowed one that is powered, and whose USB port this user may open");
+  if (number >= count) throw InputError(subject, "no such device; allowed 0 to " + std::to_string(count - 1));
+  const int id = dhd_.open_id(static_cast<char>(number));
+  if (id < 0)
+    throw InputError(subject, std::string("cannot be opened (") + dhd_.error_get_last_str() +
+                                  "); allowed a device that no other program has");
+  id_ = static_cast<char>(id);
+  learn_traits();
+}
+
+ForceDimension::~ForceDimension() {
+  let_go();
+  dhd_.close(id_);
+}
+
+// A limit below 0 is one that is not set.
+void ForceDimension::learn_traits() {
+  if (dhd_.get_system_name != nullptr)
+    if (const char* name = dhd_.get_system_name(id_); name != nullptr) traits_.name = name;
+  traits_.sensed_axes = dhd_.has_wrist(id_) ? 6 : 3;
+  traits_.actuated_axes = dhd_.has_active_wrist != nullptr && dhd_.has_active_wrist(id_) ? 6 : 3;
+  if (dhd_.get_max_force != nullptr) traits_.largest_force_N = std::max(0.0, dhd_.get_max_force(id_));
+  if (dhd_.get_max_torque != nullptr && traits_.actuated_axes == 6)
+    traits_.largest_torque_Nm = std::max(0.0, dhd_.get_max_torque(id_));
+}
+
+DeviceFault ForceDimension::last_fault(const char* what) const noexcept {
+  return fault_of(kFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
+}
+
+// A device without a wrist is asked for no turn.
+DeviceFault ForceDimension::sense(DeviceReading& reading) noexcept {
+  Vec3 p, v, w = Vec3::Zero();
+  double frame[3][3];
+  if (dhd_.get_position_and_orientation_frame(&p.x(), &p.y(), &p.z(), frame, id_) < 0)
+    return last_fault("Force Dimension: the pose cannot be read");
+  if (dhd_.get_linear_velocity(&v.x(), &v.y(), &v.z(), id_) < 0)
+    return last_fault("Force Dimension: the velocity cannot be read");
+  reading.position_m = from_user_right_up(p);
+  reading.velocity_m_per_s = from_user_right_up(v);
+  reading.buttons = dhd_.get_button_mask(id_);
+  if (traits_.sensed_axes < 6) return {};
+  if (dhd_.get_angular_velocity_rad(&w.x(), &w.y(), &w.z(), id_) < 0)
+    return last_fault("Force Dimension: the angular velocity cannot be read");
+  reading.turning_rad_per_s = from_user_right_up(w);
+  const Eigen::Matrix3d turn = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&frame[0][0]);
+  if (!is_rotation(turn)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(turn_from_user_right_up(turn));
+  return {};
+}
+
+int ForceDimension::tell(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
+  const Vec3 f = to_user_right_up(force_N), t = to_user_right_up(torque_Nm);
+  return dhd_.set_force_and_torque_and_gripper_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0, id_);
+}
+
+// What was told before the motors go on is what they exert first.
+DeviceFault ForceDimension::switch_on() noexcept {
+  if (tell(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
+    return last_fault("Force Dimension: the motors cannot be switched on");
+  return {};
+}
+
+DeviceFault ForceDimension::exert(const Wrench& wrench) noexcept {
+  const Vec3 torque_Nm = traits_.actuated_axes == 6 ? wrench.torque_Nm : Vec3::Zero();
+  if (tell(wrench.force_N, torque_Nm) < 0) return last_fault("Force Dimension: the force cannot be set");
+  return {};
+}
+
+// Nobody is left to tell whether one of them fails.
+void ForceDimension::switch_off() noexcept {
+  tell(Vec3::Zero(), Vec3::Zero());
+  dhd_.enable_force(0, id_);
+  if (dhd_.stop != nullptr) dhd_.stop(id_);
+}
+
+int device_number(const std::string& address, const std::string& subject) {
+  int number = 0;
+  const char* end = address.data() + address.size();
+  const auto [stop, error] = std::from_chars(address.data(), end, number);
+  if (!address.empty() && (error != std::errc() || stop != end || number < 0 || number > 127))
+    throw InputError(subject, "not the number of a device; allowed 0 for the first, 1, ...");
+  return number;
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address) {
+  const std::string subject = "fd:" + (address.empty() ? "0" : address);
+  return std::make_unique<ForceDimension>(device_number(address, subject), subject);
+}
+
+Availability force_dimension_availability() {
+  Availability availability;
+  try {
+    const Dhd dhd;
+    const int count = dhd.get_device_count();
+    availability.found = count > 0;
+    availability.detail = dhd.library.file() + ": " +
+                          (count > 0 ? std::to_string(count) + (count == 1 ? " device" : " devices")
+                                     : "no device is connected or this user may not open its USB port");
+  } catch (const InputError& error) {
+    availability.detail = error.what();
+  }
+  return availability;
+}
+
+}  // namespace remote_touch

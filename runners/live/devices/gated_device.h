@@ -1,0 +1,38 @@
+// What the adapters of vendors' libraries share: the force is off until the first write() and after let_go(),
+// and nothing that is no number passes in either direction.
+#pragma once
+
+#include <atomic>
+
+#include "runners/live/devices/haptic_device.h"
+
+namespace remote_touch {
+
+// An adapter's destructor calls let_go() before it closes.
+class GatedDevice : public HapticDevice {
+ public:
+  DeviceFault read(DeviceReading& reading) noexcept final;
+  DeviceFault write(const Wrench& wrench) noexcept final;
+  void let_go() noexcept final;
+  bool hold_again() noexcept final;
+
+ protected:
+  bool is_let_go() const { return let_go_; }
+
+ private:
+  // In the thread of the ticks. Of a reading, all that the vendor tells; the caller checks that it is finite.
+  virtual DeviceFault sense(DeviceReading& reading) noexcept = 0;
+  // Once, with no force told yet.
+  virtual DeviceFault switch_on() noexcept = 0;
+  virtual DeviceFault exert(const Wrench& wrench) noexcept = 0;
+  // No force and motors off; in any thread, more than once, also while one of the others hangs.
+  virtual void switch_off() noexcept = 0;
+
+  DeviceFault exert_if_on(const Wrench& wrench) noexcept;
+  void leave_vendor() noexcept;
+
+  std::atomic<bool> let_go_{false}, in_vendor_{false};
+  bool is_on_ = false;
+};
+
+}  // namespace remote_touch

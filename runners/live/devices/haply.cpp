@@ -1,0 +1,269 @@
+#include "runners/live/devices/haply.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/haply_link.h"
+#include "runners/live/devices/haply_messages.h"
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kOpenWithin_s = 1;
+// Together, with 1 ms for the rest of a message that has begun, below the 10 ms after which a tick must have
+// told a fault.
+constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
+constexpr double kTickEndsWithin_s = 5e-3, kLastAnswerWithin_s = 20e-3;
+constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
+constexpr double kUnfollowed_s = 50e-3;
+constexpr double kLeastCheckedForce_N = 0.3, kLeastShare = 0.1, kLargestSurplus_N = 1;
+
+constexpr DeviceFault kNoState{"the Haply service sent something that is no state"};
+constexpr DeviceFault kDeviceGone{"the Inverse3 is no longer in the states of the service"};
+constexpr DeviceFault kHandleGone{"the handle is no longer in the states of the service"};
+constexpr DeviceFault kNoOrientation{"the handle sent an orientation that is none"};
+constexpr DeviceFault kNoForce{"a force that is no number"};
+constexpr DeviceFault kTryValues{"the service does not give the force that it is sent; try force=values"};
+constexpr DeviceFault kTryVector{"the service does not give the force that it is sent; try force=vector"};
+constexpr DeviceFault kOtherForce{"the service gives a force that it was not sent"};
+
+// The service has y away from the user and z up.
+Vec3 from_service(const Vec3& v) {
+  return {v.x(), v.z(), -v.y()};
+}
+Vec3 to_service(const Vec3& v) {
+  return {v.x(), -v.z(), v.y()};
+}
+
+// Whether the force that the service reports follows the commands. A gate, damping and other programs at the
+// same service may change it much; what is found is a force that does not come at all, and one from nowhere.
+class ForceCheck {
+ public:
+  DeviceFault operator()(const Vec3& sent, const Vec3& given, HaplyForceKey key, double now_s) {
+    const bool is_missing =
+        sent.norm() > kLeastCheckedForce_N && given.dot(sent) < kLeastShare * sent.dot(sent);
+    const bool is_other = given.norm() > sent.norm() + kLargestSurplus_N;
+    if (!is_missing && !is_other) followed_s_ = now_s;
+    if (now_s - followed_s_ < kUnfollowed_s) return {};
+    if (is_other) return kOtherForce;
+    return key == HaplyForceKey::vector ? kTryValues : kTryVector;
+  }
+
+ private:
+  double followed_s_ = steady_s();
+};
+
+DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading& reading) {
+  if (!message.device || !message.device->has_position) return kDeviceGone;
+  reading = {};
+  reading.position_m = from_service(message.device->position_m);
+  reading.velocity_m_per_s = from_service(message.device->velocity_m_per_s);
+  if (!has_handle) return {};
+  if (!message.handle || !message.handle->has_orientation) return kHandleGone;
+  const Eigen::Vector4d& q = message.handle->orientation;
+  // The service rounds; zeros, from a handle that sleeps, are another matter.
+  if (std::abs(q.norm() - 1) > 0.1) return kNoOrientation;
+  const Vec3 axis = from_service(q.head<3>());
+  reading.orientation = Eigen::Quaterniond(q.w(), axis.x(), axis.y(), axis.z()).normalized();
+  reading.buttons = message.handle->buttons;
+  return {};
+}
+
+struct Opened {
+  std::unique_ptr<HaplyLink> link;
+  std::string device_id, handle_id;  // empty: no handle
+};
+
+// Connects and takes the inventory; nothing is commanded.
+Opened open_service(const DeviceAddress& address, double deadline_s) {
+  Opened opened{open_haply_link(address, deadline_s), "", ""};
+  std::string_view text;
+  const DeviceFault fault = opened.link->receive(text, deadline_s);
+  if (fault)
+    throw address.refusal(std::string(fault.what) + ", it owes an inventory; is this the Inverse service?");
+  HaplyMessage inventory;
+  const std::string device = address.word("device", ""), handle = address.word("handle", "");
+  if (!read_haply_message(text, device, handle, inventory))
+    throw address.refusal("what the service sent is no inventory; is this the Inverse service?");
+  if (!inventory.device)
+    throw address.refusal("the service knows no Inverse3" + (device.empty() ? "" : " \"" + device + "\"") +
+                          "; plug it in and wait until the service lists it");
+  if (!handle.empty() && !inventory.handle)
+    throw address.refusal("the service knows no handle \"" + handle +
+                          "\"; pair it or leave the setting away");
+  const std::string_view basis = inventory.device->basis;
+  if (!basis.empty() && basis != "XYZ")
+    throw address.refusal("the service was told to turn its axes to " + std::string(basis) +
+                          "; set the basis of this program back to XYZ");
+  opened.device_id = inventory.device->id;
+  if (inventory.handle) opened.handle_id = inventory.handle->id;
+  return opened;
+}
+
+DeviceAddress haply_address(const std::string& address) {
+  return {"haply", address, {"force", "rate", "device", "handle", "check"}};
+}
+
+class Haply final : public HapticDevice {
+ public:
+  explicit Haply(const DeviceAddress& address) {
+    key_ = address.choice("force", {"vector", "values"}) == "vector" ? HaplyForceKey::vector
+                                                                     : HaplyForceKey::values;
+    is_checked_ = address.choice("check", {"on", "off"}) == "on";
+    traits_.tick_rate_hz = address.number("rate", 1000, 100, 8000);
+    opened_ = open_service(address, steady_s() + kOpenWithin_s);
+    if (!command_.set_device(opened_.device_id, key_))
+      throw address.refusal("the name of the device cannot be sent back; name another with device=ID");
+    traits_.name = "Haply Inverse3 " + opened_.device_id;
+    traits_.sensed_axes = opened_.handle_id.empty() ? 3 : 6;
+    // A service that does not keep to the protocol is told here and not in the first tick, which has nothing
+    // to allocate then either.
+    DeviceReading first;
+    if (const DeviceFault fault = read_within(first, kOpenWithin_s))
+      throw address.refusal(std::string("no first state (") + fault.what +
+                            "); is the device calibrated and on?");
+  }
+  ~Haply() override { let_go(); }
+
+  const DeviceTraits& traits() const override { return traits_; }
+
+  DeviceFault read(DeviceReading& reading) noexcept override;
+  DeviceFault write(const Wrench& wrench) noexcept override;
+  void let_go() noexcept override;
+
+ private:
+  // Who holds it may use the link. Only let_go() ever contends, and it keeps it: nobody waits in a tick.
+  class Turn {
+   public:
+    explicit Turn(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
+    ~Turn() {
+      if (is_mine_) taken_ = false;
+    }
+    explicit operator bool() const { return is_mine_; }
+
+   private:
+    std::atomic<bool>& taken_;
+    const bool is_mine_;
+  };
+
+  DeviceFault send(const Vec3& force_N, double deadline_s) noexcept;
+  DeviceFault drain(std::string_view& text, double deadline_s) noexcept;
+  DeviceFault newest(std::string_view& text, double deadline_s) noexcept;
+  DeviceFault read_within(DeviceReading& reading, double time_s) noexcept;
+
+  DeviceTraits traits_;
+  Opened opened_;
+  HaplyForceCommand command_;
+  HaplyForceKey key_ = HaplyForceKey::vector;
+  bool is_checked_ = true;
+  ForceCheck check_;
+
+  std::atomic<bool> taken_{false}, is_let_go_{false};
+  Vec3 sent_N_ = Vec3::Zero();  // in the service's axes
+  double sent_s_ = 0;
+  bool is_answer_due_ = false;
+};
+
+DeviceFault Haply::send(const Vec3& force_N, double deadline_s) noexcept {
+  const DeviceFault fault = opened_.link->send(command_.text(force_N), deadline_s);
+  if (fault) return fault;
+  sent_N_ = force_N;
+  sent_s_ = steady_s();
+  is_answer_due_ = true;
+  return {};
+}
+
+DeviceFault Haply::drain(std::string_view& text, double deadline_s) noexcept {
+  if (!is_answer_due_) return {};
+  const DeviceFault fault = opened_.link->receive(text, deadline_s);
+  if (!fault) is_answer_due_ = false;
+  return fault;
+}
+
+// The answer to the last command; when that was long ago, or there was none, to one without force.
+DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
+  const bool is_old = !is_answer_due_ || steady_s() - sent_s_ > kStateLasts_s;
+  if (const DeviceFault fault = drain(text, deadline_s)) return fault;
+  if (!is_old) return {};
+  if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
+  return drain(text, deadline_s);
+}
+
+DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
+  std::string_view text;
+  if (const DeviceFault fault = newest(text, steady_s() + time_s)) return fault;
+  HaplyMessage message;
+  if (!read_haply_message(text, opened_.device_id, opened_.handle_id, message)) return kNoState;
+  DeviceReading found;
+  if (const DeviceFault fault = convert(message, !opened_.handle_id.empty(), found)) return fault;
+  if (is_checked_ && message.device->has_force)
+    if (const DeviceFault fault = check_(sent_N_, message.device->force_N, key_, steady_s())) return fault;
+  reading = found;
+  return {};
+}
+
+DeviceFault Haply::read(DeviceReading& reading) noexcept {
+  const Turn turn(taken_);
+  return turn ? read_within(reading, kReadWithin_s) : kLetGo;
+}
+
+// The motors of an Inverse3 give no torque.
+DeviceFault Haply::write(const Wrench& wrench) noexcept {
+  const Turn turn(taken_);
+  if (!turn) return kLetGo;
+  const bool is_force = wrench.force_N.allFinite();
+  const double deadline_s = steady_s() + kWriteWithin_s;
+  // With a second command under way the answers would stay one behind. What is not sent lets the device idle.
+  std::string_view late;
+  if (const DeviceFault fault = drain(late, deadline_s)) return fault;
+  const DeviceFault fault = send(is_force ? to_service(wrench.force_N) : Vec3::Zero(), deadline_s);
+  return is_force ? fault : kNoForce;
+}
+
+void Haply::let_go() noexcept {
+  if (is_let_go_.exchange(true)) return;
+  const double until_s = steady_s() + kTickEndsWithin_s;
+  bool is_mine = false;
+  while (!(is_mine = !taken_.exchange(true)) && steady_s() < until_s) {
+    const timespec pause{0, 100'000};
+    ::nanosleep(&pause, nullptr);
+  }
+  if (is_mine) {
+    const bool is_older_due = is_answer_due_;
+    const double deadline_s = steady_s() + kLastAnswerWithin_s;
+    // The answers are waited for: a connection that ends with unread bytes can lose the command.
+    std::string_view text;
+    if (!send(Vec3::Zero(), deadline_s) && !drain(text, deadline_s) && is_older_due)
+      opened_.link->receive(text, deadline_s);
+  }
+  opened_.link->cut();
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_haply(const std::string& address) {
+  return std::make_unique<Haply>(haply_address(address));
+}
+
+Availability haply_availability() {
+  Availability availability;
+  availability.compiled_in = haply_link_is_compiled_in();
+  try {
+    const Opened opened = open_service(haply_address(""), steady_s() + 0.3);
+    availability.found = true;
+    availability.detail =
+        "Inverse3 " + opened.device_id +
+        (opened.handle_id.empty() ? " without a handle" : " with the handle " + opened.handle_id);
+  } catch (const InputError& error) {
+    availability.detail = error.what();
+  }
+  return availability;
+}
+
+}  // namespace remote_touch

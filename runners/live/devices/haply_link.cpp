@@ -1,0 +1,228 @@
+#include "runners/live/devices/haply_link.h"
+
+#ifdef REMOTE_TOUCH_HAPLY
+// The one file that includes Boost.Beast: it costs ten seconds to compile. Its fences between threads that
+// run handlers, of which there are none here, are what the thread sanitizer does not know.
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core/flat_static_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <cerrno>
+
+#include "runners/live/devices/deadline_socket.h"
+#include "runners/live/timing/steady_clock.h"
+#endif
+
+namespace remote_touch {
+
+#ifndef REMOTE_TOUCH_HAPLY
+
+bool haply_link_is_compiled_in() {
+  return false;
+}
+
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double) {
+  throw address.refusal("not compiled in; install libboost-dev and build again");
+}
+
+#else
+
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using boost::system::error_code;
+
+// Far more than an inventory of some devices; a longer message is refused.
+constexpr std::size_t kLargestMessage = 1 << 16;
+// For the rest of a message that has begun to come: on one machine it comes at once.
+constexpr double kRestWithin_s = 1e-3;
+
+// Parts in which a message may come. A peer that sends more, such as one ping after the other, each of which
+// is answered, is cut off at the deadline even if there was no wait.
+constexpr int kMostParts = 64;
+
+// Where Beast's blocking calls get and put their bytes. By themselves they know no deadline, and they may
+// wait on a socket more than once for one message; here each wait ends by the deadline of the whole call.
+class DeadlineStream {
+ public:
+  using executor_type = boost::asio::io_context::executor_type;
+
+  explicit DeadlineStream(boost::asio::io_context& context) : context_(context) {}
+  executor_type get_executor() noexcept { return context_.get_executor(); }
+
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers, error_code& ec) {
+    const boost::asio::mutable_buffer first = beast::buffers_front(buffers);
+    if (first.size() == 0) return 0;
+    if (is_over()) return result({0, ETIMEDOUT}, ec);
+    return result(socket.read_some(first.data(), first.size(), deadline_s_), ec);
+  }
+  template <class Buffers>
+  std::size_t write_some(const Buffers& buffers, error_code& ec) {
+    if (is_over()) return result({0, ETIMEDOUT}, ec);
+    // A frame's head and its text in one packet.
+    char bytes[1024];
+    const std::size_t size = boost::asio::buffer_copy(boost::asio::buffer(bytes), buffers);
+    return result(socket.write_some(bytes, size, deadline_s_), ec);
+  }
+  // Beast wants those that throw to exist.
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers) {
+    error_code ec;
+    const std::size_t bytes = read_some(buffers, ec);
+    if (ec) throw boost::system::system_error(ec);
+    return bytes;
+  }
+  template <class Buffers>
+  std::size_t write_some(const Buffers& buffers) {
+    error_code ec;
+    const std::size_t bytes = write_some(buffers, ec);
+    if (ec) throw boost::system::system_error(ec);
+    return bytes;
+  }
+
+  // What follows is one call, for one message.
+  void begin(double deadline_s) {
+    deadline_s_ = deadline_s;
+    parts_ = 0;
+  }
+
+  DeadlineSocket socket;
+
+ private:
+  bool is_over() { return ++parts_ > kMostParts && steady_s() > deadline_s_; }
+  static std::size_t result(DeadlineSocket::Transfer transfer, error_code& ec) {
+    ec = error_code(transfer.error, boost::system::system_category());
+    return transfer.bytes;
+  }
+
+  boost::asio::io_context& context_;
+  double deadline_s_ = 0;
+  int parts_ = 0;
+};
+
+// Beast calls it when a connection ends; its own for sockets waits for the peer.
+void teardown(beast::role_type, DeadlineStream& stream, error_code& ec) {
+  stream.socket.cut();
+  ec = {};
+}
+
+DeviceFault fault_of(const error_code& ec) {
+  if (ec == websocket::error::message_too_big || ec == websocket::error::buffer_overflow)
+    return {"the Haply service sent a message that is too long", ec.value()};
+  if (ec == websocket::error::closed || ec == boost::system::errc::connection_reset ||
+      ec == boost::system::errc::broken_pipe)
+    return {"the Haply service closed the connection", ec.value()};
+  if (ec == boost::system::errc::timed_out)
+    return {"the Haply service stopped in the middle of a message", ec.value()};
+  return {"the connection to the Haply service failed", ec.value()};
+}
+
+class BeastLink final : public HaplyLink {
+ public:
+  BeastLink(const std::string& host, const std::string& port, const std::string& target, double deadline_s)
+      : web_(context_) {
+    DeadlineStream& stream = web_.next_layer();
+    stream.begin(deadline_s);
+    const std::string problem = stream.socket.connect_to_host(host, port, deadline_s);
+    if (!problem.empty()) throw std::runtime_error(problem);
+    web_.handshake(host + ":" + port, target);
+    web_.text(true);
+    web_.auto_fragment(false);
+    web_.read_message_max(kLargestMessage);
+  }
+
+  DeviceFault send(std::string_view text, double deadline_s) noexcept override {
+    return within(deadline_s, [&](error_code& ec) {
+      web_.write(boost::asio::const_buffer(text.data(), text.size()), ec);
+    });
+  }
+
+  DeviceFault receive(std::string_view& text, double deadline_s) noexcept override {
+    // While nothing has come Beast is not asked: a wait that it sees end without bytes breaks its stream. It
+    // holds back no whole message but the first, which may come with the handshake: after that the service
+    // answers each command once, and one command is under way.
+    if (has_first_ && !lost_)
+      if (const int error = web_.next_layer().socket.wait_readable(deadline_s))
+        return {"the Haply service does not answer", error};
+    has_first_ = true;
+    message_.clear();
+    const double rest_s = std::max(deadline_s, steady_s() + kRestWithin_s);
+    const DeviceFault fault = within(rest_s, [&](error_code& ec) { web_.read(message_, ec); });
+    text = {static_cast<const char*>(message_.data().data()), message_.size()};
+    return fault;
+  }
+
+  void cut() noexcept override { web_.next_layer().socket.cut(); }
+
+ private:
+  template <class Call>
+  DeviceFault within(double deadline_s, Call call) noexcept {
+    // Beast must not be asked again after an error.
+    if (lost_) return lost_;
+    web_.next_layer().begin(deadline_s);
+    error_code ec;
+    try {
+      call(ec);
+      if (ec) lost_ = fault_of(ec);
+    } catch (...) {
+      lost_ = {"the connection to the Haply service failed", 0};
+    }
+    return lost_;
+  }
+
+  boost::asio::io_context context_;  // for Beast's timers, which are never set; it is not run
+  websocket::stream<DeadlineStream, false> web_;
+  beast::flat_static_buffer<kLargestMessage> message_;
+  bool has_first_ = false;
+  DeviceFault lost_;
+};
+
+struct Place {
+  std::string host = "127.0.0.1", port = "10001", target = "/";
+};
+
+Place place_of(const DeviceAddress& address) {
+  Place place;
+  std::string rest = address.place();
+  if (rest.empty()) return place;
+  const std::string scheme = "ws://";
+  if (rest.compare(0, scheme.size(), scheme) != 0)
+    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
+  rest.erase(0, scheme.size());
+  const std::size_t slash = rest.find('/');
+  if (slash != std::string::npos) place.target = rest.substr(slash);
+  rest.erase(std::min(slash, rest.size()));
+  const std::size_t colon = rest.rfind(':');
+  if (colon != std::string::npos && rest.back() != ']') {
+    place.port = rest.substr(colon + 1);
+    rest.erase(colon);
+  }
+  if (rest.size() > 2 && rest.front() == '[' && rest.back() == ']') rest = rest.substr(1, rest.size() - 2);
+  if (rest.empty() || place.port.empty())
+    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
+  place.host = rest;
+  return place;
+}
+
+}  // namespace
+
+bool haply_link_is_compiled_in() {
+  return true;
+}
+
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double deadline_s) {
+  const Place place = place_of(address);
+  try {
+    return std::make_unique<BeastLink>(place.host, place.port, place.target, deadline_s);
+  } catch (const std::exception& error) {
+    throw address.refusal("no Haply service at ws://" + place.host + ":" + place.port + place.target + " (" +
+                          error.what() + "); start the Inverse service, or name where it runs");
+  }
+}
+
+#endif
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+// The WebSocket connection to Haply's Inverse service. Compiled in when Boost's headers are there (the option
+// REMOTE_TOUCH_HAPLY of the build).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/haptic_device.h"
+
+namespace remote_touch {
+
+class HaplyLink {
+ public:
+  virtual ~HaplyLink() = default;
+
+  // Both end by the deadline, a moment of steady_s(), receive() 1 ms later when a message has begun by then.
+  // They allocate nothing once the first command has been sent. When the service is merely late, the next
+  // receive() may get the message; after any other fault the link is of no more use.
+  virtual DeviceFault send(std::string_view text, double deadline_s) noexcept = 0;
+  // text: valid until the next call.
+  virtual DeviceFault receive(std::string_view& text, double deadline_s) noexcept = 0;
+
+  // Nothing is sent or received from now on, and calls under way end. From any thread.
+  virtual void cut() noexcept = 0;
+};
+
+bool haply_link_is_compiled_in();
+
+// place of the address: ws://HOST[:PORT][/PATH], by default ws://127.0.0.1:10001. Throws InputError.
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double deadline_s);
+
+}  // namespace remote_touch

@@ -1,0 +1,153 @@
+#include "runners/live/devices/haply_messages.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "runners/live/devices/json_reader.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kLongestId = 256;
+
+// Members of an object that are numbers with these one-letter names; every one must be there.
+template <class Vector>
+bool components(JsonReader& json, std::string_view names, Vector& value) {
+  unsigned seen = 0;
+  const bool read = json.object([&](std::string_view key) {
+    const std::size_t i = key.size() == 1 ? names.find(key.front()) : std::string_view::npos;
+    if (i == std::string_view::npos) return json.skip();
+    seen |= 1u << i;
+    return json.number(value[static_cast<int>(i)]);
+  });
+  return read && seen == (1u << names.size()) - 1;
+}
+
+bool read_buttons(JsonReader& json, std::uint32_t& buttons) {
+  return json.object([&](std::string_view key) {
+    if (key.size() != 1 || key.front() < 'a' || key.front() > 'c') return json.skip();
+    bool down = false;
+    if (!json.boolean(down)) return false;
+    if (down) buttons |= 1u << (key.front() - 'a');
+    return true;
+  });
+}
+
+bool read_device_state(JsonReader& json, HaplyDeviceState& device) {
+  return json.object([&](std::string_view key) {
+    if (key == "cursor_position") {
+      device.has_position = true;
+      return components(json, "xyz", device.position_m);
+    }
+    if (key == "cursor_velocity") return components(json, "xyz", device.velocity_m_per_s);
+    if (key == "current_cursor_force") {
+      device.has_force = true;
+      return components(json, "xyz", device.force_N);
+    }
+    return json.skip();
+  });
+}
+
+bool read_basis(JsonReader& json, HaplyDeviceState& device) {
+  return json.object([&](std::string_view key) {
+    if (key != "basis") return json.skip();
+    return json.object([&](std::string_view inner) {
+      return inner == "permutation" ? json.string(device.basis) : json.skip();
+    });
+  });
+}
+
+bool read_device(JsonReader& json, HaplyDeviceState& device) {
+  return json.object([&](std::string_view key) {
+    if (key == "device_id") return json.string(device.id);
+    if (key == "state") return read_device_state(json, device);
+    if (key == "config") return read_basis(json, device);
+    return json.skip();
+  });
+}
+
+bool read_handle_state(JsonReader& json, HaplyHandleState& handle) {
+  return json.object([&](std::string_view key) {
+    if (key == "orientation") {
+      handle.has_orientation = true;
+      return components(json, "xyzw", handle.orientation);
+    }
+    if (key == "buttons") return read_buttons(json, handle.buttons);
+    if (key == "button") {
+      bool down = false;
+      if (!json.boolean(down)) return false;
+      handle.buttons |= down ? 1u : 0u;
+      return true;
+    }
+    return json.skip();
+  });
+}
+
+bool read_handle(JsonReader& json, HaplyHandleState& handle) {
+  return json.object([&](std::string_view key) {
+    if (key == "device_id") return json.string(handle.id);
+    if (key == "state") return read_handle_state(json, handle);
+    return json.skip();
+  });
+}
+
+// An element is read before its name is known: the members of an object have no order.
+template <class State>
+bool read_wanted(JsonReader& json, bool (*read)(JsonReader&, State&), std::string_view wanted,
+                 std::optional<State>& found) {
+  return json.array([&] {
+    State one;
+    if (!read(json, one)) return false;
+    if (!found && (wanted.empty() || one.id == wanted)) found = one;
+    return true;
+  });
+}
+
+}  // namespace
+
+bool read_haply_message(std::string_view text, std::string_view device_id, std::string_view handle_id,
+                        HaplyMessage& message) noexcept {
+  JsonReader json(text);
+  message = {};
+  const bool read = json.object([&](std::string_view key) {
+    if (key == "inverse3") return read_wanted(json, read_device, device_id, message.device);
+    if (key == "wireless_verse_grip" || key == "verse_grip")
+      return read_wanted(json, read_handle, handle_id, message.handle);
+    return json.skip();
+  });
+  return read && json.at_end();
+}
+
+void HaplyForceCommand::append(std::string_view text) noexcept {
+  std::copy(text.begin(), text.end(), text_.begin() + static_cast<std::ptrdiff_t>(size_));
+  size_ += text.size();
+}
+
+bool HaplyForceCommand::set_device(std::string_view id, HaplyForceKey key) noexcept {
+  const auto is_plain = [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\'; };
+  if (id.empty() || id.size() > kLongestId || !std::all_of(id.begin(), id.end(), is_plain)) return false;
+  size_ = 0;
+  append(R"({"inverse3":[{"device_id":")");
+  append(id);
+  append(R"(","commands":{"set_cursor_force":{")");
+  append(key == HaplyForceKey::vector ? "vector" : "values");
+  append(R"(":{)");
+  head_ = size_;
+  return true;
+}
+
+std::string_view HaplyForceCommand::text(const Vec3& force_N) noexcept {
+  size_ = head_;
+  for (int i = 0; i < 3; ++i) {
+    append(std::array{R"("x":)", R"(,"y":)", R"(,"z":)"}[static_cast<std::size_t>(i)]);
+    // Nine digits are at most 16 characters.
+    const auto [end, error] = std::to_chars(text_.data() + size_, text_.data() + text_.size(), force_N[i],
+                                            std::chars_format::general, 9);
+    size_ = static_cast<std::size_t>(end - text_.data());
+  }
+  append("}}}}]}");
+  return {text_.data(), size_};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,40 @@
+// A loop that hangs cannot let its device go: a thread beside it does.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "runners/live/devices/haptic_device.h"
+
+namespace remote_touch {
+
+class Heartbeat {
+ public:
+  // Looks every fifth of longest_s; a device without a beat for that long is let go at the next look.
+  Heartbeat(HapticDevice& device, double longest_s);
+  ~Heartbeat();
+
+  // From the loop, at the begin of every tick. The first one starts the watch. False: the device was let go
+  // since the last beat.
+  bool beat(double now_s) noexcept;
+  // After the last beat: no more are expected.
+  void rest() noexcept { last_s_.store(-1, std::memory_order_release); }
+  int stalls() const { return stalls_.load(std::memory_order_relaxed); }
+
+ private:
+  void watch();
+
+  HapticDevice& device_;
+  const double longest_s_;
+  std::atomic<double> last_s_ = -1;  // of the steady clock; -1: none yet
+  std::atomic<bool> let_go_ = false;
+  std::atomic<int> stalls_ = 0;
+  std::mutex mutex_;
+  std::condition_variable stopping_;
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace remote_touch

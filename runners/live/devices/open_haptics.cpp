@@ -1,0 +1,247 @@
+#include "runners/live/devices/open_haptics.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/devices/gated_device.h"
+#include "runners/live/devices/hd_library.h"
+#include "runners/live/devices/known_fault.h"
+#include "runners/live/devices/vendor_axes.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kMPerMm = 1e-3, kMmPerM = 1e3, kNmPerMNm = 1e-3, kMNmPerNm = 1e3;
+
+constexpr std::array<KnownFault, 10> kFaults{{
+    {0x0200, "OpenHaptics: the motors are warm"},
+    {0x0201, "OpenHaptics: the force is too large for the device"},
+    {0x0202, "OpenHaptics: the force changes too fast for the device"},
+    {0x0203, "OpenHaptics: the handle moves too fast for the device"},
+    {0x0204, "OpenHaptics: the device refuses the force"},
+    {0x0300, "OpenHaptics: the device has a fault"},
+    {0x0302, "OpenHaptics: the device does not communicate"},
+    {0x0303, "OpenHaptics: the connection of the device is not set up"},
+    {0x0304, "OpenHaptics: the scheduler has no timer"},
+    {0x0501, "OpenHaptics: the scheduler is full"},
+}};
+
+class OpenHaptics : public GatedDevice {
+ public:
+  OpenHaptics(const std::string& address, const std::string& subject);
+  ~OpenHaptics() override;
+  OpenHaptics(const OpenHaptics&) = delete;
+  OpenHaptics& operator=(const OpenHaptics&) = delete;
+
+  const DeviceTraits& traits() const override { return traits_; }
+  void run(DeviceCycle& cycle) override;
+
+ private:
+  DeviceFault sense(DeviceReading& reading) noexcept override;
+  DeviceFault switch_on() noexcept override;
+  DeviceFault exert(const Wrench& wrench) noexcept override;
+  void switch_off() noexcept override;
+
+  void learn_traits();
+  DeviceFault newest_error(const char* what) const noexcept;
+  bool frame(DeviceCycle& cycle) noexcept;
+  bool is_scheduler_done();
+  bool has_ended();
+  static unsigned on_schedule(void* self) noexcept;
+
+  HdLibrary hd_;
+  unsigned device_ = HdLibrary::invalid_handle;
+  DeviceTraits traits_;
+
+  // Of the thread of the ticks.
+  DeviceFault frame_fault_;  // of the frame before or of this one's beginning
+  bool has_told_ = false;    // a force, in this frame
+
+  DeviceFault scheduler_fault_;  // set while no callback can be
+  DeviceCycle* cycle_ = nullptr;
+  std::atomic<long> callbacks_{0};
+  std::atomic<bool> in_callback_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+};
+
+OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject) {
+  const bool is_default = address.empty() || address == "Default Device";
+  device_ = hd_.init_device(is_default ? nullptr : address.c_str());
+  const HdLibrary::Error error = hd_.get_error();
+  if (error.code != 0 || device_ == HdLibrary::invalid_handle) {
+    const char* text = hd_.get_error_string(error.code);
+    throw InputError(subject, std::string("cannot be opened (") + (text != nullptr ? text : "unknown error") +
+                                  ", " + std::to_string(error.code) + "/" +
+                                  std::to_string(error.internal_code) +
+                                  "); allowed the name of a connected device in the vendor's setup");
+  }
+  learn_traits();
+}
+
+// The last frame tells no force, for whoever switches the motors on next.
+OpenHaptics::~OpenHaptics() {
+  let_go();
+  constexpr std::array<double, 3> kNone{};
+  hd_.begin_frame(device_);
+  hd_.set_doublev(HdLibrary::current_force, kNone.data());
+  hd_.end_frame(device_);
+  hd_.disable_device(device_);
+}
+
+void OpenHaptics::learn_traits() {
+  const auto number = [this](unsigned what) {
+    double value = 0;
+    hd_.get_doublev(what, &value);
+    return hd_.get_error().code == 0 ? value : 0;
+  };
+  const auto axes = [this](unsigned what) {
+    int count = 0;
+    hd_.get_integerv(what, &count);
+    return hd_.get_error().code == 0 && count >= 6 ? 6 : 3;
+  };
+  if (const char* model = hd_.get_string(HdLibrary::device_model_type); model != nullptr)
+    traits_.name = model;
+  traits_.sensed_axes = axes(HdLibrary::input_dof);
+  traits_.actuated_axes = axes(HdLibrary::output_dof);
+  traits_.largest_force_N = number(HdLibrary::nominal_max_force);
+  traits_.continuous_force_N = number(HdLibrary::nominal_max_continuous_force);
+  traits_.largest_stiffness_N_per_m = number(HdLibrary::nominal_max_stiffness) * kMmPerM;
+  if (traits_.actuated_axes == 6)
+    traits_.largest_torque_Nm = number(HdLibrary::nominal_max_torque) * kNmPerMNm;
+}
+
+DeviceFault OpenHaptics::newest_error(const char* what) const noexcept {
+  const HdLibrary::Error error = hd_.get_error();
+  return error.code == 0 ? DeviceFault{} : fault_of(kFaults, static_cast<int>(error.code), what);
+}
+
+// The transform has the position in its last column.
+DeviceFault OpenHaptics::sense(DeviceReading& reading) noexcept {
+  if (scheduler_fault_) return scheduler_fault_;
+  if (frame_fault_) return frame_fault_;
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  Vec3 velocity = Vec3::Zero(), turning = Vec3::Zero();
+  int buttons = 0;
+  hd_.get_doublev(HdLibrary::current_transform, pose.data());
+  hd_.get_doublev(HdLibrary::current_velocity, velocity.data());
+  hd_.get_doublev(HdLibrary::current_angular_velocity, turning.data());
+  hd_.get_integerv(HdLibrary::current_buttons, &buttons);
+  if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) return fault;
+  reading.position_m = pose.topRightCorner<3, 1>() * kMPerMm;
+  reading.velocity_m_per_s = velocity * kMPerMm;
+  reading.turning_rad_per_s = turning;
+  reading.buttons = static_cast<std::uint32_t>(buttons);
+  const Eigen::Matrix3d turn = pose.topLeftCorner<3, 3>();
+  if (!is_rotation(turn)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(turn);
+  return {};
+}
+
+DeviceFault OpenHaptics::switch_on() noexcept {
+  if (scheduler_fault_) return scheduler_fault_;
+  hd_.enable(HdLibrary::force_output);
+  return newest_error("OpenHaptics: the motors cannot be switched on");
+}
+
+DeviceFault OpenHaptics::exert(const Wrench& wrench) noexcept {
+  if (scheduler_fault_) return scheduler_fault_;
+  hd_.set_doublev(HdLibrary::current_force, wrench.force_N.data());
+  if (traits_.actuated_axes == 6) {
+    const Vec3 torque_mNm = wrench.torque_Nm * kMNmPerNm;
+    hd_.set_doublev(HdLibrary::current_torque, torque_mNm.data());
+  }
+  has_told_ = true;
+  return newest_error("OpenHaptics: the force cannot be set");
+}
+
+// A force can be told only within a frame, which belongs to the scheduler's thread; no motors, no force.
+void OpenHaptics::switch_off() noexcept {
+  hd_.make_current_device(device_);
+  hd_.disable(HdLibrary::force_output);
+}
+
+// One tick in one frame. Without a force of its own it would have that of the frame before, and after the
+// last one nobody takes it back.
+bool OpenHaptics::frame(DeviceCycle& cycle) noexcept {
+  hd_.begin_frame(device_);
+  if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) frame_fault_ = fault;
+  has_told_ = false;
+  const bool goes_on = cycle.tick();
+  if (!has_told_ || is_let_go() || !goes_on) exert({});
+  hd_.end_frame(device_);
+  frame_fault_ = newest_error("OpenHaptics: the force cannot be set");
+  return goes_on;
+}
+
+unsigned OpenHaptics::on_schedule(void* self) noexcept {
+  OpenHaptics& device = *static_cast<OpenHaptics*>(self);
+  device.in_callback_ = true;
+  ++device.callbacks_;
+  const bool goes_on = device.frame(*device.cycle_);
+  device.in_callback_ = false;
+  if (goes_on) return HdLibrary::callback_continue;
+  const std::lock_guard<std::mutex> lock(device.mutex_);
+  device.has_ended_ = true;
+  device.ended_.notify_one();
+  return HdLibrary::callback_done;
+}
+
+// True after the last tick; false when no callback came for long, though none is under way.
+bool OpenHaptics::is_scheduler_done() {
+  constexpr std::chrono::seconds kLongest(1);
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    const long before = callbacks_;
+    if (ended_.wait_for(lock, kLongest, [this] { return has_ended_; })) return true;
+    if (callbacks_ == before && !in_callback_) return false;
+  }
+}
+
+bool OpenHaptics::has_ended() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return has_ended_;
+}
+
+void OpenHaptics::run(DeviceCycle& cycle) {
+  cycle_ = &cycle;
+  has_ended_ = false;
+  frame_fault_ = {};
+  hd_.make_current_device(device_);
+  const unsigned long callback = hd_.schedule_asynchronous(&on_schedule, this, HdLibrary::kLargestPriority);
+  hd_.start_scheduler();
+  const DeviceFault fault = newest_error("OpenHaptics: the scheduler does not start");
+  const bool is_done = !fault && is_scheduler_done();
+  if (!is_done) hd_.unschedule(callback);
+  hd_.stop_scheduler();
+  if (is_done || has_ended()) return;
+  switch_off();
+  scheduler_fault_ = fault ? fault : DeviceFault{"OpenHaptics: the scheduler has stopped calling", 0};
+  HapticDevice::run(cycle);
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address) {
+  return std::make_unique<OpenHaptics>(address, "touch:" + (address.empty() ? "Default Device" : address));
+}
+
+Availability open_haptics_availability() {
+  Availability availability;
+  try {
+    const HdLibrary hd;
+    availability.found = true;
+    availability.detail = hd.library.file() + ": it tells of a device when one is opened";
+  } catch (const InputError& error) {
+    availability.detail = error.what();
+  }
+  return availability;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,55 @@
+#include "runners/live/devices/shared_library.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Of the loader, for the last name it tried.
+std::string loader_says() {
+  const char* text = dlerror();
+  return text != nullptr ? text : "no reason given";
+}
+
+}  // namespace
+
+SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
+  const char* named = std::getenv(variable_);
+  const bool is_named = named != nullptr && *named != '\0';
+  const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : place.names;
+  std::string reasons;
+  for (const std::string& name : names) {
+    handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    if (handle_ != nullptr) {
+      file_ = name;
+      return;
+    }
+    reasons += (reasons.empty() ? "" : "; ") + loader_says();
+  }
+  const std::string variable = variable_;
+  throw InputError(names.front(),
+                   "cannot be loaded (" + reasons + "); " +
+                       (is_named ? variable + " must name the library of "
+                                 : "install it or let " + variable + " name its file: it is part of ") +
+                       place.package);
+}
+
+void* SharedLibrary::address(const char* name) const {
+  void* found = address_if_there(name);
+  if (found == nullptr)
+    throw InputError(file_, std::string("has no function ") + name +
+                                ", it is too old or another library; let " + variable_ +
+                                " name the right one");
+  return found;
+}
+
+void* SharedLibrary::address_if_there(const char* name) const {
+  return dlsym(handle_, name);
+}
+
+}  // namespace remote_touch

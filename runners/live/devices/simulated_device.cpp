@@ -1,0 +1,47 @@
+#include "runners/live/devices/simulated_device.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
+                                 const DevicePlacement& placement, double rate_hz)
+    : script_(std::move(script)),
+      hand_(hand),
+      placement_(placement),
+      traits_{.name = "simulated device", .sensed_axes = 6, .actuated_axes = 6, .tick_rate_hz = rate_hz} {}
+
+void SimulatedDevice::run(DeviceCycle& cycle) {
+  start_s_ = steady_s();
+  HapticDevice::run(cycle);
+}
+
+DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
+  const auto now = static_cast<long long>((steady_s() - start_s_) * traits_.tick_rate_hz);
+  const long long first = ticks_;
+  ticks_ = std::max(ticks_ + 1, now);
+  for (long long tick = std::max(first + 1, ticks_ - kMostTicksAtOnce); tick <= ticks_; ++tick) {
+    const double time_s = static_cast<double>(tick) / traits_.tick_rate_hz;
+    state_ = hand_.move(script_->at(time_s), time_s);
+  }
+  reading = placement_.of_device(state_);
+  if (first > 0)
+    reading.velocity_m_per_s =
+        (reading.position_m - last_.position_m) * traits_.tick_rate_hz / static_cast<double>(ticks_ - first);
+  last_ = reading;
+  return {};
+}
+
+DeviceFault SimulatedDevice::write(const Wrench& wrench) noexcept {
+  const Wrench felt = held_.load(std::memory_order_relaxed) ? placement_.in_world(wrench) : Wrench{};
+  RenderOutput out;
+  out.force_N = felt.force_N;
+  out.tool.emplace().torque_Nm = felt.torque_Nm;
+  hand_.feel(state_, out);
+  return {};
+}
+
+}  // namespace remote_touch

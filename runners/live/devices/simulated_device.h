@@ -1,0 +1,47 @@
+// A device without hardware: a script moves it, or an operator who follows the script and feels its force.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "runners/live/devices/haptic_device.h"
+#include "runners/live/loop/live_settings.h"
+#include "runners/operator/simulated_hand.h"
+#include "runners/trajectories/trajectory.h"
+
+namespace remote_touch {
+
+// Follows the steady clock: where a tick was missed the hand has moved on all the same, by ticks of its own
+// rate. Begins with run().
+class SimulatedDevice final : public HapticDevice {
+ public:
+  // placement: that of the loop, undone here.
+  SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
+                  const DevicePlacement& placement, double rate_hz);
+
+  const DeviceTraits& traits() const override { return traits_; }
+  void run(DeviceCycle& cycle) override;
+  DeviceFault read(DeviceReading& reading) noexcept override;
+  DeviceFault write(const Wrench& wrench) noexcept override;
+  void let_go() noexcept override { held_.store(false, std::memory_order_relaxed); }
+  bool hold_again() noexcept override {
+    held_.store(true, std::memory_order_relaxed);
+    return true;
+  }
+
+ private:
+  // After a longer pause the hand starts anew from there.
+  static constexpr int kMostTicksAtOnce = 200;
+
+  const std::unique_ptr<const Trajectory> script_;
+  SimulatedHand hand_;
+  const DevicePlacement placement_;
+  const DeviceTraits traits_;
+  double start_s_ = 0;
+  long long ticks_ = 0;
+  DeviceState state_;
+  DeviceReading last_;
+  std::atomic<bool> held_ = true;
+};
+
+}  // namespace remote_touch

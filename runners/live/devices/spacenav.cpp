@@ -1,0 +1,162 @@
+#include "runners/live/devices/spacenav.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include "runners/live/devices/deadline_socket.h"
+#include "runners/live/devices/device_address.h"
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kConnectWithin_s = 0.5;
+constexpr double kHolds_s = 0.5;
+constexpr double kLongestStep_s = 0.1;  // of one reading; after a longer pause the pose does not jump
+constexpr int kMostFrames = 256;        // of one reading; the daemon sends some hundred a second
+
+constexpr DeviceFault kGone{"spacenavd has closed the connection"};
+constexpr DeviceFault kNoFrame{"what the socket sends is not what spacenavd sends"};
+
+// What the daemon sends: an event and its numbers. Other events tell of mice and settings that change.
+enum Event : std::int32_t { kMotion = 0, kPress = 1, kRelease = 2, kLastEvent = 15 };
+using Frame = std::array<std::int32_t, 8>;
+
+std::string socket_of(const DeviceAddress& address) {
+  if (!address.place().empty()) return address.place();
+  const char* from_environment = std::getenv("SPNAV_SOCKET");
+  return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
+}
+
+DeadlineSocket connect(const DeviceAddress& address) {
+  DeadlineSocket socket;
+  const std::string path = socket_of(address);
+  const std::string problem = socket.connect_to_path(path, steady_s() + kConnectWithin_s);
+  if (!problem.empty())
+    throw address.refusal("no spacenavd at " + path + " (" + problem +
+                          "); install and start spacenavd, or name its socket");
+  return socket;
+}
+
+DeviceAddress spacenav_address(const std::string& address) {
+  return {"spnav", address, {"speed", "turning", "box"}};
+}
+
+class Spacenav final : public HapticDevice {
+ public:
+  explicit Spacenav(const DeviceAddress& address)
+      : speed_(address.number("speed", 5e-4, 1e-6, 0.1)),
+        turning_(address.number("turning", 3e-3, 1e-6, 1)),
+        box_m_(address.number("box", 0.15, 1e-3, 10)),
+        socket_(connect(address)) {
+    traits_.name = "spacenavd " + socket_of(address);
+    traits_.sensed_axes = 6;
+    traits_.actuated_axes = 0;
+  }
+
+  const DeviceTraits& traits() const override { return traits_; }
+
+  DeviceFault read(DeviceReading& reading) noexcept override {
+    const double now_s = steady_s();
+    if (!fault_) fault_ = take_frames(now_s);
+    if (fault_) return fault_;
+    if (now_s - told_s_ > kHolds_s) counts_.fill(0);
+    move(std::min(now_s - moved_s_, kLongestStep_s));
+    moved_s_ = now_s;
+    reading = pose_;
+    return {};
+  }
+
+  DeviceFault write(const Wrench&) noexcept override { return fault_; }
+  void let_go() noexcept override {}
+  bool hold_again() noexcept override { return true; }
+
+ private:
+  DeviceFault take_frames(double now_s) noexcept;
+  DeviceFault take(const Frame& frame, double now_s) noexcept;
+  void move(double step_s) noexcept;
+
+  const double speed_, turning_, box_m_;  // the first two for each count
+  DeadlineSocket socket_;
+  DeviceTraits traits_;
+  DeviceFault fault_;
+
+  std::array<char, sizeof(Frame)> bytes_{};  // of a frame that has begun
+  std::size_t filled_ = 0;
+  std::array<std::int32_t, 6> counts_{};  // the last deflection told
+  double told_s_ = 0, moved_s_ = steady_s();
+  DeviceReading pose_;
+};
+
+DeviceFault Spacenav::take_frames(double now_s) noexcept {
+  for (int frames = 0; frames < kMostFrames;) {
+    const auto got = socket_.read_ready(bytes_.data() + filled_, bytes_.size() - filled_);
+    if (got.error == EAGAIN) return {};
+    if (got.error != 0) return {kGone.what, got.error};
+    filled_ += got.bytes;
+    if (filled_ < bytes_.size()) continue;
+    filled_ = 0;
+    Frame frame;
+    std::memcpy(frame.data(), bytes_.data(), bytes_.size());
+    if (const DeviceFault fault = take(frame, now_s)) return fault;
+    ++frames;
+  }
+  return {};
+}
+
+DeviceFault Spacenav::take(const Frame& frame, double now_s) noexcept {
+  if (frame[0] < 0 || frame[0] > kLastEvent) return kNoFrame;
+  if (frame[0] == kMotion) {
+    std::copy_n(frame.begin() + 1, counts_.size(), counts_.begin());
+    told_s_ = now_s;
+  } else if (frame[0] <= kRelease && frame[1] >= 0 && frame[1] < 32) {
+    const std::uint32_t button = 1u << frame[1];
+    if (frame[0] == kPress)
+      pose_.buttons |= button;
+    else
+      pose_.buttons &= ~button;
+  }
+  return {};
+}
+
+void Spacenav::move(double step_s) noexcept {
+  const Vec3 flip(1, 1, -1);
+  const Vec3 along = speed_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
+  const Vec3 about = turning_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
+  const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
+  // At a face of the box the position stands although the mouse is pushed.
+  pose_.velocity_m_per_s = step_s > 0 ? Vec3((to - pose_.position_m) / step_s) : along;
+  pose_.position_m = to;
+  pose_.turning_rad_per_s = about;
+  const double angle = step_s * about.norm();
+  if (angle > 0) {
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, about.normalized()));
+    pose_.orientation = (turn * pose_.orientation).normalized();
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> open_spacenav(const std::string& address) {
+  return std::make_unique<Spacenav>(spacenav_address(address));
+}
+
+Availability spacenav_availability(const std::string& address) {
+  Availability availability;
+  try {
+    const DeviceAddress parsed = spacenav_address(address);
+    connect(parsed);
+    availability.found = true;
+    availability.detail = "spacenavd at " + socket_of(parsed);
+  } catch (const InputError& error) {
+    availability.detail = error.what();
+  }
+  return availability;
+}
+
+}  // namespace remote_touch

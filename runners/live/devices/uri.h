@@ -1,0 +1,29 @@
+// Names of sensors and devices: "scheme:address".
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+struct Uri {
+  std::string scheme, address;  // the address may be empty
+};
+
+// Throws InputError without a colon. flag: "--depth" or "--device".
+Uri parse_uri(const std::string& flag, const std::string& text);
+
+// The entry of that scheme, or InputError with those there are.
+template <class Entry>
+const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag, const Uri& uri) {
+  std::string known;
+  for (const Entry& entry : entries) {
+    if (uri.scheme == entry.scheme) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(entry.example);
+  }
+  throw InputError(flag + " " + uri.scheme + ":" + uri.address, "allowed " + known);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,33 @@
+// Axes of vendors: x towards the user, y to the right, z up, as Force Dimension and Entact have them; and
+// turns as matrices.
+#pragma once
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// From x towards the user, y right, z up to ours, x right, y up, z towards the user, and back.
+inline Vec3 from_user_right_up(const Vec3& v) {
+  return {v.y(), v.z(), v.x()};
+}
+inline Vec3 to_user_right_up(const Vec3& v) {
+  return {v.z(), v.x(), v.y()};
+}
+
+// The handle's axes are renamed as the device's are: a handle that is not turned for the vendor is not for
+// us.
+inline Eigen::Matrix3d turn_from_user_right_up(const Eigen::Matrix3d& turn) {
+  Eigen::Matrix3d turned;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) turned(i, j) = turn((i + 1) % 3, (j + 1) % 3);
+  return turned;
+}
+
+// Up to what encoders and single precision leave; false for what is no number.
+inline bool is_rotation(const Eigen::Matrix3d& m) {
+  constexpr double kSlack = 1e-3;
+  return ((m * m.transpose() - Eigen::Matrix3d::Identity()).array().abs() < kSlack).all() &&
+         m.determinant() > 0;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,78 @@
+// From the sensor to the servo: frames are processed and prepared in a thread of their own.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "runners/experiment/frame_stream.h"
+#include "runners/live/loop/servo.h"
+#include "runners/live/sensors/depth_source.h"
+
+namespace remote_touch {
+
+// Where recorded frames go. False: there is no room for it now.
+using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint64_t fixtures_off)>;
+
+struct CameraCounts {
+  int received = 0;
+  int passed_over = 0;  // numbers that never came: not sent, or a newer one was there first
+  int reversed = 0;     // not newer than the one before; dropped
+  int incomplete = 0;   // without the colours that the sensor's view promises, or of another size; dropped
+  int overtaken = 0;    // ready, and replaced by a newer one before the servo took them
+  int unrecorded = 0;   // dropped, because the recorder had no room
+  double longest_pause_s = 0;
+  double processing_s = 0;  // sum over the frames
+};
+
+// Frames that the renderer may hold are held here too until nobody else does, so that their memory is given
+// back by this thread.
+class CameraThread {
+ public:
+  static constexpr const char* kEnd = "the recording has ended";
+
+  CameraThread(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
+               const RigidTransform& registration, double start_s, TripleBuffer<LiveFrame>& out,
+               FrameSink sink);
+  ~CameraThread();  // stops
+
+  void start();
+  void stop();                  // waits
+  CameraCounts counts() const;  // so far; from any thread
+  // For other threads: why there will be no more frames; empty while there may be.
+  std::string ended() const;
+  double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the steady clock
+  const SensorView& view() const { return source_->view(); }
+
+ private:
+  void run();
+  void handle(SensorFrame& sensed);
+  bool is_newer(const SensorFrame& sensed);
+  void send(Frame frame, double sensed_s);
+  void end(std::string why);
+
+  const std::unique_ptr<DepthSource> source_;
+  const FrameProcessing processing_;
+  const Renderer& renderer_;
+  const RigidTransform X_WC_;
+  const double start_s_;
+  TripleBuffer<LiveFrame>& out_;
+  const FrameSink sink_;
+  CameraCounts counts_;
+  mutable std::mutex told_mutex_;
+  CameraCounts told_;  // after the newest frame
+  int index_ = 0, last_number_ = -1;
+  double last_captured_s_ = 0;
+  std::deque<Frame> held_;
+  std::atomic<bool> stop_ = false;
+  std::atomic<double> newest_s_;
+  std::string why_;
+  std::atomic<bool> ended_ = false;
+  std::thread thread_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,93 @@
+#include "runners/live/loop/jitter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "runners/live/devices/haptic_device.h"
+#include "runners/live/timing/real_time.h"
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+class NoDevice final : public HapticDevice {
+ public:
+  explicit NoDevice(double rate_hz) { traits_.tick_rate_hz = rate_hz; }
+  const DeviceTraits& traits() const override { return traits_; }
+  DeviceFault read(DeviceReading&) noexcept override { return {}; }
+  DeviceFault write(const Wrench&) noexcept override { return {}; }
+  void let_go() noexcept override {}
+
+ private:
+  DeviceTraits traits_;
+};
+
+// Lateness against the grid of the first tick; the loop keeps to a grid of its own.
+class Watch final : public DeviceCycle {
+ public:
+  Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop)
+      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), most_(duration_s * rate_hz) {
+    jitter_.late_s.reserve(static_cast<std::size_t>(most_) + 1);
+  }
+
+  bool tick() noexcept override {
+    const double now_s = steady_s();
+    if (number_ < 0) start_s_ = now_s;
+    const auto number = static_cast<long long>((now_s - start_s_) * rate_hz_);
+    if (static_cast<double>(number) >= most_ || (stop_ && *stop_)) return false;
+    jitter_.missed += std::max(0LL, number - number_ - 1);
+    number_ = number;
+    jitter_.late_s.push_back(now_s - start_s_ - static_cast<double>(number) / rate_hz_);
+    return true;
+  }
+
+ private:
+  Jitter& jitter_;
+  const double rate_hz_;
+  const std::atomic<bool>* const stop_;
+  const double most_;
+  long long number_ = -1;
+  double start_s_ = 0;
+};
+
+}  // namespace
+
+Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop) {
+  Jitter jitter;
+  NoDevice device(rate_hz);
+  Watch watch(jitter, duration_s, rate_hz, stop);
+  std::thread loop([&] {
+    jitter.real_time = become_real_time();
+    device.run(watch);
+  });
+  loop.join();
+  return jitter;
+}
+
+std::string histogram(const std::vector<double>& late_s) {
+  constexpr int kRows = 16, kBar = 50;
+  constexpr double kFirst_us = 4;
+  std::array<long long, kRows> counts{};
+  for (const double late : late_s) {
+    const double doubled = std::log2(std::max(1e6 * late, 1e-3) / kFirst_us);
+    ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(doubled)), 0, kRows - 1))];
+  }
+  const long long most = *std::max_element(counts.begin(), counts.end());
+  std::string text;
+  for (int i = 0; i < kRows; ++i) {
+    const long long count = counts[static_cast<std::size_t>(i)];
+    if (count == 0) continue;
+    char row[128];
+    std::snprintf(row, sizeof row, "  %8.0f to %8.0f us %10lld %s\n",
+                  i == 0 ? 0 : std::ldexp(kFirst_us, i - 1), std::ldexp(kFirst_us, i), count,
+                  std::string(static_cast<std::size_t>((kBar * count + most - 1) / most), '#').c_str());
+    text += row;
+  }
+  return text;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,30 @@
+#include "runners/live/loop/live_log.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace remote_touch {
+
+void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  trace.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
+               {kUnknown, kUnknown, tick.hash});
+  step_s.push_back(tick.step_s);
+  if (last_number_ >= 0) {
+    interval_s.push_back(tick.since_last_tick_s);
+    missed_ticks += tick.number - last_number_ - 1;
+  }
+  last_number_ = tick.number;
+  if (tick.taken >= 0) {
+    latency_s.push_back(tick.latency_s);
+    waited_s.push_back(tick.waited_s);
+    reversed_frames += tick.taken <= last_taken_ ? 1 : 0;
+    last_taken_ = tick.taken, taken_at_ = tick.number;
+  }
+  exhausted_ticks += tick.out.tool && tick.out.tool->budget_exhausted ? 1 : 0;
+  limp_ticks += tick.gate == GateState::waiting || tick.gate == GateState::latched ? 1 : 0;
+  stale_ticks += static_cast<double>(tick.number - taken_at_) > kStaleFrame_s * haptic_rate_hz ? 1 : 0;
+  largest_force_N = std::max(largest_force_N, tick.written.force_N.norm());
+}
+
+}  // namespace remote_touch

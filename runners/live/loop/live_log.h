@@ -1,0 +1,42 @@
+// What a live run leaves behind: the trace, and the times and counts of its ticks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/trace/trace.h"
+#include "runners/live/loop/camera_thread.h"
+#include "runners/live/loop/servo.h"
+
+namespace remote_touch {
+
+struct LiveLog {
+  Trace trace;
+  std::vector<double> step_s;      // of every tick: taking the frame and rendering
+  std::vector<double> interval_s;  // between the begins of ticks
+  std::vector<double> latency_s;  // of every frame taken: sensor's time stamp to the first write it counts in
+  std::vector<double> waited_s;   // of every frame taken: ready to taken
+  std::int64_t missed_ticks = 0;  // numbers that no tick had
+  std::int64_t exhausted_ticks = 0;  // that ended before the tool came to rest
+  std::int64_t limp_ticks = 0;       // in which the gate was waiting or latched
+  std::int64_t stale_ticks = 0;      // with no new frame for kStaleFrame_s
+  std::int64_t reversed_frames = 0;  // taken although older than the one before; there should be none
+  double largest_force_N = 0;        // written
+
+  static constexpr double kStaleFrame_s = 0.2;
+
+  void append(const LiveTick& tick, double haptic_rate_hz);
+
+ private:
+  std::int64_t last_number_ = -1, taken_at_ = 0;
+  int last_taken_ = -1;
+};
+
+// What others count beside the ticks.
+struct LiveCounts {
+  CameraCounts camera;
+  int stalls = 0;
+  std::int64_t rows_lost = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,63 @@
+// Takes what the servo and the camera thread leave, in a thread of its own: into the log, and on disk where a
+// session is recorded.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "runners/live/loop/live_log.h"
+#include "runners/live/loop/session_file.h"
+
+namespace remote_touch {
+
+class LiveLogger {
+ public:
+  // recorder: null where nothing is recorded.
+  LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
+  ~LiveLogger();
+
+  // For the camera thread: false where the disk is behind by kMostFrames.
+  bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
+  // Takes all that is left and finishes the file; the servo and the camera have stopped.
+  void finish();
+  // For other threads: why nothing can be recorded or logged any more.
+  std::string failure() const;
+  LiveLog take() { return std::move(log_); }  // after finish()
+  // While running: calls once, in the logger's thread, with the log as it is then.
+  void ask(std::function<void(const LiveLog&)> question);
+
+ private:
+  static constexpr std::size_t kMostFrames = 90;
+  struct Recorded {
+    SensorFrame frame;
+    double captured_s;
+    std::uint64_t fixtures_off;
+  };
+  void run();
+  void take_rows();
+  void take_frames();
+  void answer();
+  void fail(const std::exception& error);
+
+  Ring<LiveTick>& rows_;
+  const double haptic_rate_hz_;
+  const std::unique_ptr<SessionWriter> recorder_;
+  LiveLog log_;
+  bool log_is_full_ = false;
+  std::mutex question_mutex_;
+  std::function<void(const LiveLog&)> question_;
+  std::mutex frames_mutex_;
+  std::deque<Recorded> frames_;
+  std::atomic<bool> stop_ = false, failed_ = false;
+  std::string why_;
+  std::thread thread_;
+};
+
+}  // namespace remote_touch

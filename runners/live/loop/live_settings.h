@@ -1,0 +1,53 @@
+// Where device and camera stand in the world, for the live loop.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "core/rendering/frame.h"
+#include "core/tool/dynamics/wrench_coupling.h"
+#include "runners/live/devices/haptic_device.h"
+
+namespace remote_touch {
+
+struct LiveSettings {
+  Vec3 device_m = Vec3::Zero();
+  Vec3 device_turn_deg = Vec3::Zero();
+  double device_scale = 1;
+  Vec3 camera_m = Vec3::Zero();
+  Vec3 camera_turn_deg = Vec3::Zero();
+};
+
+Parameters parameters(LiveSettings& s);
+inline std::string conflict(const LiveSettings&) {
+  return {};
+}
+
+// Of the camera over where its source says that it stands.
+RigidTransform camera_registration(const LiveSettings& s);
+
+// The share of all forces that a device can take whose own stiffness is limited; 1 where they fit, or where
+// the limit is 0, not known. device_scale ways in the world per way of the hand make that much stiffer.
+double bearable_share(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
+
+// From the device to the world and back: p_W = device_m + scale R p_D. Forces and torques are turned and not
+// scaled, so the hand feels scale times the stiffness; to the device goes their share.
+class DevicePlacement {
+ public:
+  explicit DevicePlacement(const LiveSettings& s, double share = 1);
+
+  DeviceState in_world(const DeviceReading& reading) const;
+  Wrench to_device(const Wrench& wrench_W) const;
+  // The other ways, for simulated devices.
+  DeviceReading of_device(const DeviceState& state) const;
+  Wrench in_world(const Wrench& wrench_D) const;
+  double scale() const { return scale_; }
+
+ private:
+  Eigen::Quaterniond q_WD_;
+  Eigen::Matrix3d R_DW_;
+  Vec3 p_W_;
+  double scale_, share_;
+};
+
+}  // namespace remote_touch

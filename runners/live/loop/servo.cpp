@@ -1,0 +1,131 @@
+#include "runners/live/loop/servo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+bool is_let_go(const DeviceFault& fault) {
+  return fault.what == kLetGo.what;
+}
+
+Wrench wrench_of(const RenderOutput& out) {
+  return {out.force_N, out.tool ? out.tool->torque_Nm : Vec3(Vec3::Zero())};
+}
+
+}  // namespace
+
+Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits,
+             double rate_hz, double start_s, double stall_s)
+    : links_(links),
+      placement_(placement),
+      rate_hz_(rate_hz),
+      start_s_(start_s),
+      gate_(limits),
+      heartbeat_(links.device, stall_s) {}
+
+std::int64_t Servo::next_number(double now_s) {
+  const auto by_clock = static_cast<std::int64_t>(std::ceil((now_s - start_s_) * rate_hz_));
+  return last_number_ = std::max(last_number_ + 1, by_clock);
+}
+
+// Offline, a frame is there for the first tick at or after its time.
+void Servo::move_on_to(double time_s, LiveTick& row) {
+  auto number = static_cast<std::int64_t>(std::ceil(time_s * rate_hz_));
+  while (static_cast<double>(number) / rate_hz_ < time_s) ++number;  // the quotient is rounded
+  row.number = last_number_ = std::max(row.number, number);
+}
+
+// The slot is the servo's until it takes the next, so the time of arrival can be written into it.
+void Servo::take_frame(LiveTick& row) {
+  row.taken = -1;
+  if (!links_.frames.take()) return;
+  LiveFrame& taken = links_.frames.front();
+  row.waited_s = static_cast<float>(steady_s() - taken.ready_s);
+  move_on_to(taken.frame.captured_s, row);
+  taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
+  links_.renderer.on_frame(taken.frame);
+  row.taken = taken.frame.index;
+  row.hash = taken.hash;
+}
+
+void Servo::note(const DeviceFault& fault, bool of_device) noexcept {
+  if (!fault) return;
+  trouble_.store(fault.what, std::memory_order_release);
+  if (of_device) failed_.store(true, std::memory_order_release);
+}
+
+bool Servo::is_over() const noexcept {
+  return links_.stop.load(std::memory_order_relaxed) ||
+         (links_.signal && links_.signal->load(std::memory_order_relaxed)) || steady_s() >= links_.ends_s;
+}
+
+bool Servo::tick() noexcept try {
+  if (!is_over()) {
+    one_tick();
+    return true;
+  }
+  heartbeat_.rest();
+  links_.device.let_go();
+  return false;
+} catch (...) {  // a renderer breaks its contract, or a frame that was not prepared found no memory
+  heartbeat_.rest();
+  links_.device.let_go();
+  note({"an exception in the haptic loop"}, true);
+  return false;
+}
+
+void Servo::one_tick() {
+  const double begin_s = steady_s();
+  if (!heartbeat_.beat(begin_s)) {
+    gate_.restart();
+    if (has_failed() || !links_.device.hold_again())
+      note({"the haptic loop hung, and the device was let go"}, true);
+  }
+  row_.since_last_tick_s = last_number_ < 0 ? 0 : static_cast<float>(begin_s - last_tick_s_);
+  last_tick_s_ = begin_s;
+  row_.number = next_number(begin_s);
+
+  DeviceReading reading;
+  DeviceFault fault = links_.device.read(reading);
+  if (is_let_go(fault)) reading = last_reading_, fault = {};  // the next beat tells
+  last_reading_ = reading;
+  if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer holds still and lets go
+  row_.device = placement_.in_world(reading);
+
+  const double read_s = steady_s();
+  take_frame(row_);
+  row_.out = links_.renderer.step(row_.device, static_cast<double>(row_.number) / rate_hz_);
+  const double made_s = steady_s();
+  row_.step_s = static_cast<float>(made_s - read_s);
+
+  row_.written = gate_.pass(made_s, reading, fault, placement_.to_device(wrench_of(row_.out)), begin_s);
+  const DeviceFault refused = links_.device.write(row_.written);
+  row_.gate = gate_.state();
+  if (refused) {
+    if (!is_let_go(refused)) gate_.latch(refused);
+    links_.device.let_go();
+  }
+  note(fault, true);
+  if (!is_let_go(refused)) note(refused, true);
+  if (row_.gate == GateState::latched) note(gate_.reason(), false);
+  latched_.store(row_.gate == GateState::latched, std::memory_order_release);
+  if (row_.taken >= 0) {
+    row_.latency_s = static_cast<float>(steady_s() - links_.frames.front().sensed_s);
+  }
+  if (LiveTick* const slot = links_.rows.room()) {
+    *slot = row_;
+    links_.rows.push();
+  } else {
+    rows_lost_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+}  // namespace remote_touch

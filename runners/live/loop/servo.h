@@ -1,0 +1,95 @@
+// One live tick: device, newest frame, renderer, safety gate, device.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+
+#include "core/rendering/renderer.h"
+#include "runners/live/devices/heartbeat.h"
+#include "runners/live/devices/safety_gate.h"
+#include "runners/live/loop/live_settings.h"
+#include "runners/live/loop/ring.h"
+#include "runners/live/loop/triple_buffer.h"
+
+namespace remote_touch {
+
+// A frame on its way to the servo.
+struct LiveFrame {
+  Frame frame;
+  double sensed_s = 0;  // of the steady clock: the sensor's time stamp, and when the frame was ready
+  double ready_s = 0;
+  std::uint64_t hash = 0;  // frame_hash()
+};
+
+struct LiveTick {
+  std::int64_t number = 0;  // time of the tick is number / haptic rate, since the start
+  DeviceState device;
+  RenderOutput out;
+  int taken = -1;          // the frame that the renderer got before this tick; -1: none
+  std::uint64_t hash = 0;  // of the newest frame taken
+  Wrench written;          // to the device, in its axes
+  GateState gate = GateState::waiting;
+  float step_s = 0;             // taking the frame and rendering
+  float since_last_tick_s = 0;  // from the begin of one tick to that of the next
+  float latency_s = 0;          // of a frame that was taken: sensor's time stamp to the write it counts in
+  float waited_s = 0;           // of that: between ready and taken
+};
+
+// What the servo shares with others. All outlive it.
+struct ServoLinks {
+  HapticDevice& device;
+  Renderer& renderer;
+  TripleBuffer<LiveFrame>& frames;
+  Ring<LiveTick>& rows;
+  const std::atomic<bool>& stop;
+  // A second one, of the program's signals, and an end by the clock: the loop sees to both itself, for the
+  // thread that waits for it may be held up by the terminal that it writes to.
+  const std::atomic<bool>* signal = nullptr;
+  double ends_s = std::numeric_limits<double>::infinity();  // of the steady clock
+};
+
+// No allocation, no lock, no file; the device's calls excepted. Ticks are numbered by the clock: a missed one
+// leaves a gap, a device that is fast gives each its own number. Their times are rounded up, and moved on
+// where a frame was captured while the device was read, so that no frame is taken before it was captured.
+class Servo final : public DeviceCycle {
+ public:
+  // stall_s: longest time without a tick until the heartbeat lets the device go.
+  Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits, double rate_hz,
+        double start_s, double stall_s);
+
+  bool tick() noexcept override;
+
+  // For other threads.
+  void rearm() noexcept { gate_.rearm(); }
+  int stalls() const { return heartbeat_.stalls(); }
+  std::int64_t rows_lost() const { return rows_lost_.load(std::memory_order_relaxed); }
+  bool is_latched() const { return latched_.load(std::memory_order_acquire); }
+  // Of the newest latch or failure.
+  const char* trouble() const { return trouble_.load(std::memory_order_acquire); }
+  // The device itself failed, which no rearm() mends.
+  bool has_failed() const { return failed_.load(std::memory_order_acquire); }
+
+ private:
+  void one_tick();
+  bool is_over() const noexcept;
+  std::int64_t next_number(double now_s);
+  void move_on_to(double time_s, LiveTick& row);
+  void take_frame(LiveTick& row);
+  void note(const DeviceFault& fault, bool of_device) noexcept;
+
+  const ServoLinks links_;
+  const DevicePlacement placement_;
+  const double rate_hz_, start_s_;
+  SafetyGate gate_;
+  Heartbeat heartbeat_;
+  std::int64_t last_number_ = -1;
+  double last_tick_s_ = 0;
+  DeviceReading last_reading_;
+  LiveTick row_;
+  std::atomic<std::int64_t> rows_lost_ = 0;
+  std::atomic<const char*> trouble_ = nullptr;
+  std::atomic<bool> failed_ = false, latched_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,172 @@
+#include "runners/live/loop/session_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/hdf5_seal.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::size_t kTicksAtOnce = 1000;
+
+std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
+  const CameraIntrinsics& c = view.camera;
+  Json json = {{"width", c.width},
+               {"height", c.height},
+               {"fx", c.fx},
+               {"fy", c.fy},
+               {"cx", c.cx},
+               {"cy", c.cy},
+               {"metres_per_unit", view.metres_per_unit},
+               {"frame_rate_hz", view.frame_rate_hz},
+               {"has_colour", view.has_colour}};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) json["X_WC"].push_back(X_WC(row, column));
+  return json.dump();
+}
+
+}  // namespace
+
+SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorView& view,
+                             const RigidTransform& registered, const TextAttributes& provenance)
+    : file_(target), has_colour_(view.has_colour) {
+  using Number = Hdf5Appender::Number;
+  file_.attributes("/", {{"schema", kSessionSchema}, {"view", view_text(view, registered)}});
+  file_.attributes("/", provenance);
+  file_.group("/ticks"), file_.group("/frames");
+  file_.dataset({"/ticks/number", "1", "number of the tick: its time times the haptic rate", Number::u64});
+  file_.dataset({"/ticks/position", "m", "of the device, world frame", Number::f64, {3}});
+  file_.dataset({"/ticks/orientation", "1", "of the device, quaternion w x y z", Number::f64, {4}});
+  file_.dataset({"/ticks/buttons", "1", "that are down, a bit each", Number::u32});
+  file_.dataset({"/ticks/taken", "1", "frame taken before the tick, -1: none", Number::i32});
+  file_.dataset({"/ticks/written_force", "N", "written to the device, in its axes", Number::f64, {3}});
+  file_.dataset({"/ticks/written_torque", "N m", "written to the device, in its axes", Number::f64, {3}});
+  file_.dataset({"/ticks/gate", "1", "0 waiting, 1 ramping, 2 engaged, 3 latched", Number::i32});
+  file_.dataset({"/frames/number", "1", "as the sensor counts", Number::i32});
+  file_.dataset({"/frames/captured", "s", "since the start, by the sensor's time stamp", Number::f64});
+  file_.dataset({"/frames/fixtures_off", "1", "fixtures that were off, a bit each", Number::u64});
+  const auto height = static_cast<unsigned long long>(view.camera.height),
+             width = static_cast<unsigned long long>(view.camera.width);
+  file_.dataset({"/frames/depth", "1", "units of metres_per_unit, 0: none", Number::u16, {height, width}, 1});
+  if (has_colour_) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
+}
+
+void SessionWriter::append(const LiveTick& tick) {
+  const DeviceState& device = tick.device;
+  const auto push = [](std::vector<double>& column, const Vec3& v) {
+    column.insert(column.end(), v.data(), v.data() + 3);
+  };
+  ticks_.number.push_back(static_cast<std::uint64_t>(tick.number));
+  push(ticks_.position, device.position_W);
+  const Eigen::Quaterniond& q = device.orientation_W;
+  ticks_.orientation.insert(ticks_.orientation.end(), {q.w(), q.x(), q.y(), q.z()});
+  ticks_.buttons.push_back(device.buttons);
+  ticks_.taken.push_back(tick.taken);
+  push(ticks_.force, tick.written.force_N), push(ticks_.torque, tick.written.torque_Nm);
+  ticks_.gate.push_back(static_cast<std::int32_t>(tick.gate));
+  if (ticks_.number.size() >= kTicksAtOnce) flush_ticks();
+}
+
+void SessionWriter::flush_ticks() {
+  const std::size_t count = ticks_.number.size();
+  file_.append("/ticks/number", ticks_.number.data(), count);
+  file_.append("/ticks/position", ticks_.position.data(), count);
+  file_.append("/ticks/orientation", ticks_.orientation.data(), count);
+  file_.append("/ticks/buttons", ticks_.buttons.data(), count);
+  file_.append("/ticks/taken", ticks_.taken.data(), count);
+  file_.append("/ticks/written_force", ticks_.force.data(), count);
+  file_.append("/ticks/written_torque", ticks_.torque.data(), count);
+  file_.append("/ticks/gate", ticks_.gate.data(), count);
+  ticks_ = {};
+}
+
+void SessionWriter::append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
+  const std::int32_t number = frame.number;
+  file_.append("/frames/number", &number, 1);
+  file_.append("/frames/captured", &captured_s, 1);
+  file_.append("/frames/fixtures_off", &fixtures_off, 1);
+  file_.append("/frames/depth", frame.depth.data(), 1);
+  if (has_colour_) file_.append("/frames/colour", frame.colour.data(), 1);
+}
+
+void SessionWriter::finish() {
+  flush_ticks();
+  file_.finish();
+}
+
+SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
+  file_.require_schema(kSessionSchema, "which remote-touch live --record makes");
+  read_view();
+  captured_s_ = file_.values<double>("/frames/captured");
+  fixtures_off_ = file_.values<std::uint64_t>("/frames/fixtures_off");
+  frame_number_ = file_.values<std::int32_t>("/frames/number");
+  number_ = file_.values<std::uint64_t>("/ticks/number");
+  position_ = file_.values<double>("/ticks/position", 3);
+  orientation_ = file_.values<double>("/ticks/orientation", 4);
+  buttons_ = file_.values<std::int32_t>("/ticks/buttons");
+  taken_ = file_.values<std::int32_t>("/ticks/taken");
+  const std::size_t ticks = number_.size(), frames = captured_s_.size();
+  if (position_.size() != 3 * ticks || orientation_.size() != 4 * ticks || buttons_.size() != ticks ||
+      taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
+    file_.damaged("its columns differ in length");
+  for (std::size_t i = 0; i < ticks; ++i)
+    if (taken_[i] < -1 || taken_[i] >= static_cast<std::int32_t>(frames) ||
+        (i > 0 && number_[i] <= number_[i - 1]))
+      file_.damaged("its ticks are out of order");
+}
+
+void SessionReader::read_view() try {
+  const Json json = Json::parse(attribute(file_.attributes(), "view"));
+  CameraIntrinsics& c = view_.camera;
+  c.width = json.at("width"), c.height = json.at("height");
+  c.fx = json.at("fx"), c.fy = json.at("fy"), c.cx = json.at("cx"), c.cy = json.at("cy");
+  view_.metres_per_unit = json.at("metres_per_unit");
+  view_.frame_rate_hz = json.at("frame_rate_hz");
+  haptic_rate_hz_ = Json::parse(config()).at("haptic_rate_hz");
+  view_.has_colour = json.at("has_colour");
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      view_.X_WC.matrix()(row, column) = json.at("X_WC").at(static_cast<std::size_t>(4 * row + column));
+} catch (const Json::exception&) {
+  file_.damaged("its attributes view and config");
+}
+
+std::string SessionReader::config() const {
+  return attribute(file_.attributes(), "config");
+}
+
+DeviceState SessionReader::device(std::size_t i) const {
+  return {Vec3(position_[3 * i], position_[3 * i + 1], position_[3 * i + 2]),
+          {orientation_[4 * i], orientation_[4 * i + 1], orientation_[4 * i + 2], orientation_[4 * i + 3]},
+          static_cast<std::uint32_t>(buttons_[i])};
+}
+
+SensorFrame SessionReader::frame(std::size_t i) const {
+  SensorFrame frame;
+  frame.number = frame_number_[i];
+  frame.captured_s = captured_s_[i];
+  const auto pixels =
+      static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
+  const auto read = [&](const char* dataset, auto& to) {
+    const Column column = file_.rows(dataset, i, 1);
+    const auto* numbers = std::get_if<std::vector<std::int32_t>>(&column.values);
+    if (!numbers || numbers->size() != pixels) file_.damaged(std::string(dataset) + " is of another size");
+    to.assign(numbers->begin(), numbers->end());
+  };
+  read("/frames/depth", frame.depth);
+  if (view_.has_colour) read("/frames/colour", frame.colour);
+  return frame;
+}
+
+bool looks_like_session(const std::filesystem::path& file) {
+  std::string opening(kResultOpening.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(opening.data(), static_cast<std::streamsize>(opening.size()));
+  return opening == kResultOpening;
+}
+
+}  // namespace remote_touch

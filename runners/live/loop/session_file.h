@@ -1,0 +1,79 @@
+// A live session on disk: what the device told at every tick, what the sensor sent, and when the renderer got
+// it. One HDF5 file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_appender.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "runners/live/loop/servo.h"
+#include "runners/live/sensors/depth_source.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kSessionSchema = "remote-touch-session/1";
+
+// /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as they
+// were written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's
+// attributes: config, view, haptic rate and the provenance.
+class SessionWriter {
+ public:
+  // registered: where the camera stands, its registration included.
+  SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
+                const TextAttributes& provenance);
+
+  void append(const LiveTick& tick);  // goes to the disk a thousand at a time
+  void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
+  void finish();
+
+ private:
+  void flush_ticks();
+
+  Hdf5Appender file_;
+  const bool has_colour_;
+  struct {
+    std::vector<std::uint64_t> number;
+    std::vector<double> position, orientation, force, torque;
+    std::vector<std::uint32_t> buttons;
+    std::vector<std::int32_t> taken, gate;
+  } ticks_;
+};
+
+// Throws InputError naming the file when it is no session or damaged.
+class SessionReader {
+ public:
+  explicit SessionReader(const std::filesystem::path& file);
+
+  std::string config() const;  // the experiment that was run, as JSON
+  double haptic_rate_hz() const { return haptic_rate_hz_; }
+  const SensorView& view() const { return view_; }
+  std::size_t frame_count() const { return captured_s_.size(); }
+  SensorFrame frame(std::size_t i) const;
+  double captured_s(std::size_t i) const { return captured_s_[i]; }
+  std::uint64_t fixtures_off(std::size_t i) const { return fixtures_off_[i]; }
+
+  // Ticks in the order in which they came; numbers grow, with gaps where ticks were missed.
+  std::size_t tick_count() const { return number_.size(); }
+  std::uint64_t tick_number(std::size_t i) const { return number_[i]; }
+  DeviceState device(std::size_t i) const;
+  std::int32_t taken(std::size_t i) const { return taken_[i]; }
+
+ private:
+  void read_view();
+
+  Hdf5Reader file_;
+  SensorView view_;
+  double haptic_rate_hz_ = 0;
+  std::vector<double> captured_s_, position_, orientation_;
+  std::vector<std::uint64_t> fixtures_off_, number_;
+  std::vector<std::int32_t> frame_number_, taken_, buttons_;
+};
+
+// Whether the file begins as one of this program's HDF5 files, which an experiment's JSON does not.
+bool looks_like_session(const std::filesystem::path& file);
+
+}  // namespace remote_touch

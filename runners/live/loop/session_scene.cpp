@@ -1,0 +1,110 @@
+#include "runners/live/loop/session_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/sensors/sensor_cloud.h"
+
+namespace remote_touch {
+
+namespace {
+
+Parameters path_alone(std::string& path) {
+  return {{"path", &path, 0, 0, "file of remote-touch live --record"}};
+}
+
+std::string missing_path(const std::string& path) {
+  return path.empty() ? "path = \"\": allowed a file of remote-touch live --record" : std::string();
+}
+
+}  // namespace
+
+Parameters parameters(SessionScene::Settings& s) {
+  return path_alone(s.path);
+}
+std::string conflict(const SessionScene::Settings& s) {
+  return missing_path(s.path);
+}
+RecordingPart input_files(const SessionScene::Settings& s) {
+  return {s.path};
+}
+Parameters parameters(SessionHand::Settings& s) {
+  return path_alone(s.path);
+}
+std::string conflict(const SessionHand::Settings& s) {
+  return missing_path(s.path);
+}
+RecordingPart input_files(const SessionHand::Settings& s) {
+  return {s.path};
+}
+
+SessionScene::SessionScene(const Settings& settings, const NoiseKey&, const Kernels&)
+    : session_(find_recording(settings.path)),
+      arrives_s_(session_.frame_count(), std::numeric_limits<double>::infinity()) {
+  for (std::size_t i = 0; i < session_.tick_count(); ++i)
+    if (session_.taken(i) >= 0)
+      arrives_s_[static_cast<std::size_t>(session_.taken(i))] =
+          static_cast<double>(session_.tick_number(i)) / session_.haptic_rate_hz();
+  if (arrives_s_.empty()) throw InputError(settings.path, "has no frames; allowed a session with some");
+}
+
+PointCloud SessionScene::cloud(int frame) const {
+  return cloud_of(session_.frame(static_cast<std::size_t>(frame)), session_.view(), session_.view().X_WC);
+}
+
+std::shared_ptr<const NeighbourSearch> SessionScene::points(int frame) const {
+  return make_search(cloud(frame));
+}
+
+double SessionScene::signed_distance(const Vec3&, double) const {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+SessionHand::SessionHand(const Settings& settings, const Scenario&)
+    : session_(find_recording(settings.path)) {
+  if (session_.tick_count() == 0)
+    throw InputError(settings.path, "has no ticks; allowed a session with some");
+}
+
+// The last tick that is not later; before the first that one.
+std::size_t SessionHand::tick_at(double time_s) const {
+  const auto number =
+      static_cast<std::uint64_t>(std::max(0.0, std::floor(time_s * session_.haptic_rate_hz() + 0.5)));
+  std::size_t first = 0, last = session_.tick_count();
+  while (last - first > 1) {
+    const std::size_t middle = first + (last - first) / 2;
+    (session_.tick_number(middle) <= number ? first : last) = middle;
+  }
+  return first;
+}
+
+DeviceState SessionHand::at(double time_s) const {
+  return session_.device(tick_at(time_s));
+}
+
+bool SessionHand::is_missed(double time_s) const {
+  const double number = std::floor(time_s * session_.haptic_rate_hz() + 0.5);
+  return static_cast<double>(session_.tick_number(tick_at(time_s))) != number;
+}
+
+double SessionHand::duration_s() const {
+  return static_cast<double>(session_.tick_number(session_.tick_count() - 1) + 1) / session_.haptic_rate_hz();
+}
+
+std::string session_experiment(const std::string& path) try {
+  using Json = nlohmann::ordered_json;
+  Json json = Json::parse(SessionReader(find_recording(path)).config());
+  for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};
+  // The hand is the recorded one, and frames come when and as they came.
+  for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
+  for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
+    json[setting] = 0;
+  return json.dump();
+} catch (const nlohmann::json::exception&) {
+  throw InputError(path, "damaged (its configuration); allowed a file of remote-touch live --record");
+}
+
+}  // namespace remote_touch

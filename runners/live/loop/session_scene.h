@@ -1,0 +1,73 @@
+// A recorded live session as an experiment: its frames as a scenario, its hand as a trajectory.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "runners/live/loop/session_file.h"
+#include "runners/trajectories/trajectory.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+// The frames as the sensor sent them, at the times when the live renderer got them.
+class SessionScene final : public Scenario {
+ public:
+  struct Settings {
+    std::string path;
+  };
+  // Throws InputError when the session cannot be read.
+  SessionScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return session_.view().frame_rate_hz; }
+  int frame_count() const override { return static_cast<int>(session_.frame_count()); }
+  double captured_s(int frame) const override { return session_.captured_s(static_cast<std::size_t>(frame)); }
+  bool ends() const override { return true; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // There is no truth.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  std::optional<double> arrives_s(int frame) const override {
+    return arrives_s_[static_cast<std::size_t>(frame)];
+  }
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return session_.fixtures_off(static_cast<std::size_t>(frame));
+  }
+
+ private:
+  const SessionReader session_;
+  std::vector<double> arrives_s_;  // infinite where the renderer never got it
+};
+
+Parameters parameters(SessionScene::Settings& s);
+std::string conflict(const SessionScene::Settings& s);
+RecordingPart input_files(const SessionScene::Settings& s);
+
+// The device of the session at its ticks; between them, and where one was missed, as at the one before.
+class SessionHand final : public Trajectory {
+ public:
+  struct Settings {
+    std::string path;
+  };
+  SessionHand(const Settings& settings, const Scenario& scenario);
+
+  DeviceState at(double time_s) const override;
+  double duration_s() const override;
+  bool is_missed(double time_s) const override;
+
+ private:
+  std::size_t tick_at(double time_s) const;
+
+  const SessionReader session_;
+};
+
+Parameters parameters(SessionHand::Settings& s);
+std::string conflict(const SessionHand::Settings& s);
+RecordingPart input_files(const SessionHand::Settings& s);
+
+// The experiment of a session, as JSON: what was run, with the recorded frames and hand.
+std::string session_experiment(const std::string& path);
+
+}  // namespace remote_touch

@@ -1,0 +1,21 @@
+// Stands in for freenect_camera.cpp where its library is not installed.
+#include "core/parameters/input_error.h"
+#include "runners/live/sensors/freenect_camera.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kNotCompiledIn = "not compiled in: install libfreenect-dev and build again";
+
+}  // namespace
+
+std::unique_ptr<DepthSource> open_freenect(const std::string&) {
+  throw InputError("freenect", kNotCompiledIn);
+}
+
+Availability freenect_availability() {
+  return {.compiled_in = false, .found = false, .detail = kNotCompiledIn};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,21 @@
+// Stands in for openni2_camera.cpp where its library is not installed.
+#include "core/parameters/input_error.h"
+#include "runners/live/sensors/openni2_camera.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kNotCompiledIn = "not compiled in: install libopenni2-dev and build again";
+
+}  // namespace
+
+std::unique_ptr<DepthSource> open_openni2(const std::string&) {
+  throw InputError("openni2", kNotCompiledIn);
+}
+
+Availability openni2_availability() {
+  return {.compiled_in = false, .found = false, .detail = kNotCompiledIn};
+}
+
+}  // namespace remote_touch

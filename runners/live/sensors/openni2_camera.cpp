@@ -1,0 +1,286 @@
+#include "runners/live/sensors/openni2_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/sensors/openni2_library.h"
+#include "runners/live/sensors/pixel_rows.h"
+#include "runners/live/sensors/sensor_clock.h"
+#include "runners/live/timing/steady_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+using openni2::driver_folder, openni2::is_file, openni2::said;
+using openni2::read_from, openni2::wait_for;
+
+// The player of recordings shortens pauses to 2 s.
+constexpr double kLongestPause_s = 5;
+
+// 0: no distance along the axis, but the shift that the sensor measures.
+double metres_per_unit(openni::PixelFormat format) {
+  if (format == openni::PIXEL_FORMAT_DEPTH_1_MM) return 0.001;
+  if (format == openni::PIXEL_FORMAT_DEPTH_100_UM) return 0.0001;
+  return 0;
+}
+
+// The accepted mode that is greatest by rank; none: nothing.
+template <class Accept, class Rank>
+std::optional<openni::VideoMode> best_mode(const openni::VideoStream& stream, Accept accept, Rank rank) {
+  const auto& modes = stream.getSensorInfo().getSupportedVideoModes();
+  std::optional<openni::VideoMode> best;
+  for (int i = 0; i < modes.getSize(); ++i)
+    if (accept(modes[i]) && (!best || rank(*best) < rank(modes[i]))) best.emplace(modes[i]);
+  return best;
+}
+
+std::optional<openni::VideoMode> best_depth_mode(const openni::VideoStream& stream) {
+  return best_mode(
+      stream, [](const openni::VideoMode& mode) { return metres_per_unit(mode.getPixelFormat()) > 0; },
+      [](const openni::VideoMode& mode) {
+        return std::tuple(mode.getResolutionX() <= 640, -std::abs(mode.getFps() - 30), mode.getResolutionX(),
+                          mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_1_MM);
+      });
+}
+
+std::optional<openni::VideoMode> best_colour_mode(const openni::VideoStream& stream,
+                                                  const openni::VideoMode& depth) {
+  return best_mode(
+      stream,
+      [&](const openni::VideoMode& mode) {
+        return mode.getPixelFormat() == openni::PIXEL_FORMAT_RGB888 &&
+               mode.getResolutionX() == depth.getResolutionX() &&
+               mode.getResolutionY() == depth.getResolutionY();
+      },
+      [&](const openni::VideoMode& mode) { return -std::abs(mode.getFps() - depth.getFps()); });
+}
+
+// Asks for an image that is not mirrored; true where it stays so, as that of a recording does.
+bool stays_mirrored(openni::VideoStream& stream) {
+  stream.setMirroringEnabled(false);
+  return stream.getMirroringEnabled();
+}
+
+PixelRows rows_of(const openni::VideoFrameRef& frame, bool is_mirrored) {
+  return {
+      frame.getData(),   static_cast<std::size_t>(std::max(frame.getDataSize(), 0)),      frame.getWidth(),
+      frame.getHeight(), static_cast<std::size_t>(std::max(frame.getStrideInBytes(), 0)), is_mirrored};
+}
+
+class Openni2Camera final : public DepthSource {
+ public:
+  explicit Openni2Camera(const std::string& address);
+  ~Openni2Camera() override;
+
+  const SensorView& view() const override { return view_; }
+  SensorState next(SensorFrame& frame, double timeout_s) override;
+  std::string failure() const override { return failure_; }
+
+ private:
+  void open_device(const std::string& address);
+  void open_depth();
+  bool open_colour();
+  void describe(const openni::VideoStream& seen_by);
+  [[noreturn]] void refuse(const std::string& problem) const { throw InputError(name_, problem); }
+
+  SensorState take(SensorFrame& frame);
+  bool copy_colour(std::uint64_t depth_stamp, SensorFrame& frame);
+  SensorState fail(const std::string& reason);
+  SensorState end();
+
+  // Closed from the last to the first.
+  openni2::Library library_;
+  std::string name_;
+  openni::Device device_;
+  std::optional<openni2::LossListener> loss_;
+  openni::VideoStream depth_, colour_;
+  openni::VideoFrameRef colour_frame_;  // the newest
+
+  openni::VideoMode mode_;
+  bool depth_is_mirrored_ = false, colour_is_mirrored_ = false;
+  int frame_count_ = 0;  // of a recording; 0: a camera
+  SensorView view_;
+  SensorClock clock_;
+  int last_number_ = 0;
+  double last_sign_s_ = 0;  // of life
+  bool has_ended_ = false;
+  std::string failure_;
+};
+
+Openni2Camera::Openni2Camera(const std::string& address) {
+  open_device(address);
+  loss_.emplace(device_.getDeviceInfo().getUri());
+  open_depth();
+  view_.has_colour = open_colour();
+  // Registered depth is that which the colour camera would see.
+  describe(view_.has_colour ? colour_ : depth_);
+  if (depth_.start() != openni::STATUS_OK)
+    refuse("depth does not start (" + said() + "); another program may be using the camera");
+  last_sign_s_ = steady_s();
+}
+
+// A player that is closed before its thread has begun goes on for 3 s, and is killed then. A frame tells that
+// it has.
+Openni2Camera::~Openni2Camera() {
+  if (frame_count_ > 0 && last_number_ == 0) wait_for(depth_, 500);
+}
+
+void Openni2Camera::open_device(const std::string& address) {
+  const std::vector<openni::DeviceInfo> cameras = library_.cameras();
+  name_ = address.empty() || address == "any" ? "openni2" : address;
+  std::string uri = address;
+  if (name_ == "openni2") {
+    if (cameras.empty())
+      refuse("no camera that a driver in " + driver_folder() +
+             " knows; allowed one that is plugged in and that this user may open (lsusb, udev rules), or an "
+             ".oni file");
+    uri = cameras.front().getUri();
+  } else if (!is_file(address)) {
+    // Drivers are not asked for others: one of them crashes.
+    std::string known;
+    for (const openni::DeviceInfo& camera : cameras) known += std::string(", ") + camera.getUri();
+    if (known.find(", " + address) == std::string::npos)
+      refuse("neither a file nor a camera that a driver in " + driver_folder() + " knows; allowed any" +
+             known);
+  }
+  if (device_.open(uri.c_str()) != openni::STATUS_OK)
+    refuse("cannot be opened (" + said() + ")" + (is_file(uri) ? "; allowed a whole .oni recording" : ""));
+}
+
+void Openni2Camera::open_depth() {
+  if (depth_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK)
+    refuse("has no depth (" + said() + "); allowed a depth camera or a recording of one");
+  if (!device_.isFile()) {
+    const std::optional<openni::VideoMode> mode = best_depth_mode(depth_);
+    if (mode && depth_.setVideoMode(*mode) != openni::STATUS_OK) refuse("refuses its own mode: " + said());
+  }
+  mode_ = depth_.getVideoMode();
+  view_.metres_per_unit = metres_per_unit(mode_.getPixelFormat());
+  if (view_.metres_per_unit == 0) refuse("depth is in no unit of length; allowed 1 mm or 0.1 mm");
+  depth_is_mirrored_ = stays_mirrored(depth_);
+  if (!device_.isFile()) return;
+  frame_count_ = device_.getPlaybackControl()->getNumberOfFrames(depth_);
+  if (frame_count_ <= 0) refuse("is no whole recording of depth; allowed one whose recorder was closed");
+}
+
+// Colour is of use where its pixels are those of depth.
+bool Openni2Camera::open_colour() {
+  const auto registered = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
+  if (device_.isFile() || !device_.hasSensor(openni::SENSOR_COLOR) ||
+      !device_.isImageRegistrationModeSupported(registered))
+    return false;
+  if (colour_.create(device_, openni::SENSOR_COLOR) != openni::STATUS_OK) return false;
+  const std::optional<openni::VideoMode> mode = best_colour_mode(colour_, mode_);
+  if (mode && colour_.setVideoMode(*mode) == openni::STATUS_OK &&
+      device_.setImageRegistrationMode(registered) == openni::STATUS_OK) {
+    colour_is_mirrored_ = stays_mirrored(colour_);
+    if (colour_.start() == openni::STATUS_OK) return true;
+    device_.setImageRegistrationMode(openni::IMAGE_REGISTRATION_OFF);
+  }
+  colour_.destroy();
+  return false;
+}
+
+void Openni2Camera::describe(const openni::VideoStream& seen_by) {
+  const double across = seen_by.getHorizontalFieldOfView(), down = seen_by.getVerticalFieldOfView();
+  if (!(across > 0 && across < M_PI && down > 0 && down < M_PI))
+    refuse("tells no field of view: where its pixels look is not known");
+  const int width = mode_.getResolutionX(), height = mode_.getResolutionY();
+  if (width <= 0 || height <= 0) refuse("tells no image size");
+  // The field of view ends at the outer edges of the pixels, half a pixel beyond their centres.
+  view_.camera = {width,
+                  height,
+                  0.5 * width / std::tan(0.5 * across),
+                  0.5 * height / std::tan(0.5 * down),
+                  0.5 * (width - 1),
+                  0.5 * (height - 1)};
+  view_.frame_rate_hz = mode_.getFps();
+}
+
+SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
+  if (!failure_.empty()) return SensorState::failed;
+  if (has_ended_) return SensorState::ended;
+  const double give_up_s = steady_s() + timeout_s;
+  while (true) {
+    if (loss_->is_lost()) return fail("was disconnected");
+    const double left_s = give_up_s - steady_s();
+    // In parts, since no lost camera ends the wait. 0 looks without waiting.
+    const double part_ms = std::clamp(std::ceil(1e3 * left_s), 0.0, 50.0);
+    const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
+    if (status == openni::STATUS_OK) return take(frame);
+    if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + said() + ")");
+    if (frame_count_ > 0 && steady_s() - last_sign_s_ > kLongestPause_s)
+      return fail("plays no further; allowed a recording without damage");
+    if (left_s <= 0) return SensorState::waiting;
+  }
+}
+
+SensorState Openni2Camera::take(SensorFrame& frame) {
+  const openni::VideoFrameRef taken = read_from(depth_);
+  if (!taken.isValid()) return fail("a frame cannot be read (" + said() + ")");
+  const double arrived_s = last_sign_s_ = steady_s();
+  // At once, before the next one takes its place.
+  if (view_.has_colour && wait_for(colour_, openni::TIMEOUT_NONE) == openni::STATUS_OK)
+    colour_frame_ = read_from(colour_);
+  const int number = taken.getFrameIndex();
+  // The player begins anew: made to stop at the end, it sometimes crashes when it is closed.
+  if (frame_count_ > 0 && number <= last_number_) return end();
+  if (!copy_depth(rows_of(taken, depth_is_mirrored_), view_.camera, frame.depth))
+    return fail("frame " + std::to_string(number) + " is " + std::to_string(taken.getWidth()) + " x " +
+                std::to_string(taken.getHeight()) + " pixels in " + std::to_string(taken.getDataSize()) +
+                " bytes; wanted those of the camera's mode");
+  frame.number = last_number_ = number;
+  frame.captured_s = clock_.captured_s(1e-6 * static_cast<double>(taken.getTimestamp()), arrived_s);
+  if (!copy_colour(taken.getTimestamp(), frame)) return fail("a colour frame has another size than its mode");
+  if (frame_count_ > 0 && number >= frame_count_) end();
+  return SensorState::frame;
+}
+
+// The newest, if it is not older or newer than depth by more than a period; false: of another size.
+bool Openni2Camera::copy_colour(std::uint64_t depth_stamp, SensorFrame& frame) {
+  frame.colour.clear();
+  if (!colour_frame_.isValid()) return true;
+  const double apart_s =
+      1e-6 * std::abs(static_cast<double>(colour_frame_.getTimestamp()) - static_cast<double>(depth_stamp));
+  if (apart_s * view_.frame_rate_hz > 1.1) return true;
+  return copy_rgb(rows_of(colour_frame_, colour_is_mirrored_), view_.camera, frame.colour);
+}
+
+SensorState Openni2Camera::fail(const std::string& reason) {
+  failure_ = name_ + ": " + reason;
+  return SensorState::failed;
+}
+
+SensorState Openni2Camera::end() {
+  has_ended_ = true;
+  depth_.stop();  // else the player goes on in the background
+  return SensorState::ended;
+}
+
+}  // namespace
+
+std::unique_ptr<DepthSource> open_openni2(const std::string& address) {
+  return std::make_unique<Openni2Camera>(address);
+}
+
+Availability openni2_availability() {
+  try {
+    const openni2::Library library;
+    const std::vector<openni::DeviceInfo> cameras = library.cameras();
+    if (cameras.empty()) return {.detail = "no camera that a driver in " + driver_folder() + " knows"};
+    std::string names;
+    for (const openni::DeviceInfo& camera : cameras)
+      names += (names.empty() ? "" : ", ") + std::string(camera.getName()) + " (" + camera.getUri() + ")";
+    return {.found = true, .detail = names};
+  } catch (const InputError& error) {
+    return {.detail = error.what()};
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,26 @@
+// Images as drivers hand them over: rows of pixels with gaps between them, sometimes mirrored.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+
+namespace remote_touch {
+
+struct PixelRows {
+  const void* first = nullptr;
+  std::size_t bytes = 0;  // that may be read
+  int width = 0, height = 0;
+  std::size_t stride = 0;  // bytes from row to row
+  bool is_mirrored = false;
+};
+
+// Both turn a mirrored image round. False, and nothing is read, for an image of another size than the
+// camera's or with fewer bytes than it needs.
+bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth);
+// Three bytes a pixel: red, green, blue.
+bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour);
+
+}  // namespace remote_touch

@@ -1,0 +1,31 @@
+// A scenario in real time: a simulated camera, or a recording on disk.
+#pragma once
+
+#include <memory>
+
+#include "runners/live/sensors/depth_source.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// Shows the frame that the scenario has at the time since the first next(), as often as its rate says; frames
+// for which there was no time are passed over. Depths are rounded to kUnit_m, as a sensor does.
+// A scene at rest is shown again and again.
+class ScenarioCamera final : public DepthSource {
+ public:
+  static constexpr double kUnit_m = 1e-4;  // so the farthest is 6.5 m
+
+  // Throws InputError unless the scenario's frames are depth images.
+  explicit ScenarioCamera(std::unique_ptr<const Scenario> scenario);
+
+  const SensorView& view() const override { return view_; }
+  SensorState next(SensorFrame& frame, double timeout_s) override;
+
+ private:
+  std::unique_ptr<const Scenario> scenario_;
+  SensorView view_;
+  double start_s_ = -1;  // of the steady clock; -1: not started
+  int next_ = 0;
+};
+
+}  // namespace remote_touch

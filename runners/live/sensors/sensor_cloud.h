@@ -1,0 +1,11 @@
+// A sensor's frame as an organised cloud.
+#pragma once
+
+#include "runners/live/sensors/depth_source.h"
+
+namespace remote_touch {
+
+// X_WC: where the camera stands. The same bits for the same frame, live and from a recording of it.
+PointCloud cloud_of(const SensorFrame& frame, const SensorView& view, const RigidTransform& X_WC);
+
+}  // namespace remote_touch

@@ -1,0 +1,78 @@
+#include "runners/live/sensors/sensor_table.h"
+
+#include <utility>
+
+#include "runners/live/devices/uri.h"
+#include "runners/live/loop/session_scene.h"
+#include "runners/live/sensors/freenect_camera.h"
+#include "runners/live/sensors/openni2_camera.h"
+#include "runners/live/sensors/scenario_camera.h"
+#include "scenarios/recordings/recorded_scene.h"
+
+namespace remote_touch {
+
+namespace {
+
+Availability always(const char* what) {
+  return {true, true, what};
+}
+
+std::unique_ptr<DepthSource> open_simulated(const std::string& address, const Experiment& experiment,
+                                            const Kernels& kernels) {
+  if (!address.empty())
+    throw InputError("--depth sim:" + address, "allowed sim:, for the experiment's scenario");
+  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels));
+}
+
+// Played at the rate of the recording, over and over, there and back.
+std::unique_ptr<DepthSource> open_recording(const std::string& address, const Experiment& experiment,
+                                            const Kernels& kernels) {
+  RecordedScene::Settings settings;
+  settings.path = address;
+  settings.playback = RecordedScene::Playback::ping_pong;
+  return std::make_unique<ScenarioCamera>(
+      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels));
+}
+
+std::unique_ptr<DepthSource> open_session(const std::string& address, const Experiment& experiment,
+                                          const Kernels& kernels) {
+  return std::make_unique<ScenarioCamera>(
+      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels));
+}
+
+template <std::unique_ptr<DepthSource> (*open)(const std::string&)>
+std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&) {
+  return open(address);
+}
+
+constexpr SensorEntry kSensors[] = {
+    {"sim", "sim:", "the experiment's scenario, in real time", open_simulated,
+     [] { return always("simulated"); }},
+    {"oni", "oni:any",
+     "a camera of OpenNI 2, by its URI or the first there is; or oni:FILE, an .oni recording",
+     open_at<open_openni2>, openni2_availability},
+    {"freenect", "freenect:NUMBER", "Kinect for Xbox 360, by libfreenect", open_at<open_freenect>,
+     freenect_availability},
+    {"dir", "dir:FOLDER", "a folder of depth images or organised clouds", open_recording,
+     [] { return always("reads files"); }},
+    {"tum", "tum:FOLDER", "a folder in the layout of the TUM RGB-D benchmark", open_recording,
+     [] { return always("reads files"); }},
+    {"pcd", "pcd:FILE", "an organised PCD file, or a folder of them", open_recording,
+     [] { return always("reads files"); }},
+    {"replay", "replay:FILE", "the frames of a recorded live session, in real time", open_session,
+     [] { return always("reads files"); }},
+};
+
+}  // namespace
+
+std::span<const SensorEntry> sensors() {
+  return kSensors;
+}
+
+std::unique_ptr<DepthSource> open_sensor(const std::string& text, const Experiment& experiment,
+                                         const Kernels& kernels) {
+  const Uri uri = parse_uri("--depth", text);
+  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels);
+}
+
+}  // namespace remote_touch

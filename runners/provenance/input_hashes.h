@@ -1,0 +1,57 @@
+// What was in the recordings that a result was made from: the attribute inputs of result files.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+// The text has one line a recording, by path:
+//
+//   PATH: 71 file(s), 4929174 bytes, sha256 HASH
+//
+// PATH is scenario.path as the configuration gives it, without the folder below which it was found. The files
+// are those of files_of(): what the frames first_frame to last_frame are made from. HASH is the SHA-256 over
+// one line for each, "<its own SHA-256>  <its name from the recording's folder>\n", the lines sorted by their
+// bytes. So anybody can make it again, for a folder and for a single PCD file:
+//
+//   cd PATH && sha256sum camera.json depth/0000.png depth/0001.png ... | LC_ALL=C sort | sha256sum
+//   cd "$(dirname PATH)" && sha256sum "$(basename PATH)" | sha256sum
+//
+// Where runs read different parts of one recording, its line is about the files of all of them.
+class InputHashes {
+ public:
+  // Reads each file once. Throws InputError as files_of() does, and for a file that cannot be read.
+  void add(const std::vector<RecordingPart>& parts);
+  std::string text() const;  // empty: nothing was added
+
+ private:
+  void read(const RecordingPart& part);
+
+  struct Known {
+    std::string sha256;
+    std::uintmax_t size = 0;
+  };
+  std::map<std::string, std::map<std::string, Known>> recordings_;  // by path, then by name
+  std::set<RecordingPart> parts_;
+};
+
+std::string input_hashes(const std::vector<RecordingPart>& parts);
+
+// A path or name in one line, as sha256sum writes it: a backslash, line feed or carriage return in it is
+// written \\, \n, \r.
+std::string in_one_line(const std::string& name);
+
+// The recordings whose lines differ between two such texts.
+struct ChangedInput {
+  std::string path;         // in one line
+  std::string before, now;  // the rest of the line: "71 file(s), ..."; "absent" where there is none
+};
+std::vector<ChangedInput> changed_inputs(const std::string& before, const std::string& now);
+
+}  // namespace remote_touch

@@ -1,0 +1,37 @@
+#include "runners/provenance/provenance.h"
+
+#include <fstream>
+
+#include "build_info.h"  // written by the build: version, commit, compiler, flags
+
+namespace remote_touch {
+
+std::string version() {
+  return REMOTE_TOUCH_VERSION;
+}
+
+std::string cpu_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t value = line.find(": ");
+    if (line.starts_with("model name") && value != std::string::npos) return line.substr(value + 2);
+  }
+  return {};
+}
+
+TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
+                          const std::string& inputs) {
+  TextAttributes list = {{"config", config},
+                         {"command", command},
+                         {"version", REMOTE_TOUCH_VERSION},
+                         {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
+                         {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
+                         {"sources", REMOTE_TOUCH_SOURCES},
+                         {"compiler", REMOTE_TOUCH_COMPILER},
+                         {"flags", REMOTE_TOUCH_FLAGS}};
+  if (!isa.empty()) list.emplace_back("isa", isa);
+  if (!inputs.empty()) list.emplace_back("inputs", inputs);
+  return list;
+}
+
+}  // namespace remote_touch

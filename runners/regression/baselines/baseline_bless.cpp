@@ -1,0 +1,229 @@
+#include "runners/regression/baselines/baseline_bless.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "analysis/columns/fingerprint.h"
+#include "analysis/comparison/column_comparison.h"
+#include "analysis/comparison/column_source.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/sha256.h"
+#include "analysis/storage/whole_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/regression/baselines/program_run.h"
+#include "runners/regression/baselines/spread.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+namespace {
+
+// A folder for the runs, gone afterwards.
+class Scratch {
+ public:
+  Scratch() {
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
+    if (failure) throw InputError("TMPDIR", failure.message() + "; allowed a writable folder");
+    std::string name = folder / "remote-touch-bless-XXXXXX";
+    if (!::mkdtemp(name.data()))
+      throw InputError(
+          name, std::string("cannot be made (") + std::strerror(errno) + "); allowed a writable folder");
+    path_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// JSON holds no other text.
+void require_utf8(const std::string& option, const std::string& text) {
+  try {
+    static_cast<void>(Json(text).dump());
+  } catch (const Json::exception&) {
+    throw InputError(option, "allowed UTF-8 text");
+  }
+}
+
+void require_sense(const Blessing& blessing) {
+  const bool blank = std::all_of(blessing.reason.begin(), blessing.reason.end(),
+                                 [](unsigned char c) { return std::isspace(c) != 0; });
+  if (blank) throw InputError("--reason", "missing; allowed a sentence: why these numbers are right");
+  if (blessing.also.empty() && !blessing.one_compiler)
+    throw InputError(
+        "--also",
+        "missing; allowed a build of the same source by another compiler (scripts/bless makes one), "
+        "or --one-compiler");
+  if (!blessing.run.empty() && !blessing.sweep.empty())
+    throw InputError("--run, --sweep", "both are given; allowed one of them");
+  require_utf8("--reason", blessing.reason);
+  require_utf8("--run", blessing.run);
+  require_utf8("--sweep", blessing.sweep);
+  if (blessing.name.empty())
+    throw InputError("baseline", "without a name; allowed letters, digits, . - and _");
+  for (const char c : blessing.name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_')
+      throw InputError("baseline " + blessing.name, "allowed letters, digits, . - and _");
+}
+
+Manifest manifest_or_new(const std::filesystem::path& folder) {
+  std::error_code unreachable;
+  return std::filesystem::exists(folder / "manifest.json", unreachable) ? read_manifest(folder) : Manifest{};
+}
+
+// Before anything is run.
+void require_places(const std::filesystem::path& folder) {
+  std::error_code unreachable;
+  if (std::filesystem::exists(folder, unreachable)) require_writable(folder / "manifest.json");
+}
+void require_runnable(const std::filesystem::path& folder, const Baseline& baseline) {
+  if (baseline.command == "sweep")
+    Sweep::load(subject_of(folder, baseline), baseline.overrides);
+  else
+    Experiment::load(subject_of(folder, baseline), baseline.overrides);
+}
+
+// What is to be run: as stored, or as now asked for.
+Baseline definition(const Blessing& blessing, const Manifest& manifest) {
+  const Baseline* stored = manifest.find(blessing.name);
+  const bool is_new = !blessing.run.empty() || !blessing.sweep.empty();
+  if (!stored && !is_new)
+    throw InputError("baseline " + blessing.name,
+                     "there is none; allowed --run EXPERIMENT or --sweep SWEEP to begin one");
+  if (!is_new && !blessing.overrides.empty())
+    throw InputError("--set",
+                     "without --run or --sweep; allowed with them, for a baseline of something else");
+  Baseline baseline = stored ? *stored : Baseline{blessing.name, "", ""};
+  if (is_new) {
+    baseline.command = blessing.run.empty() ? "sweep" : "run";
+    baseline.subject = blessing.run.empty() ? blessing.sweep : blessing.run;
+    baseline.overrides = blessing.overrides;
+  }
+  return baseline;
+}
+
+bool same_values(const std::vector<Column>& a, const std::vector<Column>& b) {
+  const auto equal = [](const Column& x, const Column& y) {
+    return compare_columns(x, y, {}).is_same() && x.name == y.name;
+  };
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), equal);
+}
+
+void store(const std::filesystem::path& file, const std::string& command, const std::filesystem::path& made,
+           std::vector<Column> columns) {
+  if (command == "sweep") {
+    StoredSweep sweep = read_sweep(made);
+    sweep.result.measures = std::move(columns);
+    write_sweep(file, sweep.result, sweep.attributes);
+  } else {
+    const StoredTrace trace(made);
+    columns.push_back(trace.column(kRunningHash));
+    columns.back().values = running_hash({columns.begin(), columns.end() - 1});
+    write_trace(file, columns, provenance_of(trace.attributes()), {});
+  }
+}
+
+std::string attribute_of(const std::filesystem::path& file, const char* name) {
+  return attribute(Hdf5Reader(file).attributes(), name);
+}
+
+// The stored columns, when the stored file is sound and of the same experiment.
+std::vector<Column> old_columns(const std::filesystem::path& file, const Baseline& baseline,
+                                const std::filesystem::path& made) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return {};
+  try {
+    if (attribute_of(file, "config") != attribute_of(made, "config")) return {};
+    return judged_columns(file, baseline.command);
+  } catch (const InputError&) {
+    return {};  // damaged: there are no old bits to keep
+  }
+}
+
+bool same_definition(const Baseline& a, const Baseline& b) {
+  return a.command == b.command && a.subject == b.subject && a.overrides == b.overrides;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw InputError(folder.string(),
+                     "cannot be made (" + failure.message() + "); allowed a writable folder");
+}
+
+void enter(const Baseline& baseline, Manifest& manifest) {
+  const auto place = std::find_if(manifest.baselines.begin(), manifest.baselines.end(),
+                                  [&](const Baseline& one) { return one.name == baseline.name; });
+  if (place != manifest.baselines.end())
+    *place = baseline;
+  else
+    manifest.baselines.push_back(baseline);
+  std::sort(manifest.baselines.begin(), manifest.baselines.end(),
+            [](const Baseline& a, const Baseline& b) { return a.name < b.name; });
+}
+
+std::string spread_text(const Tolerances& spread) {
+  if (spread.empty()) return "exact";
+  std::string text = "spread";
+  for (const auto& [name, tolerance] : spread) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", tolerance.absolute);
+    text += " " + name + " " + number;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string bless(const Blessing& blessing) {
+  require_sense(blessing);
+  Manifest manifest = manifest_or_new(blessing.folder);
+  Baseline baseline = definition(blessing, manifest);
+  require_places(blessing.folder);
+  require_runnable(blessing.folder, baseline);
+  std::vector<std::string> programs = {this_program()};
+  programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
+  const Scratch scratch;
+  const Measured measured =
+      measure_spread(blessing.folder, baseline, programs, scratch.path(), blessing.stop);
+  if (measured.compilers.size() < 2 && !blessing.one_compiler)
+    throw InputError("--also", "by the same compiler, " + *measured.compilers.begin() +
+                                   "; allowed a build by another compiler, or --one-compiler");
+
+  const std::filesystem::path file = file_of(blessing.folder, baseline);
+  const std::vector<Column> old = old_columns(file, baseline, measured.reference);
+  std::vector<Column> now = judged_columns(measured.reference, baseline.command);
+  if (!old.empty()) now = keep_old_bits(old, std::move(now), baseline.tolerances);
+  const bool is_new = old.empty() || !same_values(old, now);
+  const Baseline* stored = manifest.find(blessing.name);
+  if (!is_new && stored && same_definition(*stored, baseline) && measured.spread == baseline.tolerances &&
+      sha256_of_file(file) == baseline.sha256)
+    return baseline.name + ": nothing to store, every number is within the spread of the stored one";
+  if (is_new) {
+    make_folder(blessing.folder);
+    store(file, baseline.command, measured.reference, std::move(now));
+  }
+  baseline.sha256 = sha256_of_file(file), baseline.reason = blessing.reason;
+  baseline.builds = measured.over, baseline.tolerances = measured.spread;
+  enter(baseline, manifest);
+  write_manifest(blessing.folder, manifest);
+  return baseline.name + ": " + (is_new ? "stored" : "the manifest is new, the numbers are kept") + ", " +
+         spread_text(baseline.tolerances);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,88 @@
+#include "runners/regression/baselines/manifest.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/whole_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::filesystem::path manifest_file(const std::filesystem::path& folder) {
+  return folder / "manifest.json";
+}
+
+Baseline baseline_of(const Json& json, const std::filesystem::path& file) {
+  Baseline baseline{json.at("name"), json.at("command"), json.at("subject")};
+  if (baseline.command != "run" && baseline.command != "sweep")
+    throw InputError(file.string(), "baseline " + baseline.name + ": command; allowed run, sweep");
+  baseline.overrides = json.at("set").get<std::vector<std::string>>();
+  baseline.sha256 = json.at("sha256"), baseline.reason = json.at("reason");
+  baseline.builds = json.at("measured_over").get<std::vector<std::string>>();
+  for (const auto& [name, spread] : json.at("spread").get_ref<const Json::object_t&>()) {
+    if (!(spread.get<double>() >= 0))
+      throw InputError(file.string(),
+                       "baseline " + baseline.name + ": spread of " + name + "; allowed 0 or more");
+    baseline.tolerances[name].absolute = spread;
+  }
+  return baseline;
+}
+
+Json json_of(const Baseline& baseline) {
+  Json spread = Json::object();
+  for (const auto& [name, tolerance] : baseline.tolerances) spread[name] = tolerance.absolute;
+  return {{"name", baseline.name},     {"command", baseline.command},     {"subject", baseline.subject},
+          {"set", baseline.overrides}, {"sha256", baseline.sha256},       {"reason", baseline.reason},
+          {"spread", spread},          {"measured_over", baseline.builds}};
+}
+
+}  // namespace
+
+const Baseline* Manifest::find(const std::string& name) const {
+  const auto found = std::find_if(baselines.begin(), baselines.end(),
+                                  [&](const Baseline& baseline) { return baseline.name == name; });
+  return found == baselines.end() ? nullptr : &*found;
+}
+
+Manifest read_manifest(const std::filesystem::path& folder) {
+  const std::filesystem::path file = manifest_file(folder);
+  std::ifstream in(file, std::ios::binary);
+  std::error_code unreachable;
+  if (!in || std::filesystem::is_directory(file, unreachable))
+    throw InputError(
+        file.string(),
+        "cannot be read; allowed a folder of baselines (--folder), or the project's root as working folder");
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const Json json = parse_json(text, file.string());
+  try {
+    Manifest manifest{json.at("complete")};
+    for (const Json& one : json.at("baselines")) manifest.baselines.push_back(baseline_of(one, file));
+    return manifest;
+  } catch (const Json::exception& error) {
+    std::string what = error.what();  // "[json.exception...] key 'spread' not found"
+    if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+    throw InputError(file.string(), what + "; allowed what remote-touch baseline bless writes");
+  }
+}
+
+void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+  Json list = Json::array();
+  for (const Baseline& baseline : manifest.baselines) list.push_back(json_of(baseline));
+  const std::string text = Json({{"complete", manifest.complete}, {"baselines", list}}).dump(2) + "\n";
+  write_whole_file(manifest_file(folder), text.data(), text.size());
+}
+
+std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline) {
+  return folder / (baseline.name + ".h5");
+}
+
+std::string subject_of(const std::filesystem::path& folder, const Baseline& baseline) {
+  return baseline.subject.ends_with(".json") ? (folder / baseline.subject).string() : baseline.subject;
+}
+
+}  // namespace remote_touch

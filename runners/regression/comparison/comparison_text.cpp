@@ -1,0 +1,189 @@
+#include "runners/regression/comparison/comparison_text.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+namespace remote_touch {
+
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+void print_columns(const TraceComparison& comparison) {
+  std::printf("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "largest", "rms", "outside",
+              "tolerance");
+  for (const ColumnComparison& column : comparison.columns) {
+    std::printf("  %-28s %-6s %9zu %12.4g %12.4g %8.3g%%  %s", column.name.c_str(), column.units.c_str(),
+                column.rows, column.largest, column.rms,
+                column.rows == 0
+                    ? 0.0
+                    : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows),
+                tolerance_text(column.tolerance).c_str());
+    if (column.not_numbers > 0) std::printf("; %zu rows: no number against a number", column.not_numbers);
+    if (!column.problem.empty()) std::printf("; %s", column.problem.c_str());
+    std::puts(column.is_same() ? "" : "  DIFFERS");
+  }
+  for (const std::string& name : comparison.added)
+    std::printf("  %-28s only in the candidate: not compared\n", name.c_str());
+}
+
+// One row of a column, as many digits as it takes to see the last bit.
+std::string row_text(const Column& column, std::size_t row) {
+  std::string all;
+  const auto width = static_cast<std::size_t>(column.width);
+  for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+    if (!all.empty()) all += " ";
+    if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
+      all += text("%.17g", (*numbers)[i]);
+    else if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values))
+      all += text("%016" PRIx64, (*hashes)[i]);
+    else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values)) {
+      const auto value = static_cast<std::size_t>((*integers)[i]);
+      all += value < column.value_names.size() ? column.value_names[value] : std::to_string((*integers)[i]);
+    }
+  }
+  return all;
+}
+
+void print_divergence(const Divergence& found) {
+  std::printf("first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
+              found.quantity.c_str(), found.deviation);
+  if (found.parted != found.tick)
+    std::printf("  within the tolerances the runs part at tick %zu; what follows is there\n", found.parted);
+  std::printf("  cause   %s: %s\n", name_of(found.cause), found.because.c_str());
+  if (found.cause != found.situation)
+    std::printf("  there   %s: %s\n", name_of(found.situation), found.seen.c_str());
+  std::printf("  frames  %s\n", found.frame.c_str());
+  const std::size_t here = found.parted - found.first_row;
+  for (std::size_t i = 0; i < found.baseline.size(); ++i) {
+    const Column &ours = found.baseline[i], &theirs = found.candidate[i];
+    const std::string was = row_text(ours, here), is = row_text(theirs, here);
+    const std::string name = ours.name + (ours.units == "1" ? "" : " / " + ours.units);
+    const std::string before = row_text(ours, 0);
+    const bool told = here > 0 && (before != was || was != is);  // what rests is told once
+    if (told) std::printf("  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
+    const char* label = told ? "" : name.c_str();
+    if (was == is) {
+      std::printf("  %-26s tick %-9zu %s\n", label, found.parted, was.c_str());
+    } else {
+      std::printf("  %-26s   baseline     %s\n", label, was.c_str());
+      std::printf("  %-26s   candidate    %s\n", "", is.c_str());
+    }
+  }
+}
+
+const char* word_for(Judgement judgement) {
+  switch (judgement) {
+    case Judgement::equal:
+      return "equal";
+    case Judgement::within_margin:
+      return "within the margin";
+    case Judgement::changed:
+      return "CHANGED";
+    case Judgement::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+void print_measures(const SweepComparison& sweep) {
+  std::printf("  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "largest", "rms", "outside",
+              "tolerance");
+  for (const MeasureComparison& measure : sweep.measures)
+    std::printf("  %-22s %-6s %9lld %12.4g %12.4g %9lld  %s\n", measure.name.c_str(), measure.units.c_str(),
+                static_cast<long long>(measure.compared), measure.largest_deviation, measure.rms_deviation,
+                static_cast<long long>(measure.outside), tolerance_text(measure.tolerance).c_str());
+}
+
+// What is told of a region: all of an event's, and of other measures the whole and what changed.
+bool is_told(const SweepComparison& sweep, std::size_t region, std::size_t measure) {
+  return region == 0 || sweep.measures[measure].event ||
+         sweep.at(region, measure).judgement == Judgement::changed;
+}
+
+// Shares with their intervals, the flips both ways, and what the paired test says.
+void print_regions(const SweepComparison& sweep) {
+  for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
+    if (sweep.measures[m].outside == 0) continue;
+    const bool event = sweep.measures[m].event;
+    std::printf("  %s by region: %s, more / less in the candidate, interval of the difference of shares, p\n",
+                sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference");
+    for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
+      if (!is_told(sweep, r, m)) continue;
+      const RegionComparison& region = sweep.at(r, m);
+      const std::string values =
+          event ? text("%.3f (%.3f to %.3f)  %.3f (%.3f to %.3f)",
+                       region.pairs > 0 ? region.baseline_events / static_cast<double>(region.pairs) : 0.0,
+                       region.baseline_share.first, region.baseline_share.second,
+                       region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
+                       region.candidate_share.first, region.candidate_share.second)
+                : text("%.4g (%.4g to %.4g)", region.mean.mean, region.mean.low, region.mean.high);
+      std::printf("    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  p %.3g  %s  %s\n",
+                  static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),
+                  static_cast<long long>(region.down), region.difference.first, region.difference.second,
+                  region.adjusted_p, word_for(region.judgement), sweep.regions[r].label.c_str());
+    }
+  }
+}
+
+void print_sweep(const SweepComparison& sweep) {
+  for (const std::string& problem : sweep.problems) std::printf("  %s\n", problem.c_str());
+  for (const std::string& note : sweep.notes) std::printf("  %s\n", note.c_str());
+  if (!sweep.problems.empty()) return;
+  print_measures(sweep);
+  if (!sweep.first) return;
+  print_regions(sweep);
+  std::string cell;
+  for (const std::size_t place : sweep.first->place)
+    cell.append(cell.empty() ? "" : ",").append(std::to_string(place));
+  std::printf("  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
+  if (!sweep.first->measure.empty())
+    std::printf(", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,
+                sweep.first->candidate);
+  std::printf(
+      "\n  see it: remote-touch replay FILE --cell %s --replicate %d -o trace.h5, of both, then compare\n",
+      cell.c_str(), sweep.first->replicate);
+}
+
+}  // namespace
+
+std::string tolerance_text(const Tolerance& tolerance) {
+  if (tolerance.absolute == 0 && tolerance.relative == 0) return "exact";
+  std::string all = text("%.3g", tolerance.absolute);
+  if (tolerance.relative > 0) all += text(" + %.3g relative", tolerance.relative);
+  return all;
+}
+
+const char* word_for(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::same:
+      return "same";
+    case Outcome::regressed:
+      return "REGRESSED";
+    case Outcome::not_comparable:
+      break;
+  }
+  return "COULD NOT COMPARE";
+}
+
+void print_comparison(const ResultComparison& comparison) {
+  std::printf("%s: %s against %s\n", comparison.kind.c_str(), comparison.candidate.c_str(),
+              comparison.baseline.c_str());
+  for (const std::string& difference : comparison.configuration)
+    std::printf("  configuration: %s\n", difference.c_str());
+  for (const std::string& difference : comparison.provenance)
+    std::printf("  provenance: %s\n", difference.c_str());
+  if (comparison.columns) {
+    print_columns(*comparison.columns);
+    if (comparison.columns->divergence) print_divergence(*comparison.columns->divergence);
+  }
+  if (comparison.sweep) print_sweep(*comparison.sweep);
+  std::printf("%s: %s\n", word_for(comparison.outcome), comparison.verdict.c_str());
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,16 @@
+// A comparison for people: tables on standard output.
+#pragma once
+
+#include "runners/regression/comparison/result_comparison.h"
+
+namespace remote_touch {
+
+void print_comparison(const ResultComparison& comparison);
+
+// "same", "REGRESSED", "COULD NOT COMPARE".
+const char* word_for(Outcome outcome);
+
+// "exact", or "1e-09 + 1e-06 relative".
+std::string tolerance_text(const Tolerance& tolerance);
+
+}  // namespace remote_touch

@@ -1,0 +1,240 @@
+#include "runners/regression/comparison/result_comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "analysis/columns/fingerprint.h"
+#include "analysis/comparison/column_source.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/settings/configuration_difference.h"
+
+namespace remote_touch {
+
+namespace {
+
+ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
+                       const TextAttributes& candidate) {
+  ResultComparison result{"baseline", "candidate", kind};
+  const auto configuration = [](const TextAttributes& of) {
+    const std::string text = attribute(of, "config");
+    return text.empty() ? std::string("null") : text;
+  };
+  result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
+  for (const char* name :
+       {"command", "version", "git_commit", "git_dirty", "sources", "compiler", "flags", "isa"})
+    if (attribute(baseline, name) != attribute(candidate, name))
+      result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
+                                  attribute(candidate, name));
+  for (const ChangedInput& input :
+       changed_inputs(attribute(baseline, "inputs"), attribute(candidate, "inputs")))
+    result.provenance.push_back("input " + input.path + " " + input.before + " against " + input.now);
+  return result;
+}
+
+void conclude(ResultComparison& result, Outcome outcome, std::string verdict) {
+  result.outcome = outcome;
+  result.verdict = std::move(verdict);
+}
+
+// "proxy_position and 3 more of 16 columns"
+std::string count_text(const std::vector<std::string>& names, std::size_t of, const char* things) {
+  std::string text = names.front();
+  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
+  return text + " of " + std::to_string(of) + " " + things;
+}
+
+void judge_columns(ResultComparison& result) {
+  const std::vector<ColumnComparison>& columns = result.columns->columns;
+  std::vector<std::string> failed;
+  std::size_t rows = 0;
+  bool exact = true;
+  for (const ColumnComparison& column : columns) {
+    if (!column.is_same()) failed.push_back(column.name);
+    rows = std::max(rows, column.rows);
+    exact &= !column.first_difference;
+  }
+  if (rows == 0) return conclude(result, Outcome::not_comparable, "nothing was compared");
+  if (failed.empty())
+    return conclude(result, Outcome::same,
+                    std::to_string(columns.size()) + " columns, " +
+                        (exact ? "every number is the same" : "every number is within its tolerance"));
+  std::string text = count_text(failed, columns.size(), "columns");
+  if (const auto& first = result.columns->divergence)
+    text += ", from tick " + std::to_string(first->tick) + " on (" + name_of(first->cause) + ")";
+  if (const ColumnComparison& first = columns.front(); first.baseline_rows != first.candidate_rows)
+    text += "; the baseline has " + std::to_string(first.baseline_rows) + " rows, the candidate " +
+            std::to_string(first.candidate_rows) +
+            (result.columns->divergence ? "" : ", and they are the same as far as both go");
+  conclude(result, Outcome::regressed, text);
+}
+
+// Each tolerance has to be of something, else a misspelt one would leave its column exact.
+void check_names(const Tolerances& tolerances, const std::vector<std::string>& names) {
+  for (const auto& [name, tolerance] : tolerances) {
+    if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    std::string known;
+    for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+    throw InputError("tolerance of " + name, "there is no such column; allowed " + known);
+  }
+}
+
+std::string exact_text(const SweepComparison& sweep) {
+  if (sweep.exact == ExactVerdict::equal)
+    return std::to_string(sweep.done_in_both) + " runs, every measure is the same or within its tolerance";
+  std::int64_t outside = 0;
+  for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
+  return "up to " + std::to_string(outside) + " of " + std::to_string(sweep.done_in_both) +
+         " runs differ in a measure, " +
+         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only";
+}
+
+void judge_exactly(ResultComparison& result) {
+  conclude(result, result.sweep->exact == ExactVerdict::equal ? Outcome::same : Outcome::regressed,
+           exact_text(*result.sweep));
+}
+
+// The measures that are of this judgement, over the whole or in any region.
+std::string measures_that_are(const SweepComparison& sweep, Judgement wanted, bool in_parts) {
+  std::string names;
+  for (std::size_t measure = 0; measure < sweep.measures.size(); ++measure) {
+    bool found = false;
+    for (std::size_t region = 0; region < (in_parts ? sweep.regions.size() : 1); ++region)
+      found |= sweep.at(region, measure).judgement == wanted;
+    if (found) names += (names.empty() ? "" : ", ") + sweep.measures[measure].name;
+  }
+  return names;
+}
+
+void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
+  const SweepComparison& sweep = *result.sweep;
+  char margins[160];
+  std::snprintf(margins, sizeof margins, "the margins (%.3g of the runs for events, %.3g for other measures)",
+                rule.margin, rule.shift_margin);
+  switch (result.sweep->paired) {
+    case PairedVerdict::equal:
+      return conclude(result, Outcome::same, exact_text(*result.sweep));
+    case PairedVerdict::within_margin:
+      return conclude(result, Outcome::same,
+                      exact_text(*result.sweep) + "; all changes are within " + margins);
+    case PairedVerdict::changed:
+      return conclude(result, Outcome::regressed,
+                      exact_text(sweep) + "; changed: " + measures_that_are(sweep, Judgement::changed, true));
+    case PairedVerdict::runs_missing:
+      return conclude(result, Outcome::regressed, exact_text(*result.sweep));
+    case PairedVerdict::undecided:
+    case PairedVerdict::not_comparable:
+      break;
+  }
+  conclude(result, Outcome::not_comparable,
+           exact_text(sweep) + "; undecided, too few runs to be sure of " + margins + ": " +
+               measures_that_are(sweep, Judgement::undecided, false));
+}
+
+StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
+  if (kind == "hashes") return read_hashes(result.file());
+  return {hashes_of_trace(StoredTrace(result), 1), result.attributes()};
+}
+
+ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
+                               const ComparisonRules& rules) {
+  const Hdf5Reader first_file(baseline), second_file(candidate);
+  const std::string ours = kind_of(first_file), theirs = kind_of(second_file);
+  const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
+  const bool hashed = ours == "hashes" || theirs == "hashes";
+  if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
+    throw InputError(candidate.string(), "is a " + theirs + "; allowed a " + ours + ", as the baseline is");
+  if (hashed) {
+    if (!rules.tolerances.empty())
+      throw InputError("tolerance of " + rules.tolerances.begin()->first,
+                       "hashes are equal or not; allowed with traces, sweeps and figures");
+    return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
+  }
+  if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
+  if (ours == "trace") {
+    const StoredTrace first(first_file), second(second_file);
+    return compare_trace(first, first.attributes(), second, second.attributes(), rules);
+  }
+  const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
+  return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
+}
+
+}  // namespace
+
+std::string kind_of(const Hdf5Reader& result) {
+  const std::string schema = attribute(result.attributes(), "schema");
+  for (const char* kind : {"trace", "sweep", "figure", "hashes"})
+    if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
+  throw InputError(result.file(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
+                                      "; allowed a trace, a sweep, a figure or hashes of this program");
+}
+
+ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                                const ComparisonRules& rules) {
+  check_names(rules.tolerances, baseline.columns());
+  // A figure's configuration is a list of all that it ran: too long to be told place by place.
+  ResultComparison result = begin("figure", {}, {});
+  result.columns = compare_by_name(baseline, candidate, rules.tolerances);
+  judge_columns(result);
+  return result;
+}
+
+ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes& candidate) {
+  ResultComparison result = begin("hashes", baseline.attributes, candidate.attributes);
+  const HashComparison hashes = compare_hashes(baseline.hashes, candidate.hashes);
+  result.hashes = hashes;
+  const std::string counted = std::to_string(hashes.compared) + " hashes compared";
+  if (hashes.compared == 0)
+    conclude(result, Outcome::not_comparable, "nothing was compared: no tick is in both");
+  else if (hashes.is_same())
+    conclude(result, Outcome::same, counted + ", all the same");
+  else if (hashes.different)
+    conclude(result, Outcome::regressed,
+             counted + "; the first divergent tick is after " +
+                 (hashes.same ? "tick " + std::to_string(*hashes.same) : "none") + " and not after tick " +
+                 std::to_string(*hashes.different));
+  else
+    conclude(result, Outcome::regressed, counted + ", all the same, but one run is longer");
+  return result;
+}
+
+ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
+                               const ColumnSource& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  std::vector<std::string> names = baseline.columns();
+  std::erase(names, std::string(kRunningHash));  // follows from the others
+  check_names(rules.tolerances, names);
+  ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
+  result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
+  judge_columns(result);
+  return result;
+}
+
+ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                               const SweepResult& candidate, const TextAttributes& candidate_attributes,
+                               const ComparisonRules& rules) {
+  ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
+  result.paired = rules.paired;
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule);
+  for (const std::string& difference : result.configuration)
+    if (difference.starts_with("experiment.seed "))
+      result.sweep->problems.push_back(difference + ": the runs met other noise and are no pairs");
+  if (!result.sweep->problems.empty())
+    conclude(result, Outcome::not_comparable, result.sweep->problems.front());
+  else if (rules.paired)
+    judge_by_pairs(result, rules.rule);
+  else
+    judge_exactly(result);
+  return result;
+}
+
+ResultComparison compare_results(const std::filesystem::path& baseline,
+                                 const std::filesystem::path& candidate, const ComparisonRules& rules) {
+  ResultComparison result = compare_files(baseline, candidate, rules);
+  result.baseline = baseline.string(), result.candidate = candidate.string();
+  return result;
+}
+
+}  // namespace remote_touch

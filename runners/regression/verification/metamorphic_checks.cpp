@@ -1,0 +1,147 @@
+#include "runners/regression/verification/metamorphic_checks.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
+
+#include "core/parameters/input_error.h"
+#include "runners/regression/verification/metamorphic_relation.h"
+#include "runners/regression/verification/verification_scenes.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+using RendererBlueprint = Blueprint<Renderer, double, const Kernels&>;
+using Outputs = std::vector<RenderOutput>;
+
+constexpr CheckName kTouch{
+    "touch", "the renderer pushes back in most ticks, or at least in some where it is one that lets go"};
+// Share of the ticks. Direct rendering lets the HIP through, and a mesh that moves leaves it behind: they
+// push back only in the moments before.
+double least_touch(HeldBy held_by) {
+  return held_by == HeldBy::nothing || held_by == HeldBy::mesh ? 0.02 : 0.5;
+}
+
+// The renderer to check, as often as it is needed.
+class Subject {
+ public:
+  Subject(const RendererEntry& entry, const std::vector<std::string>& assignments, const Kernels& kernels)
+      : entry_(entry), assignments_(assignments), kernels_(kernels) {}
+
+  std::unique_ptr<RendererBlueprint> blueprint() const {
+    Json configuration = Json::object();
+    for (const std::string& assignment : assignments_) apply_override(configuration, assignment);
+    auto blueprint = entry_.make();
+    read_parameters(configuration, blueprint->settings(), "", false);
+    const std::string contradiction = blueprint->contradiction();
+    if (!contradiction.empty()) throw InputError(contradiction);
+    return blueprint;
+  }
+  Outputs play(const MetamorphicScene& scene) const {
+    const auto renderer = blueprint()->build(scene.haptic_rate_hz, kernels_);
+    return remote_touch::play(scene, *renderer);
+  }
+  Outputs play(const Variation& run) const {
+    const auto changed = blueprint();
+    change_units(changed->settings(), run.units);
+    if (run.other_stiffness_N_per_m) *stiffness(changed->settings()) = *run.other_stiffness_N_per_m;
+    const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
+    return remote_touch::play(run.scene, *renderer);
+  }
+  double least_touch_share() const { return least_touch(entry_.held_by); }
+  Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
+    const auto settings_of = blueprint();
+    const Parameters parameters = settings_of->settings();
+    Variation run{scene, outputs, &kernels_};
+    run.reach_m = largest_length_m(parameters);
+    run.fits_a_sheet = entry_.held_by == HeldBy::sheet;
+    run.order_matters = entry_.held_by == HeldBy::mesh;
+    if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
+    return run;
+  }
+
+ private:
+  // The number of that name; null without one.
+  static double* stiffness(const Parameters& parameters) {
+    for (const Parameter& p : parameters)
+      if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+        return *value;
+    return nullptr;
+  }
+
+  const RendererEntry& entry_;
+  const std::vector<std::string>& assignments_;
+  const Kernels& kernels_;
+};
+
+// Violated in the tick with which too many are without a force.
+CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double least) {
+  const double allowed = (1 - least) * static_cast<double>(outputs.size());
+  Comparison count{.deviations = {{"ticks without force", "1", allowed}}};
+  count.ticks = static_cast<int>(outputs.size());
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    if (!outputs[tick].force_N.isZero(0)) continue;
+    if (++count.deviations.front().largest > allowed && count.first_violation < 0)
+      count.first_violation = static_cast<int>(tick);
+  }
+  return {kTouch.name, kTouch.meaning, scene.name, "the other checks say little without touch", count, {}};
+}
+
+// Where differences as small as rounding grow, a tolerance for rounding tells nothing: the remark says so,
+// and the check has failed all the same.
+std::string remark_on(const CheckResult& failed, const Subject& subject, const MetamorphicScene& scene,
+                      const Outputs& outputs, const OutputTolerance& tolerance) {
+  constexpr double kSmall_m = 1e-13;  // below every tolerance
+  MetamorphicScene moved = scene;
+  for (Vec3& hip : moved.hip_W) hip.array() += kSmall_m;
+  const int tick = compare(outputs, subject.play(moved), tolerance, false).first_violation;
+  if (tick < 0 || tick > failed.comparison.first_violation) return {};
+  return "undecided: a HIP 1e-13 m further on is answered as differently from tick " + std::to_string(tick) +
+         " on";
+}
+
+std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
+  const Outputs outputs = subject.play(scene);
+  const Variation unvaried = subject.unvaried(scene, outputs);
+  std::vector<CheckResult> results{touch(scene, outputs, subject.least_touch_share())};
+  for (const MetamorphicRelation& relation : metamorphic_relations()) {
+    Variation run = unvaried;
+    if (!relation.vary(run)) continue;
+    CheckResult result{relation.name, relation.meaning, scene.name, relation.reason, {}, {}};
+    result.comparison = compare(run.expected, subject.play(run), relation.tolerance, run.until_velocity);
+    if (!result.passed() && relation.tolerance.rounded)
+      result.remark = remark_on(result, subject, scene, outputs, relation.tolerance);
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::atomic<bool>* stop) {
+  if (entry.freedoms == Freedoms::six)
+    throw InputError(
+        entry.name,
+        "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");
+  const Subject subject(entry, assignments, kernels);
+  std::vector<CheckResult> results;
+  for (const MetamorphicScene& scene : verification_scenes(kernels)) {
+    if (stop && *stop) throw Interrupted{};
+    for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
+  }
+  return results;
+}
+
+std::vector<CheckName> check_names() {
+  std::vector<CheckName> names{kTouch};
+  for (const MetamorphicRelation& relation : metamorphic_relations())
+    names.push_back({relation.name, relation.meaning});
+  return names;
+}
+
+}  // namespace remote_touch

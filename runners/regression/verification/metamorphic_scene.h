@@ -1,0 +1,42 @@
+// What the checks of a renderer play: a stream of clouds and a path of the HIP as plain data, so that both
+// can be turned, enlarged, reordered or delayed before they are played again.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "core/geometry/vector.h"
+#include "core/rendering/renderer.h"
+
+namespace remote_touch {
+
+// One frame of the stream.
+struct CloudView {
+  int index = 0;
+  double captured_s = 0;
+  double arrives_s = 0;
+  PointCloud cloud;
+};
+
+// World frame, metres, seconds.
+struct MetamorphicScene {
+  std::string name;
+  std::string what;  // one line
+  double haptic_rate_hz = 0;
+  double start_s = 0;            // time of the first tick
+  std::vector<CloudView> views;  // in the order in which they arrive
+  std::vector<Vec3> hip_W;       // of each tick
+  bool cloud_rests = false;      // every view shows the same points
+  bool hip_rests = false;        // it does before the second view arrives, and stays where it is
+  // How points are searched: an organised cloud by its image, others by a grid of this cell; 0: all are
+  // looked at.
+  double cell_m = 0.004;
+
+  double time_s(std::size_t tick) const { return start_s + static_cast<double>(tick) / haptic_rate_hz; }
+};
+
+// One output for each tick.
+std::vector<RenderOutput> play(const MetamorphicScene& scene, Renderer& renderer);
+
+}  // namespace remote_touch

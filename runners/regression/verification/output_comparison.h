@@ -1,0 +1,38 @@
+// How far the outputs of one run are from what they should be, tick by tick.
+#pragma once
+
+#include <vector>
+
+#include "core/rendering/renderer.h"
+
+namespace remote_touch {
+
+// How far two runs may differ; 0 everywhere: equal bits, but for the sign of a zero.
+struct OutputTolerance {
+  double position_m = 0;
+  double force_share = 0;  // of the largest force in the run
+  double velocity_m_per_s = 0;
+  double normal = 0;
+  bool rounded = false;  // true: steps are not compared, and normals only where a point is touched
+};
+
+// The largest difference of one kind.
+struct Deviation {
+  const char* quantity;  // "position" (of the proxy and slave, and carried), "nearest", "force", "velocity",
+                         // "normal", or "other": 1 where state, steps, counts, frame or status differ
+  const char* unit;
+  double tolerance = 0;
+  double largest = 0;  // infinite where a number was expected and there is none, or the other way round
+};
+
+struct Comparison {
+  std::vector<Deviation> deviations;
+  int first_violation = -1;  // the tick; -1: none
+  int ticks = 0;             // that were compared
+};
+
+// pre: as many outputs as expected. until_velocity: ends where either run has estimated a surface velocity.
+Comparison compare(const std::vector<RenderOutput>& expected, const std::vector<RenderOutput>& outputs,
+                   const OutputTolerance& tolerance, bool until_velocity);
+
+}  // namespace remote_touch

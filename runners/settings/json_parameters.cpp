@@ -1,0 +1,257 @@
+#include "runners/settings/json_parameters.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string number_text(double value) {
+  std::ostringstream out;
+  out.precision(12);
+  out << value;
+  return out.str();
+}
+
+std::string range_text(const Parameter& p) {
+  return number_text(p.low) + " to " + number_text(p.high);
+}
+
+std::string names_text(const Choice& choice) {
+  std::string text;
+  for (const std::string& name : choice.names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// Results could not store any other text. A file with other text is no JSON, but --set may bring it.
+bool is_utf8(const Json& text) {
+  const std::string unchanged = text.dump(-1, ' ', false, Json::error_handler_t::ignore);
+  return unchanged == text.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Sets one parameter from one JSON value. Every overload returns false where the value does not fit.
+struct Reader {
+  const Json& json;
+  const Parameter& p;
+
+  bool number(const Json& value, double& out) const {
+    if (!value.is_number()) return false;
+    const double number = value.get<double>();
+    if (!std::isfinite(number) || number < p.low || number > p.high) return false;
+    out = number;
+    return true;
+  }
+  bool operator()(double* out) const { return number(json, *out); }
+  bool operator()(int* out) const {
+    double value = 0;
+    if (!number(json, value) || value != std::floor(value)) return false;
+    *out = static_cast<int>(value);
+    return true;
+  }
+  bool operator()(std::uint64_t* out) const {
+    if (!json.is_number_unsigned()) return false;
+    *out = json.get<std::uint64_t>();
+    return static_cast<double>(*out) >= p.low && static_cast<double>(*out) <= p.high;
+  }
+  bool operator()(bool* out) const {
+    if (!json.is_boolean()) return false;
+    *out = json.get<bool>();
+    return true;
+  }
+  bool operator()(std::string* out) const {
+    if (!json.is_string() || !is_utf8(json)) return false;
+    *out = json.get<std::string>();
+    return true;
+  }
+  bool operator()(Vec3* out) const {
+    if (!json.is_array() || json.size() != 3) return false;
+    for (int i = 0; i < 3; ++i)
+      if (!number(json[static_cast<std::size_t>(i)], (*out)[i])) return false;
+    return true;
+  }
+  bool operator()(const Choice& choice) const {
+    if (!json.is_string()) return false;
+    const auto found = std::find(choice.names.begin(), choice.names.end(), json.get<std::string>());
+    if (found == choice.names.end()) return false;
+    choice.set(static_cast<int>(found - choice.names.begin()));
+    return true;
+  }
+  bool operator()(const Rows& rows) const {
+    if (!json.is_array()) return false;
+    std::vector<double> values;
+    for (const Json& row : json) {
+      if (!row.is_array() || row.size() != rows.columns.size()) return false;
+      for (const Json& value : row)
+        if (values.push_back(0), !number(value, values.back())) return false;
+    }
+    *rows.values = values;
+    return true;
+  }
+};
+
+struct Writer {
+  Json operator()(const double* v) const { return *v; }
+  Json operator()(const int* v) const { return *v; }
+  Json operator()(const std::uint64_t* v) const { return *v; }
+  Json operator()(const bool* v) const { return *v; }
+  Json operator()(const std::string* v) const { return *v; }
+  Json operator()(const Vec3* v) const { return {v->x(), v->y(), v->z()}; }
+  Json operator()(const Choice& choice) const { return choice.names[static_cast<std::size_t>(choice.get())]; }
+  Json operator()(const Rows& rows) const {
+    Json list = Json::array();
+    const std::size_t width = rows.columns.size();
+    for (std::size_t i = 0; i + width <= rows.values->size(); i += width)
+      list.push_back(Json(std::vector<double>(rows.values->begin() + i, rows.values->begin() + i + width)));
+    return list;
+  }
+};
+
+struct Allowed {
+  const Parameter& p;
+  std::string operator()(const double*) const { return range_text(p); }
+  std::string operator()(const int*) const { return "whole numbers " + range_text(p); }
+  std::string operator()(const std::uint64_t*) const { return "whole numbers " + range_text(p); }
+  std::string operator()(const bool*) const { return "true, false"; }
+  std::string operator()(const std::string*) const { return "UTF-8 text"; }
+  std::string operator()(const Vec3*) const { return "three numbers, each " + range_text(p); }
+  std::string operator()(const Choice& choice) const { return names_text(choice); }
+  std::string operator()(const Rows& rows) const {
+    std::string text = "rows [";
+    for (const std::string& column : rows.columns) text += (text.back() == '[' ? "" : ", ") + column;
+    return text + "], each number " + range_text(p);
+  }
+};
+
+// Edits from a to the nearest beginning of b, so that a forgotten unit costs nothing; then edits to all of b.
+std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t swapped = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, swapped});
+    }
+  }
+  return {*std::min_element(row.begin(), row.end()), row.back()};
+}
+
+[[noreturn]] void refuse_key(const std::string& key, const Parameters& parameters,
+                             const std::string& prefix) {
+  const auto nearest = std::min_element(
+      parameters.begin(), parameters.end(),
+      [&](const auto& a, const auto& b) { return edit_distance(key, a.name) < edit_distance(key, b.name); });
+  throw InputError(prefix + key, "unknown; " + (nearest == parameters.end()
+                                                    ? std::string("nothing is allowed here")
+                                                    : "the nearest allowed is " + prefix + nearest->name));
+}
+
+// As JSON, for a message: shortened, and safe to print whatever the value holds.
+std::string shown(const Json& value) {
+  constexpr std::size_t kLongest = 160;
+  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kLongest) text.replace(kLongest, std::string::npos, "...");
+  return text;
+}
+
+// Throws Json::exception, or InputError for a value nested so deep that printing it would exhaust the stack.
+Json parse_shallow(const std::string& text, const std::string& label) {
+  const auto refuse_deep = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > 64) throw InputError(label, "nested too deep; allowed 64 levels");
+    return true;
+  };
+  return Json::parse(text, refuse_deep);
+}
+
+}  // namespace
+
+std::string allowed(const Parameter& parameter) {
+  return std::visit(Allowed{parameter}, parameter.value);
+}
+std::string value_text(const Parameter& parameter) {
+  return std::visit(Writer{}, parameter.value).dump();
+}
+
+void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
+                     bool skip_name) {
+  if (!object.is_object()) throw InputError(path, "not an object; allowed {\"name\": ..., ...}");
+  const std::string prefix = path.empty() ? "" : path + ".";
+  for (const auto& item : object.items()) {
+    const std::string& key = item.key();
+    const Json& value = item.value();
+    if (skip_name && key == "name") continue;
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });
+    if (found == parameters.end()) refuse_key(key, parameters, prefix);
+    if (!std::visit(Reader{value, *found}, found->value))
+      throw InputError(prefix + key + " = " + shown(value), "allowed " + allowed(*found));
+  }
+}
+
+void write_parameters(const Parameters& parameters, Json& object) {
+  for (const Parameter& p : parameters) object[p.name] = std::visit(Writer{}, p.value);
+}
+
+Json parse_json(const std::string& text, const std::string& label) {
+  try {
+    return parse_shallow(text, label);
+  } catch (const Json::exception& error) {
+    // "[json.exception...] parse error at line 3, column 4: ..." without the library's own prefix
+    std::string what = error.what();
+    if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw InputError(label, what + "; allowed JSON with finite numbers");
+  }
+}
+
+void apply_override(Json& configuration, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError("--set " + assignment, "allowed key=value, for example renderer.r1_m=0.004");
+  const std::string text = assignment.substr(equals + 1);
+  Json value;
+  try {
+    value = parse_shallow(text, "--set " + assignment.substr(0, equals));
+  } catch (const Json::exception&) {
+    value = text;
+  }
+
+  set_value(configuration, assignment.substr(0, equals), value, "--set " + assignment);
+}
+
+namespace {
+
+Json& element(Json& list, const std::string& key, const std::string& subject) {
+  std::size_t i = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
+  if (error != std::errc() || end != key.data() + key.size() || i >= list.size())
+    throw InputError(subject, "allowed 0 to " + std::to_string(list.size() - 1) + " for its place in a list");
+  return list[i];
+}
+
+}  // namespace
+
+void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject) {
+  Json* place = &configuration;
+  std::stringstream keys(path);
+  for (std::string key; std::getline(keys, key, '.');) {
+    if (place->is_array() && !place->empty()) {
+      place = &element(*place, key, subject);
+      continue;
+    }
+    if (!place->is_object()) throw InputError(subject, "the path leads through a value");
+    place = &(*place)[key];
+    if (place->is_null() && !keys.eof()) *place = Json::object();
+  }
+  *place = value;
+}
+
+}  // namespace remote_touch

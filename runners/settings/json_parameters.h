@@ -1,0 +1,37 @@
+// Parameters from and to JSON, with the checks that every configuration shares.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+using Json = nlohmann::ordered_json;
+
+// Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
+// one), a value of the wrong kind or one out of range; path is what the object is called, for example
+// "renderer". The key "name" is skipped where skip_name is set.
+void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
+                     bool skip_name);
+
+// All parameters with their present values, in the order of the list.
+void write_parameters(const Parameters& parameters, Json& object);
+
+// Range and present value as text, for help.
+std::string allowed(const Parameter& parameter);
+std::string value_text(const Parameter& parameter);
+
+// Parses a text that a user gave; label names it in the InputError.
+Json parse_json(const std::string& text, const std::string& label);
+
+// Sets what a path like "renderer.r1_m" or "axes.0.count" leads to; objects on the way are made. Throws
+// InputError, about the subject, where the path leads through a value or past the end of a list.
+void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
+
+// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON, and as plain text where it is
+// none.
+void apply_override(Json& configuration, const std::string& assignment);
+
+}  // namespace remote_touch

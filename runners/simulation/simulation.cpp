@@ -1,0 +1,105 @@
+#include "runners/simulation/simulation.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/frame_stream.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::size_t tick_count(const Experiment& experiment, const Trajectory& trajectory) {
+  const RunSettings& settings = experiment.settings();
+  const double duration = settings.duration_s > 0 ? settings.duration_s : trajectory.duration_s();
+  if (!(duration > 0)) throw InputError("duration_s = 0", "the trajectory has no end; allowed above 0");
+  // A millionth of a tick is rounding, not a tick more.
+  const double ticks = std::ceil(duration * settings.haptic_rate_hz - 1e-6);
+  if (!(ticks >= 1))
+    throw InputError("duration_s = " + std::to_string(duration),
+                     "shorter than a tick; allowed 1 tick or more");
+  return static_cast<std::size_t>(ticks);
+}
+
+Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s,
+                   std::uint64_t frame_hash) {
+  const double proxy_m = scenario.signed_distance(out.proxy_W, time_s);
+  double slave_m = proxy_m;
+  if (!out.slave_W.allFinite())
+    slave_m = std::numeric_limits<double>::quiet_NaN();
+  else if (out.slave_W != out.proxy_W)
+    slave_m = scenario.signed_distance(out.slave_W, time_s);
+  return {proxy_m, slave_m, frame_hash};
+}
+
+class StopWatch {
+ public:
+  double lap_s() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> lap = now - start_;
+    start_ = now;
+    return lap.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// A renderer that notes how long it takes to take a frame.
+class TimedFrames final : public Renderer {
+ public:
+  TimedFrames(Renderer& renderer, std::vector<double>* duration_s)
+      : renderer_(renderer), duration_s_(duration_s) {}
+  void on_frame(const Frame& frame) override {
+    StopWatch watch;
+    renderer_.on_frame(frame);
+    if (duration_s_) duration_s_->push_back(watch.lap_s());
+  }
+  RenderOutput step(const DeviceState& device, double time_s) override {
+    return renderer_.step(device, time_s);
+  }
+
+ private:
+  Renderer& renderer_;
+  std::vector<double>* duration_s_;
+};
+
+}  // namespace
+
+Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
+  const Kernels& kernels = options.kernels ? *options.kernels : kernels_for(best_isa());
+  const auto scenario = experiment.build_scenario(kernels);
+  const auto trajectory = experiment.build_trajectory(*scenario);
+  const auto switches = std::make_shared<FixtureSwitches>();
+  const auto renderer = experiment.build_renderer(kernels, switches);
+  FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
+                     experiment.settings().delivery, experiment.settings().key, options.hash_frames,
+                     options.made_points);
+  TimedFrames timed(*renderer, options.frame_duration_s);
+  SimulatedHand hand = experiment.build_hand();
+  const std::size_t ticks = tick_count(experiment, *trajectory);
+
+  Trace trace;
+  trace.reserve(ticks);
+  StopWatch watch;
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    if (options.stop && *options.stop) throw Interrupted{};
+    // Time is made from the tick's number, never added up.
+    const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
+    if (trajectory->is_missed(time_s)) continue;
+    frames.deliver_until(time_s, timed);
+    const DeviceState device = hand.move(trajectory->at(time_s), time_s);
+    if (options.step_duration_s) watch.lap_s();
+    const RenderOutput out = renderer->step(device, time_s);
+    if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
+    hand.feel(device, out);
+    trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()), hand.state());
+    if (options.progress && tick % (ticks / 100 + 1) == 0)
+      options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
+  }
+  return trace;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,35 @@
+#include "runners/sweep/refine_settings.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+Parameters parameters(RefineSettings& r) {
+  return {
+      {"measure", &r.measure, 0, 0, "the measure whose probability is wanted"},
+      {"above", &r.above, -1e12, 1e12, "the event: the measure is above this"},
+      {"budget", &r.budget, 1, 1e7, "runs in all, the first round included"},
+      {"most_replicates", &r.most_replicates, 1, 100000, "runs of a cell at most"},
+      {"levels", &r.levels, 0, 10, "how often the steps of the axes may be halved"},
+  };
+}
+
+std::optional<RefineSettings> read_refine(const Json& json, const std::vector<Measure>& chosen,
+                                          int replicates, const std::string& label) {
+  const auto found = json.find("refine");
+  if (found == json.end() || found->is_null()) return std::nullopt;
+  RefineSettings refine;
+  read_parameters(*found, parameters(refine), "refine", false);
+  const auto is_it = [&](const Measure& measure) { return refine.measure == measure.name; };
+  if (std::none_of(chosen.begin(), chosen.end(), is_it))
+    throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",
+                     "allowed one of the sweep's measures");
+  if (refine.most_replicates < replicates)
+    throw InputError(label + ": refine.most_replicates", "allowed at least replicates");
+  return refine;
+}
+
+}  // namespace remote_touch

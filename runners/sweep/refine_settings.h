@@ -1,0 +1,28 @@
+// The part "refine" of a sweep.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+struct RefineSettings {
+  std::string measure = "popped_through";
+  double above = 0.5;
+  std::uint64_t budget = 10000;
+  int most_replicates = 20;
+  int levels = 0;
+};
+
+Parameters parameters(RefineSettings& refine);
+
+// Of a sweep with these measures and replicates; nothing where it has no such part. Throws InputError.
+std::optional<RefineSettings> read_refine(const Json& sweep, const std::vector<Measure>& measures,
+                                          int replicates, const std::string& label);
+
+}  // namespace remote_touch

@@ -1,0 +1,59 @@
+#include "runners/sweep/shard.h"
+
+#include <charconv>
+#include <cstdlib>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kMostShards = 1000000;
+
+std::optional<int> whole_number(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// The variable as a whole number; otherwise where it is not set.
+std::optional<int> variable(const char* name, std::optional<int> otherwise = std::nullopt) {
+  const char* text = std::getenv(name);
+  if (text == nullptr || *text == '\0') return otherwise;
+  const auto value = whole_number(text);
+  if (!value || *value < 0)
+    throw InputError(std::string(name) + " = " + text, "allowed whole numbers from 0");
+  return value;
+}
+
+Shard checked(int index, int count, const std::string& source) {
+  if (count < 1 || count > kMostShards || index < 1 || index > count)
+    throw InputError(source, "allowed i/N with 1 <= i <= N <= " + std::to_string(kMostShards));
+  return {index, count};
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& text) {
+  const auto slash = text.find('/');
+  const auto index = whole_number(text.substr(0, slash));
+  const auto count = slash == std::string::npos ? std::nullopt : whole_number(text.substr(slash + 1));
+  return checked(index.value_or(0), count.value_or(0), "--shard " + text);
+}
+
+std::optional<Shard> shard_from_environment() {
+  if (const auto id = variable("SLURM_ARRAY_TASK_ID")) {
+    const auto count = variable("SLURM_ARRAY_TASK_COUNT");
+    if (!count) return std::nullopt;
+    const int first = *variable("SLURM_ARRAY_TASK_MIN", 0), step = *variable("SLURM_ARRAY_TASK_STEP", 1);
+    const int index = (*id - first) / std::max(1, step) + 1;
+    return checked(index, *count, "SLURM_ARRAY_TASK_ID = " + std::to_string(*id));
+  }
+  const auto rank = variable("OMPI_COMM_WORLD_RANK"), size = variable("OMPI_COMM_WORLD_SIZE");
+  if (!rank || !size) return std::nullopt;
+  return checked(*rank + 1, *size, "OMPI_COMM_WORLD_RANK = " + std::to_string(*rank));
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,303 @@
+#include "runners/sweep/sweep.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/parameters/input_error.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/sweep/refine_settings.h"
+#include "runners/sweep/sweep_axis.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMostRuns = 10000000;
+
+}  // namespace
+
+struct Sweep::Definition {
+  std::string title;
+  Json experiment;  // complete
+  std::vector<SweepAxis> axes;
+  SweepResult grid;  // of the axes, without runs
+  int replicates = 1;
+  std::vector<Measure> measures;
+  std::optional<RefineSettings> refine;
+  std::vector<RecordingPart> inputs;  // of all cells
+
+  Json cell(std::size_t number) const;
+  void check_axes(const std::string& label) const;
+  void check_budget(const std::string& label) const;
+  void check_cells(const std::string& label);
+};
+
+namespace {
+
+Parameters parameters(std::string& title, int& replicates) {
+  return {{"title", &title, 0, 0, "one line for lists"},
+          {"replicates", &replicates, 1, 1e6, "runs of each cell, each with its own noise"}};
+}
+
+constexpr const char* kParts[] = {"title", "experiment", "set", "axes", "replicates", "measures", "refine"};
+
+bool is_of_sweep(const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find_first_of(".="));
+  return std::find(std::begin(kParts), std::end(kParts), key) != std::end(kParts);
+}
+
+void refuse_unknown_part(const Json& json, const std::string& label) {
+  std::string known;
+  for (const char* part : kParts) known += (known.empty() ? "" : ", ") + std::string(part);
+  for (const auto& item : json.items())
+    if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
+}
+
+// A path in a sweep's file is meant from the file's own folder.
+std::string beside(const std::string& sweep_file, const std::string& experiment) {
+  const auto there = std::filesystem::path(sweep_file).parent_path() / experiment;
+  std::error_code unreachable;
+  return std::filesystem::is_regular_file(there, unreachable) ? there.string() : experiment;
+}
+
+Json read_experiment(const Json& json, const std::string& label, const std::vector<std::string>& overrides) {
+  const auto found = json.find("experiment");
+  if (found == json.end() || !(found->is_string() || found->is_object()))
+    throw InputError(label + ": experiment", "missing; allowed a name, a file or an experiment itself");
+  std::vector<std::string> settings;
+  if (const auto set = json.find("set"); set != json.end()) {
+    if (!set->is_object()) throw InputError(label + ": set", "allowed {\"path\": value, ...}");
+    for (const auto& item : set->items()) settings.push_back(item.key() + "=" + item.value().dump());
+  }
+  settings.insert(settings.end(), overrides.begin(), overrides.end());
+  const Experiment experiment = found->is_string()
+                                    ? Experiment::load(beside(label, found->get<std::string>()), settings)
+                                    : Experiment::from_json(found->dump(), label + ": experiment", settings);
+  if (experiment.settings().key.cell != 0 || experiment.settings().key.replicate != 0)
+    throw InputError(label + ": experiment",
+                     "cell or replicate is set; allowed 0, the sweep sets them itself");
+  return parse_json(experiment.to_json(), label);
+}
+
+std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int levels) {
+  const auto found = json.find("axes");
+  if (found == json.end() || !found->is_array() || found->empty() || found->size() > 8)
+    throw InputError(label + ": axes", "allowed a list of 1 to 8 axes");
+  std::vector<SweepAxis> axes;
+  for (std::size_t i = 0; i < found->size(); ++i)
+    axes.push_back(read_axis((*found)[i], label + ": axes." + std::to_string(i), levels));
+  return axes;
+}
+
+void refuse_axes_among(const std::vector<std::string>& assignments, const std::vector<SweepAxis>& axes) {
+  for (const SweepAxis& axis : axes)
+    for (const std::string& assignment : assignments)
+      if (assignment.rfind(axis.parameter + "=", 0) == 0)
+        throw InputError("--set " + assignment,
+                         "an axis of this sweep; allowed another parameter, or --set axes...");
+}
+
+std::vector<Measure> read_measures(const Json& json, const std::string& label) {
+  const auto found = json.find("measures");
+  if (found == json.end()) return {measures().begin(), measures().end()};
+  std::vector<Measure> chosen;
+  std::string known;
+  for (const Measure& measure : measures()) known += (known.empty() ? "" : ", ") + std::string(measure.name);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(label + ": measures", what + "; allowed a list of different names of " + known);
+  };
+  if (!found->is_array() || found->empty()) refuse("no list");
+  for (const Json& name : *found) {
+    const auto is_it = [&](const Measure& measure) { return name == measure.name; };
+    const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
+    if (measure == measures().end()) refuse(name.dump() + " is unknown");
+    if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " comes twice");
+    chosen.push_back(*measure);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Json Sweep::Definition::cell(std::size_t number) const {
+  const std::vector<std::size_t> place = grid.place(number);
+  Json json = experiment;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
+  return json;
+}
+
+void Sweep::Definition::check_axes(const std::string& label) const {
+  std::set<std::string> names = {"replicate", "state", "round", "error", "checksum"};
+  for (const Measure& measure : measures) names.insert(measure.name);
+  std::size_t runs = static_cast<std::size_t>(refine ? refine->most_replicates : replicates);
+  for (const SweepAxis& axis : axes) {
+    if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
+      throw InputError(label + ": axis " + axis.parameter,
+                       "the sweep sets it itself; allowed another parameter");
+    if (!names.insert(axis.name()).second)
+      throw InputError(label + ": axis " + axis.parameter,
+                       "its name " + axis.name() + " is taken; allowed once");
+    runs *= axis.values.size();
+    if (runs > kMostRuns)
+      throw InputError(
+          label, "more than " + std::to_string(kMostRuns) + " runs; allowed fewer values or replicates");
+  }
+}
+
+void Sweep::Definition::check_budget(const std::string& label) const {
+  if (!refine) return;
+  auto first_round = static_cast<std::uint64_t>(replicates);
+  for (const SweepAxis& axis : axes) first_round *= (axis.values.size() - 1) / axis.stride + 1;
+  if (refine->budget < first_round)
+    throw InputError(label + ": refine.budget = " + std::to_string(refine->budget),
+                     "allowed at least the " + std::to_string(first_round) + " runs of the first round");
+}
+
+// In parallel, because a large map has many; the first cell in order is the one that is named. What a cell
+// reads is noted on the way.
+void Sweep::Definition::check_cells(const std::string& label) {
+  const auto cells = static_cast<long>(grid.cell_count());
+  long first_wrong = cells;
+  std::string problem;
+  std::set<RecordingPart> parts;
+#pragma omp parallel for schedule(static, 64)
+  for (long i = 0; i < cells; ++i) {
+    try {
+      const auto read = Experiment::from_json(cell(static_cast<std::size_t>(i))).inputs();
+      if (read.empty()) continue;
+#pragma omp critical(sweep_inputs)
+      parts.insert(read.begin(), read.end());
+    } catch (const std::exception& error) {
+#pragma omp critical(sweep_check)
+      if (i < first_wrong) first_wrong = i, problem = error.what();
+    }
+  }
+  inputs.assign(parts.begin(), parts.end());
+  if (first_wrong == cells) return;
+  std::string where;
+  for (const std::size_t k : grid.place(static_cast<std::size_t>(first_wrong)))
+    where.append(where.empty() ? "" : ",").append(std::to_string(k));
+  throw InputError(label + ": cell " + where, problem);
+}
+
+Sweep Sweep::from_json(const std::string& text, const std::string& label,
+                       const std::vector<std::string>& overrides) {
+  Json json = parse_json(text, label);
+  if (!json.is_object())
+    throw InputError(label, "not an object; allowed {\"experiment\": ..., \"axes\": [...]}");
+  std::vector<std::string> of_experiment;
+  for (const std::string& assignment : overrides)
+    if (is_of_sweep(assignment))
+      apply_override(json, assignment);
+    else
+      of_experiment.push_back(assignment);
+
+  refuse_unknown_part(json, label);
+
+  auto definition = std::make_shared<Definition>();
+  Json plain = json;
+  for (const char* part : {"experiment", "set", "axes", "measures", "refine"}) plain.erase(part);
+  read_parameters(plain, parameters(definition->title, definition->replicates), "", false);
+  definition->measures = read_measures(json, label);
+  definition->refine = read_refine(json, definition->measures, definition->replicates, label);
+  definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);
+  refuse_axes_among(of_experiment, definition->axes);
+  definition->experiment = read_experiment(json, label, of_experiment);
+  if (definition->title.empty()) definition->title = definition->experiment.value("title", std::string());
+  if (definition->title.empty()) definition->title = label;
+  definition->check_axes(label);
+  definition->check_budget(label);
+  for (const SweepAxis& axis : definition->axes) definition->grid.axes.push_back(axis.column());
+  definition->check_cells(label);
+  Sweep sweep;
+  sweep.definition_ = std::move(definition);
+  return sweep;
+}
+
+Sweep Sweep::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
+  return from_json(stored_or_file(stored_sweeps(), name_or_file, "a sweep's"), name_or_file, overrides);
+}
+
+const std::string& Sweep::title() const {
+  return definition_->title;
+}
+
+SweepResult Sweep::plan(const Shard& shard) const {
+  SweepResult result = definition_->grid;
+  result.replicates = definition_->refine ? definition_->refine->most_replicates : definition_->replicates;
+  for (const Measure& measure : definition_->measures)
+    result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
+  result.start(definition_->refine.has_value());
+  std::size_t number = 0;
+  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
+    const std::vector<std::size_t> place = result.place(cell);
+    bool is_first = true;
+    for (std::size_t i = 0; i < place.size(); ++i) is_first &= place[i] % definition_->axes[i].stride == 0;
+    if (!is_first) continue;
+    const RunState state = shard.has(number++) ? RunState::pending : RunState::elsewhere;
+    for (int replicate = 0; replicate < definition_->replicates; ++replicate) {
+      result.state[result.run(cell, replicate)] = state;
+      if (!result.round.empty()) result.round[result.run(cell, replicate)] = 0;
+    }
+  }
+  return result;
+}
+
+Experiment Sweep::experiment(std::size_t cell, int replicate) const {
+  Json json = definition_->cell(cell);
+  json["cell"] = cell;
+  json["replicate"] = static_cast<std::uint64_t>(replicate);
+  return Experiment::from_json(std::move(json));
+}
+
+const std::vector<RecordingPart>& Sweep::inputs() const {
+  return definition_->inputs;
+}
+
+const std::vector<Measure>& Sweep::measures() const {
+  return definition_->measures;
+}
+
+std::optional<RefinementRule> Sweep::refinement() const {
+  if (!definition_->refine) return std::nullopt;
+  const RefineSettings& refine = *definition_->refine;
+  RefinementRule rule{refine.measure, refine.above, refine.budget, definition_->replicates, {}};
+  for (const SweepAxis& axis : definition_->axes) rule.strides.push_back(axis.stride);
+  return rule;
+}
+
+std::string Sweep::to_json() const {
+  Json json = {{"title", definition_->title}, {"experiment", definition_->experiment}};
+  for (const SweepAxis& axis : definition_->axes)
+    json["axes"].push_back(parse_json(axis.definition, axis.parameter));
+  json["replicates"] = definition_->replicates;
+  for (const Measure& measure : definition_->measures) json["measures"].push_back(measure.name);
+  if (definition_->refine) {
+    RefineSettings refine = *definition_->refine;
+    json["refine"] = Json::object();
+    write_parameters(parameters(refine), json["refine"]);
+  }
+  return json.dump();
+}
+
+Sweep Sweep::thinned(int every) const {
+  Json json = parse_json(to_json(), title());
+  for (Json& axis : json["axes"]) {
+    if (const auto count = axis.find("count"); count != axis.end()) {
+      *count = (count->get<int>() - 1) / every + 1;
+      continue;
+    }
+    Json kept = Json::array();
+    const Json& values = axis["values"];
+    for (std::size_t i = 0; i < values.size(); i += static_cast<std::size_t>(every))
+      kept.push_back(values[i]);
+    axis["values"] = kept;
+  }
+  return from_json(json.dump(), title());
+}
+
+}  // namespace remote_touch

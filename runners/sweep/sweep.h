@@ -1,0 +1,48 @@
+// A parameter sweep: an experiment, axes along which its parameters change, and what is measured of every
+// run.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+#include "analysis/sweeps/refinement.h"
+#include "analysis/sweeps/sweep_result.h"
+#include "runners/experiment/experiment.h"
+#include "runners/sweep/shard.h"
+
+namespace remote_touch {
+
+class Sweep {
+ public:
+  // From JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
+  // the source in errors. Overrides "key=value" change the sweep where their path begins with one of its
+  // keys, else its experiment. Every cell is resolved and checked: throws InputError for the first that
+  // cannot be run.
+  static Sweep from_json(const std::string& text, const std::string& label,
+                         const std::vector<std::string>& overrides = {});
+  // A name of data/sweeps, or a JSON file.
+  static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
+
+  const std::string& title() const;
+  // Empty arrays; the shard's runs of the first round are pending, those of other shards elsewhere.
+  SweepResult plan(const Shard& shard = {}) const;
+  // The run with its own noise: cell and replicate are keys of it.
+  Experiment experiment(std::size_t cell, int replicate) const;
+  // The recordings that any of its cells reads, each part once, as they are named.
+  const std::vector<RecordingPart>& inputs() const;
+  const std::vector<Measure>& measures() const;
+  std::optional<RefinementRule> refinement() const;
+  std::string to_json() const;  // complete: read again, it makes the same sweep
+  // Every so manieth value of each axis; of a range, whose steps may not divide evenly, about so. Its runs
+  // have noise of their own.
+  Sweep thinned(int every) const;
+
+ private:
+  struct Definition;
+  std::shared_ptr<const Definition> definition_;
+};
+
+}  // namespace remote_touch

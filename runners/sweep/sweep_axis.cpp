@@ -1,0 +1,149 @@
+#include "runners/sweep/sweep_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kLargestValue = 1e12;
+constexpr int kMostValues = 100000;
+
+enum class Scale { linear, log };
+
+struct RangeAxis {
+  std::string parameter;
+  double from = 0, to = 0;
+  int count = 0;
+  Scale scale = Scale::linear;
+};
+
+Parameters parameters(RangeAxis& axis) {
+  return {
+      {"parameter", &axis.parameter, 0, 0, "path of the parameter, for example scenario.noise_sigma_m"},
+      {"from", &axis.from, -kLargestValue, kLargestValue, "first value"},
+      {"to", &axis.to, -kLargestValue, kLargestValue, "last value"},
+      {"count", &axis.count, 1, kMostValues, "number of values"},
+      {"scale", choice(axis.scale, {"linear", "log"}), 0, 0, "equal steps or equal ratios"},
+  };
+}
+
+// To 12 decimal digits: the last bits of the C library's logarithm differ between machines.
+double rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.11e", value);
+  return std::strtod(text, nullptr);
+}
+
+Json value_of(const RangeAxis& axis, std::size_t i, std::size_t count) {
+  const double last = static_cast<double>(count - 1), place = static_cast<double>(i);
+  double value = axis.from;
+  if (i == count - 1 && count > 1)
+    value = axis.to;
+  else if (i > 0)
+    value = axis.scale == Scale::linear
+                ? (axis.from * (last - place) + axis.to * place) / last
+                : rounded(std::exp(std::log(axis.from) + std::log(axis.to / axis.from) * (place / last)));
+  // A whole number may be meant for a parameter that takes nothing else.
+  if (value == std::floor(value) && value >= 0) return static_cast<std::uint64_t>(value);
+  return value;
+}
+
+SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
+  RangeAxis axis;
+  for (const char* needed : {"from", "to", "count"})
+    if (!json.contains(needed))
+      throw InputError(label, std::string(needed) + " is missing; allowed from, to and count, or values");
+  read_parameters(json, parameters(axis), label, false);
+  if (axis.count > 1 && axis.from == axis.to)
+    throw InputError(label + ".to = " + Json(axis.to).dump(), "allowed another value than from");
+  if (axis.scale == Scale::log && !(axis.from > 0 && axis.to > 0))
+    throw InputError(label + ".scale = \"log\"", "allowed for from and to above 0");
+  SweepAxis result{axis.parameter, {}, std::size_t{1} << levels, {}};
+  const std::size_t count = static_cast<std::size_t>(axis.count - 1) * result.stride + 1;
+  if (count > kMostValues)
+    throw InputError(label + ".count",
+                     "more than " + std::to_string(kMostValues) + " values after refinement");
+  for (std::size_t i = 0; i < count; ++i) {
+    result.values.push_back(value_of(axis, i, count));
+    if (i > 0 && result.values[i] == result.values[i - 1])
+      throw InputError(label + ".count = " + std::to_string(axis.count),
+                       "neighbouring values are equal; allowed fewer between from and to");
+  }
+  Json definition = Json::object();
+  write_parameters(parameters(axis), definition);
+  result.definition = definition.dump();
+  return result;
+}
+
+std::string text_of(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+SweepAxis list_axis(const Json& json, const std::string& label) {
+  std::string parameter;
+  Json rest = json;
+  rest.erase("values");
+  const Parameters known = {{"parameter", &parameter, 0, 0, "path of the parameter"}};
+  read_parameters(rest, known, label, false);
+  const Json& values = json["values"];
+  if (!values.is_array() || values.empty() || values.size() > kMostValues)
+    throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMostValues) + " values");
+  std::set<std::string> different;  // as they are named in a result
+  for (const Json& value : values)
+    if (text_of(value).empty() || !different.insert(text_of(value)).second)
+      throw InputError(label + ".values",
+                       value.dump() + (text_of(value).empty() ? " is empty; allowed names"
+                                                              : " comes twice; allowed once"));
+  const Json definition = {{"parameter", parameter}, {"values", values}};
+  return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
+}
+
+std::string unit_of(const std::string& name) {
+  static constexpr std::pair<const char*, const char*> kEndings[] = {
+      {"_m_per_s2", "m/s^2"}, {"_m_per_s", "m/s"}, {"_N_per_m", "N/m"},
+      {"_Ns_per_m", "N s/m"}, {"_hz", "Hz"},       {"_deg", "deg"},
+      {"_px", "px"},          {"_s", "s"},         {"_m", "m"}};
+  for (const auto& [ending, unit] : kEndings)
+    if (name.size() > std::string(ending).size() && name.ends_with(ending)) return unit;
+  return "1";
+}
+
+}  // namespace
+
+Column SweepAxis::column() const {
+  Column column{name(), unit_of(name()), parameter, {}, 1, {}};
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  if (std::all_of(values.begin(), values.end(), is_number)) {
+    std::vector<double> numbers;
+    for (const Json& value : values) numbers.push_back(value.get<double>());
+    column.values = numbers;
+    return column;
+  }
+  std::vector<std::int32_t> places;
+  for (const Json& value : values) {
+    places.push_back(static_cast<std::int32_t>(places.size()));
+    column.value_names.push_back(text_of(value));
+  }
+  column.values = places;
+  return column;
+}
+
+SweepAxis read_axis(const Json& json, const std::string& label, int levels) {
+  if (!json.is_object() || !json.contains("parameter"))
+    throw InputError(label,
+                     "allowed {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...} or values");
+  SweepAxis axis = json.contains("values") ? list_axis(json, label) : range_axis(json, label, levels);
+  if (axis.parameter.empty() || axis.name().empty())
+    throw InputError(label + ".parameter = \"" + axis.parameter + "\"", "allowed the path of a parameter");
+  return axis;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,30 @@
+// One axis of a sweep: a parameter and the values that it takes.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/columns/column.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+struct SweepAxis {
+  std::string parameter;     // a path, as for --set
+  std::vector<Json> values;  // of the first round, and between them those that refinement may add
+  std::size_t stride = 1;    // of the first round's values
+  std::string definition;    // complete JSON, as it stands in a file
+
+  // The dimension scale: numbers, or an enumeration of the values' texts. Its name is the last part of the
+  // path, its unit that of the name's ending.
+  Column column() const;
+  std::string name() const { return parameter.substr(parameter.rfind('.') + 1); }
+};
+
+// {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"} or {"parameter": PATH,
+// "values": [...]}. levels of refinement halve the steps of the former as often. label names the axis in
+// InputErrors.
+SweepAxis read_axis(const Json& json, const std::string& label, int levels);
+
+}  // namespace remote_touch

@@ -1,0 +1,75 @@
+#include "runners/sweep/sweep_run.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+
+#include "core/parameters/input_error.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kLongestError = 300;  // every run has room for the longest
+
+// One run into its own slots of the result.
+void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
+  try {
+    SimulationOptions simulation;
+    simulation.kernels = options.kernels;
+    simulation.stop = options.stop;
+    const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
+    for (std::size_t i = 0; i < result.measures.size(); ++i)
+      std::get<std::vector<double>>(result.measures[i].values)[run] = sweep.measures()[i].of(trace);
+    result.state[run] = RunState::done;
+  } catch (const std::exception& error) {
+    result.error[run] = std::string(error.what()).substr(0, kLongestError);
+    std::replace(result.error[run].begin(), result.error[run].end(), '\n', ' ');
+    result.state[run] = RunState::failed;
+  }
+}
+
+}  // namespace
+
+void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
+  const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
+  const auto count = static_cast<long>(runs.size());
+  std::exception_ptr failure;
+  std::mutex one_at_a_time;
+  std::atomic<bool> ends{false};
+  // An exception must not leave the loop, it would end the program.
+#pragma omp parallel for schedule(dynamic)
+  for (long i = 0; i < count; ++i) {
+    if (ends) continue;
+    const std::size_t run = runs[static_cast<std::size_t>(i)];
+    try {
+      do_run(sweep, options, run, result);
+      const std::lock_guard lock(one_at_a_time);
+      if (options.finished) options.finished(run);
+    } catch (...) {
+      const std::lock_guard lock(one_at_a_time);
+      if (!ends.exchange(true)) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+bool add_round(const Sweep& sweep, SweepResult& result) {
+  const auto rule = sweep.refinement();
+  if (!rule) return false;
+  const std::int32_t round = *std::max_element(result.round.begin(), result.round.end()) + 1;
+  const std::vector<std::size_t> runs = next_round(result, *rule);
+  for (const std::size_t run : runs) result.state[run] = RunState::pending, result.round[run] = round;
+  return !runs.empty();
+}
+
+SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options) {
+  SweepResult result = sweep.plan();
+  do {
+    do_pending_runs(sweep, result, options);
+  } while (add_round(sweep, result));
+  return result;
+}
+
+}  // namespace remote_touch

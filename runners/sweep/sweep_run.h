@@ -1,0 +1,30 @@
+// Doing the runs of a sweep.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "analysis/sweeps/sweep_result.h"
+#include "core/kernels/kernels.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+struct SweepRunOptions {
+  const Kernels* kernels = nullptr;                    // null: the machine's best
+  const std::atomic<bool>* stop = nullptr;             // when set, the sweep ends with Interrupted
+  std::function<void(std::size_t run)> finished = {};  // one call at a time; what it throws ends the sweep
+};
+
+// Does every pending run, in parallel; bits do not depend on threads or order. A run that fails is marked and
+// its error kept, and the others go on. Throws Interrupted, or what finished threw, after the runs at work
+// have ended.
+void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
+
+// Adds the next round of refinement: its runs become pending. False when nothing is left to be asked.
+bool add_round(const Sweep& sweep, SweepResult& result);
+
+// All of it in memory: every round. Runs that failed are in the result, with their errors.
+SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options);
+
+}  // namespace remote_touch

@@ -1,0 +1,137 @@
+#include "runners/sweep/sweep_session.h"
+
+#include <chrono>
+
+#include "analysis/storage/whole_file.h"
+#include "analysis/sweeps/sweep_in_progress.h"
+#include "core/parameters/input_error.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/settings/configuration_difference.h"
+
+namespace remote_touch {
+
+namespace {
+
+std::string first_difference(const TextAttributes& theirs, const TextAttributes& ours) {
+  const auto all = configuration_differences(attribute(theirs, "config"), attribute(ours, "config"));
+  return all.empty() ? "its title" : all.front();
+}
+
+// A file of another sweep, another shard or another build is not touched.
+void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
+                  const TextAttributes& ours) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(file.string(),
+                     what + "; allowed a file of the same sweep, shard and build, or a new file");
+  };
+  if (attribute(theirs, "config") != attribute(ours, "config"))
+    refuse("is of another configuration, first in " + first_difference(theirs, ours));
+  for (const char* name : {"shard", "version", "git_commit", "git_dirty", "sources", "compiler", "flags"})
+    if (attribute(theirs, name) != attribute(ours, name))
+      refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
+             attribute(ours, name) + "\"");
+}
+
+// A recording that changed is another one; whatever was measured on it before does not belong here.
+void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, const SweepResult& result,
+                         const std::vector<ChangedInput>& changed) {
+  if (changed.empty()) return;
+  for (const std::size_t run : result.runs_in(RunState::done))
+    for (const RecordingPart& part : sweep.experiment(result.cell_of(run), 0).inputs())
+      for (const ChangedInput& input : changed)
+        if (input.path == in_one_line(part.path))
+          throw InputError(file.string(), "has runs on another recording " + input.path + " (" +
+                                              input.before + "; now " + input.now +
+                                              "); allowed the same recording, or a new file");
+}
+
+void set_attribute(TextAttributes& attributes, const std::string& name, const std::string& value) {
+  std::erase_if(attributes, [&](const auto& each) { return each.first == name; });
+  if (!value.empty()) attributes.emplace_back(name, value);
+}
+
+// The runs of the earlier call. Only what they gave is taken: the rest is known.
+void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
+  if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
+      earlier.round.size() != result.round.size())
+    throw InputError(file.string(), "damaged (its arrays do not fit its configuration); allowed a new file");
+  for (std::size_t i = 0; i < result.measures.size(); ++i)
+    result.measures[i].values = std::move(earlier.measures[i].values);
+  for (std::size_t run = 0; run < result.run_count(); ++run)
+    if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
+  result.round = std::move(earlier.round);
+  result.error = std::move(earlier.error);
+}
+
+}  // namespace
+
+SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                       const std::filesystem::path& file) {
+  SweepPlan plan{sweep.plan(shard), attributes};
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(file, unreachable)) return plan;
+  StoredSweep stored = read_sweep(file);
+  require_same(file, stored.attributes, attributes);
+  take_over(std::move(stored.result), file, plan.result);
+  const std::string inputs = attribute(attributes, "inputs");
+  const auto changed = changed_inputs(attribute(stored.attributes, "inputs"), inputs);
+  require_same_inputs(file, sweep, plan.result, changed);
+  const auto failed = plan.result.runs_in(RunState::failed);
+  for (const std::size_t run : failed)
+    plan.result.state[run] = RunState::pending, plan.result.error[run].clear();
+  plan.attributes = std::move(stored.attributes);
+  set_attribute(plan.attributes, "inputs", inputs);
+  const bool is_same = failed.empty() && changed.empty();
+  plan.in_progress = stored.in_progress && is_same;
+  plan.is_finished = !stored.in_progress && is_same;
+  plan.is_there = true;
+  return plan;
+}
+
+SweepSession::SweepSession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                           const std::filesystem::path& file)
+    : sweep_(sweep),
+      shard_(shard),
+      file_(linked(file)),
+      lock_(file_),
+      plan_(plan_in_file(sweep, shard, attributes, file_)) {}
+
+// Shards do the first round; refinement looks at all of them, so it begins on the merged file.
+bool SweepSession::add_round_if_whole() {
+  if (shard_.count > 1 || !add_round(sweep_, plan_.result)) return false;
+  plan_.in_progress = false;  // the file knows nothing of the new round
+  return true;
+}
+
+bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  bool is_finished = plan_.is_finished;
+  while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
+    is_finished = false;
+    do_round(kernels, stop, progress);
+  }
+  if (is_finished) return false;
+  write_sweep(file_, plan_.result, plan_.attributes);
+  return true;
+}
+
+void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kBetweenFlushes{1};
+  SweepInProgress storage(file_, plan_.result, plan_.attributes, plan_.in_progress);
+  plan_.in_progress = true;
+  const std::size_t earlier = plan_.result.runs_in(RunState::done).size();
+  const std::size_t total = earlier + plan_.result.runs_in(RunState::pending).size();
+  std::size_t done = earlier;
+  auto flushed = Clock::now();
+  const auto finished = [&](std::size_t run) {
+    storage.record(plan_.result, run);
+    progress(++done, total, earlier);
+    if (Clock::now() - flushed < kBetweenFlushes) return;
+    storage.flush();
+    flushed = Clock::now();
+  };
+  do_pending_runs(sweep_, plan_.result, {&kernels, stop, finished});
+  storage.flush();
+}
+
+}  // namespace remote_touch

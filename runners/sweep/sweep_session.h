@@ -1,0 +1,53 @@
+// A sweep that is done into a file, and goes on where an earlier call stopped.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "analysis/storage/file_lock.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/sweep/shard.h"
+#include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_run.h"
+
+namespace remote_touch {
+
+// What is left to do of a sweep when the file, if it is there, holds a part of it.
+struct SweepPlan {
+  SweepResult result;         // failed runs are pending again
+  TextAttributes attributes;  // of the file that is there, or as given; inputs as given
+  bool in_progress = false;   // the file is there, can be written in place, and holds this result
+  bool is_there = false;
+  bool is_finished = false;  // the file is there, and is what a finished sweep with this result would write
+};
+// Throws InputError for a file that is no sweep, or one of another configuration, shard or build; and where a
+// recording has changed that a finished run has read. One that only failed runs have read may be mended.
+SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                       const std::filesystem::path& file);
+
+// Holds the file's lock from before it reads the file until it has written it for the last time.
+class SweepSession {
+ public:
+  SweepSession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+               const std::filesystem::path& file);
+
+  // Does everything that is left, round by round, and writes the finished file. progress: runs done, runs in
+  // all so far, and how many of them were done before. Returns false when nothing was left. Throws
+  // Interrupted, or InputError when the file cannot be written; what is finished is then in the file.
+  using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
+  bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
+
+  const SweepResult& result() const { return plan_.result; }
+
+ private:
+  bool add_round_if_whole();
+  void do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
+
+  const Sweep& sweep_;
+  const Shard shard_;
+  const std::filesystem::path file_;
+  FileLock lock_;
+  SweepPlan plan_;
+};
+
+}  // namespace remote_touch

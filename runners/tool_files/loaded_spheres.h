@@ -1,0 +1,41 @@
+// The 6-DOF fixture renderer as experiments name it: a tool of spheres from a mesh, and how it moves.
+#pragma once
+
+#include <string>
+
+#include "core/sphere_tree/sphere_tree_renderer.h"
+#include "runners/tool_files/tool_loading.h"
+
+namespace remote_touch {
+
+class LoadedSpheres final : public Renderer {
+ public:
+  struct Settings {
+    ToolSettings tool{.mesh = "key"};
+    int leaves = 112;
+    // Regions are round: the motion nears its end by a share at a time, and a hundredth of a millimetre is
+    // less than a hand can feel. Out of a frame that swallowed the tool about ten detections lead; the ticks
+    // that want many more slide along creases, and can go on in the next one.
+    ToolParameters motion{.detections_per_tick = 30, .at_rest_m = 1e-5};
+  };
+
+  // Throws InputError when the tool cannot be made.
+  LoadedSpheres(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
+  void prepare(Frame& frame) const override { renderer_.prepare(frame); }
+  void reserve(std::size_t points) override { renderer_.reserve(points); }
+  void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
+  RenderOutput step(const DeviceState& device, double time_s) override {
+    return renderer_.step(device, time_s);
+  }
+
+ private:
+  LoadedSpheres(const ToolOfSpheres& loaded, const ToolParameters& motion, const Kernels& kernels);
+
+  SphereTreeRenderer renderer_;
+};
+
+Parameters parameters(LoadedSpheres::Settings& s);
+std::string conflict(const LoadedSpheres::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
+
+}  // namespace remote_touch

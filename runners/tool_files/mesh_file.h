@@ -1,0 +1,20 @@
+// Meshes from files: OBJ, PLY and STL.
+#pragma once
+
+#include <filesystem>
+
+#include "core/tool/mesh/triangle_mesh.h"
+
+namespace remote_touch {
+
+// By the ending of its name, in any case of letters.
+bool is_mesh_file(const std::filesystem::path& file);
+
+// All meshes of the file as one, vertices at equal positions welded, polygons cut into fans; lines and points
+// are left out. Coordinates have the precision of floats. Throws InputError, naming the file.
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+// The reader's version: another one may read a file differently.
+std::string mesh_reader_version();
+
+}  // namespace remote_touch

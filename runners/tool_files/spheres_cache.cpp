@@ -1,0 +1,72 @@
+#include "runners/tool_files/spheres_cache.h"
+
+#include "runners/tool_files/cache_file.h"
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const CacheKind kKind{"spheres", kSpheresFormat};
+
+// A tree follows from its leaves and how many each node of the lowest level has.
+struct FlatTree {
+  std::vector<double> leaves;  // x, y, z, radius
+  std::vector<std::uint32_t> counts;
+};
+
+FlatTree flat(const SphereTree& tree) {
+  FlatTree all;
+  for (const Sphere& leaf : tree.leaves())
+    all.leaves.insert(all.leaves.end(), {leaf.centre.x(), leaf.centre.y(), leaf.centre.z(), leaf.radius_m});
+  if (!tree.empty())
+    for (const SphereNode& node : tree.level(0)) all.counts.push_back(node.count);
+  return all;
+}
+
+// False where the counts are not those of the leaves.
+bool grow(const FlatTree& flat, SphereTree& tree) {
+  std::size_t at = 0;
+  for (const std::size_t count : flat.counts) {
+    if (4 * count > flat.leaves.size() - at) return false;
+    std::vector<Sphere> node;
+    for (std::size_t i = 0; i < count; ++i, at += 4)
+      node.push_back({{flat.leaves[at], flat.leaves[at + 1], flat.leaves[at + 2]}, flat.leaves[at + 3]});
+    tree.add(node);
+  }
+  tree.finish();
+  return at == flat.leaves.size();
+}
+
+// Every field, in order, for both directions.
+template <class Direction, class Tree, class Spheres>
+void visit(Direction& pack, Tree& tree, Spheres& spheres) {
+  pack.list(tree.leaves), pack.list(tree.counts);
+  pack.value(spheres.growth_m), pack.value(spheres.outside_m), pack.value(spheres.inside_m);
+}
+
+}  // namespace
+
+std::string spheres_key(const std::string& tool_key, int most_leaves) {
+  Packing pack;
+  pack.value(kSpheresFormat);
+  pack.text(tool_key);
+  pack.value(most_leaves);
+  return pack.hex();
+}
+
+std::optional<ToolSpheres> read_spheres(const fs::path& folder, const std::string& key) {
+  ToolSpheres spheres;
+  FlatTree tree;
+  const auto take = [&](Unpacking& unpack) { visit(unpack, tree, spheres); };
+  if (!read_cache_file(folder, kKind, key, take) || !grow(tree, spheres.spheres)) return {};
+  return spheres;
+}
+
+bool write_spheres(const fs::path& folder, const std::string& key, const ToolSpheres& spheres) {
+  const FlatTree tree = flat(spheres.spheres);
+  return write_cache_file(folder, kKind, key, [&](Packing& pack) { visit(pack, tree, spheres); });
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,74 @@
+#include "runners/tool_files/tool_cache.h"
+
+#include <cstdlib>
+
+#include "runners/tool_files/cache_file.h"
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const CacheKind kKind{"tool", kToolFormat};
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));  // lists of vectors are lists of numbers
+
+// Every field, in order, for both directions.
+template <class Direction, class Stored>
+void visit(Direction& pack, Stored& stored) {
+  auto& tool = stored.tool;
+  pack.list(tool.mesh.vertices);
+  pack.list(tool.mesh.triangles);
+  for (int i = 0; i < 3; ++i) pack.value(tool.grid.origin_T[i]), pack.value(tool.grid.cells[i]);
+  pack.value(tool.grid.size_m);
+  pack.list(tool.voxels);
+  pack.list(tool.distance_m);
+  pack.value(tool.volume_m3);
+  for (int i = 0; i < 9; ++i) pack.value(tool.inertia_m2(i / 3, i % 3));
+  pack.value(tool.reach_m);
+  pack.text(stored.report);
+}
+
+}  // namespace
+
+fs::path tool_cache_folder() {
+  const auto from = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return fs::path(value != nullptr ? value : "");
+  };
+  if (const fs::path own = from("REMOTE_TOUCH_CACHE"); !own.empty()) return own;
+  if (const fs::path caches = from("XDG_CACHE_HOME"); !caches.empty()) return caches / "remote-touch";
+  if (const fs::path home = from("HOME"); !home.empty()) return home / ".cache" / "remote-touch";
+  return {};
+}
+
+std::string sha256_of_mesh(const TriangleMesh& mesh) {
+  Packing pack;
+  pack.list(mesh.vertices);
+  pack.list(mesh.triangles);
+  return pack.hex();
+}
+
+std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
+  Packing pack;
+  pack.value(kToolFormat);
+  pack.text(mesh_sha256);
+  pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
+  return pack.hex();
+}
+
+std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
+  StoredTool stored;
+  if (!read_cache_file(folder, kKind, key, [&](Unpacking& unpack) { visit(unpack, stored); })) return {};
+  const VoxelGrid& grid = stored.tool.grid;
+  if (stored.tool.voxels.size() != grid.cell_count() || stored.tool.distance_m.size() != grid.node_count())
+    return {};
+  return stored;
+}
+
+bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
+  return write_cache_file(folder, kKind, key, [&](Packing& pack) { visit(pack, stored); });
+}
+
+}  // namespace remote_touch

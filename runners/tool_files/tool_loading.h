@@ -1,0 +1,41 @@
+// The tool that an experiment names: a built-in one or a mesh file, made once and then read from the cache.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "core/sphere_tree/tool_spheres.h"
+#include "core/tool/voxels/voxel_tool.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+struct ToolSettings {
+  std::string mesh = "husky";
+  double size_m = 0;
+  double voxel_m = 5e-4;
+  bool repair = false;
+};
+
+Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_voxel_m, tool_repair
+std::string conflict(const ToolSettings& settings);
+
+// The mesh file that the result depends on; none for a built-in tool.
+std::vector<RecordingPart> input_files(const ToolSettings& settings);
+
+// A file is looked for as recordings are, see find_recording(). The name of a built-in tool comes before a
+// file of that name. Throws MissingRecording where there is neither, InputError as read_mesh() and
+// make_voxel_tool() do. report: what text(ToolReport) said when it was made.
+std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
+
+// The same tool with its sphere tree, which is made once for each number of leaves and kept beside it.
+struct ToolOfSpheres {
+  std::shared_ptr<const VoxelTool> tool;
+  std::shared_ptr<const ToolSpheres> spheres;
+};
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& settings, int most_leaves,
+                                   std::string* report = nullptr);
+
+}  // namespace remote_touch

@@ -1,0 +1,64 @@
+// A depth camera looks down on a beating organ that lies on a table: a surface that moves all the time, known
+// exactly at every instant.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/camera/depth_camera.h"
+#include "scenarios/camera/ellipsoid.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// World frame: the table is y = 0, y up. The organ is the union of three ellipsoids, 95 mm long in x, 60 mm
+// high over the origin at rest, convex and smooth for 20 mm around that top at every time. By default the
+// top's radius of curvature falls to 29 mm in z: a device pressed deeper than that lies beyond its centre,
+// and a proxy slides off. The semi-axes shrink and grow with the beat, all in the same proportion, about
+// centres that rest; the atrium leads the ventricles. The motion is twice continuously differentiable in time
+// and made of polynomials only: the same bits on every machine. Frame j shows the surface as it is at
+// captured_s(j), all pixels at once.
+class BeatingHeart final : public Scenario {
+ public:
+  struct Settings {
+    double frame_rate_hz = 30;
+    double rate_per_min = 75;
+    double amplitude_m = 0.0065;
+    DepthCameraSettings camera{.camera_m = {0, 0.55, 0}, .target_m = {0, 0, 0}};
+  };
+
+  BeatingHeart(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  int frame_count() const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // At that very time, between frames too. Exact outside organ and table; inside both or two lobes the depth
+  // is at least what is told.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  double surface_height(double x, double z, double time_s) const override;
+
+  // How far a ventricle has contracted, 0 (at rest, full) to 1, so many beats after the start of a
+  // contraction.
+  static double contraction(double beats);
+
+ private:
+  struct Lobe {
+    Ellipsoid solid;
+    std::uint32_t colour;
+  };
+  std::array<Lobe, 3> lobes(double time_s) const;
+
+  const Settings settings_;
+  DepthCamera camera_;
+};
+
+Parameters parameters(BeatingHeart::Settings& s);
+inline std::string conflict(const BeatingHeart::Settings& s) {
+  return conflict(s.camera);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,49 @@
+// A synthetic depth camera that looks at a ramp and a box on a table: Figs 4.15 and 4.16 without a recording.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/camera/depth_camera.h"
+#include "scenarios/camera/extrusion.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// World frame: the table is y = 0, y up; ramp and box follow each other along z, and the camera stands beside
+// the gap between them, from where it sees the walls on both sides of it.
+class CameraScene final : public Scenario {
+ public:
+  struct Settings {
+    double frame_rate_hz = 30;
+    DepthCameraSettings camera{.camera_m = {0.3, 0.6, -0.02}, .target_m = {0, 0.02, -0.02}};
+  };
+
+  CameraScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return frame_rate_hz_; }
+  int frame_count() const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  double surface_height(double x, double z, double time_s) const override;
+
+  // What an ideal camera would measure; NaN beyond 3 m.
+  const DepthImage& true_depth() const { return view_.depth; }
+
+ private:
+  RayHit cast(const Vec3& origin_W, const Vec3& ray_W) const;
+
+  const double frame_rate_hz_;
+  std::vector<Extrusion> solids_;
+  DepthCamera camera_;
+  IdealView view_;
+};
+
+Parameters parameters(CameraScene::Settings& s);
+inline std::string conflict(const CameraScene::Settings& s) {
+  return conflict(s.camera);
+}
+
+}  // namespace remote_touch

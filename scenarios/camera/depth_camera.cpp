@@ -1,0 +1,137 @@
+#include "scenarios/camera/depth_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kFarthest_m = 3;
+constexpr double kSamePlace_m = 1e-9;
+
+}  // namespace
+
+Parameters parameters(DepthCameraSettings& s) {
+  return {
+      {"width", &s.width, 8, 4096, "image columns"},
+      {"height", &s.height, 8, 4096, "image rows"},
+      {"focal_px", &s.focal_px, 1, 10000,
+       "focal length, both axes; the principal point is the image's middle"},
+      {"camera_m", &s.camera_m, -10, 10, "position of the camera"},
+      {"target_m", &s.target_m, -10, 10, "point that the optical axis passes through"},
+      {"noise_per_m", &s.noise_per_m, 0, 0.1, "depth noise: standard deviation = this times z^2"},
+      {"quantisation_per_m", &s.quantisation_per_m, 0, 0.1, "depth step = this times z^2; 0 switches it off"},
+      {"edge_jump_m", &s.edge_jump_m, 1e-4, 10, "a depth difference larger than this is an edge"},
+      {"hole_px", &s.hole_px, 0, 16, "no depth within so many pixels of an edge"},
+  };
+}
+
+std::string conflict(const DepthCameraSettings& s) {
+  const bool same = (s.target_m - s.camera_m).norm() < kSamePlace_m;
+  return same ? "camera_m and target_m: allowed not to be equal" : "";
+}
+
+RigidTransform look_at(const Vec3& from, const Vec3& to) {
+  const Vec3 forward = (to - from).normalized();
+  const Vec3 level = forward.cross(Vec3::UnitY());
+  const bool upright = (to - from).cross(Vec3::UnitY()).norm() < kSamePlace_m;
+  const Vec3 right = upright ? Vec3(Vec3::UnitX()) : level.normalized();
+  RigidTransform X_WC = RigidTransform::Identity();
+  X_WC.linear().col(0) = right;
+  X_WC.linear().col(1) = forward.cross(right);
+  X_WC.linear().col(2) = forward;
+  X_WC.translation() = from;
+  return X_WC;
+}
+
+DepthCamera::DepthCamera(const DepthCameraSettings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings),
+      key_(key),
+      kernels_(kernels),
+      intrinsics_{settings.width,
+                  settings.height,
+                  settings.focal_px,
+                  settings.focal_px,
+                  0.5 * (settings.width - 1),
+                  0.5 * (settings.height - 1)},
+      X_WC_(look_at(settings.camera_m, settings.target_m)) {}
+
+IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
+  const int width = intrinsics_.width, height = intrinsics_.height;
+  const std::size_t count = static_cast<std::size_t>(width) * height;
+  IdealView view{{width, height, std::vector<double>(count)}, {}, {}, {}};
+  if (coloured) view.colour.resize(count);
+  const Vec3 origin = X_WC_.translation();
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      // With the ray's camera z equal to 1, t is the depth along the axis.
+      const Vec3 ray = X_WC_.linear() * unproject(intrinsics_, u, v, 1);
+      const RayHit hit = cast(origin, ray);
+      const std::size_t i = static_cast<std::size_t>(v) * width + u;
+      view.depth.z_m[i] = hit.t <= kFarthest_m ? hit.t : std::numeric_limits<double>::quiet_NaN();
+      if (coloured) view.colour[i] = hit.colour;
+    }
+  }
+  view.hole = holes(view.depth);
+  return view;
+}
+
+// Structured light is shadowed and mixed at depth edges; the sensor gives nothing there.
+std::vector<char> DepthCamera::holes(const DepthImage& ideal) const {
+  const int w = ideal.width, h = ideal.height, reach = settings_.hole_px;
+  std::vector<char> hole(ideal.z_m.size(), 0);
+  const auto mark = [&](int u_first, int u_last, int v_first, int v_last) {
+    for (int y = std::max(0, v_first); y <= std::min(h - 1, v_last); ++y)
+      for (int x = std::max(0, u_first); x <= std::min(w - 1, u_last); ++x)
+        hole[static_cast<std::size_t>(y) * w + x] = 1;
+  };
+  const auto jumps = [&](std::size_t a, std::size_t b) {
+    return std::abs(ideal.z_m[a] - ideal.z_m[b]) > settings_.edge_jump_m;
+  };
+  if (reach == 0) return hole;
+  for (int v = 0; v < h; ++v) {
+    for (int u = 0; u < w; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * w + u;
+      // As many pixels on either side of the edge.
+      if (u + 1 < w && jumps(i, i + 1)) mark(u + 1 - reach, u + reach, v - reach, v + reach);
+      if (v + 1 < h && jumps(i, i + w)) mark(u - reach, u + reach, v + 1 - reach, v + reach);
+    }
+  }
+  return hole;
+}
+
+PointCloud DepthCamera::measured(const IdealView& view, int frame) const {
+  DepthImage depth = view.depth;
+  const NoiseStream stream = noise_stream(key_, NoiseUse::depth, static_cast<std::uint32_t>(frame));
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < intrinsics_.height; ++v) measure_row(view, stream, v, depth);
+  PointCloud cloud = cloud_from_depth(depth, intrinsics_, X_WC_);
+  cloud.colour = view.colour;
+  return cloud;
+}
+
+// Takes ideal depths and leaves measured ones.
+void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, int row,
+                              DepthImage& depth) const {
+  const auto width = static_cast<std::size_t>(intrinsics_.width);
+  const std::size_t first = width * static_cast<std::size_t>(row);
+  const double steps = settings_.quantisation_per_m > 0 ? 1 / settings_.quantisation_per_m : 0;
+  std::vector<std::uint32_t> pixel(width);
+  std::iota(pixel.begin(), pixel.end(), static_cast<std::uint32_t>(first));
+  std::vector<double> normal(width), unused(width), unused_too(width);
+  kernels_.normals(stream, pixel.data(), width, normal.data(), unused.data(), unused_too.data());
+  for (std::size_t u = 0; u < width; ++u) {
+    double& z = depth.z_m[first + u];
+    const double factor = view.depth_noise_factor.empty() ? 1 : view.depth_noise_factor[first + u];
+    z += settings_.noise_per_m * z * z * normal[u] * factor;
+    // The sensor counts whole disparities, proportional to 1/z.
+    if (steps > 0) z = steps / std::floor(steps / z + 0.5);
+    // Nothing is measured at a hole, nor behind the camera, where strong noise can throw a depth.
+    if (view.hole[first + u] || !(z > 0)) z = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace remote_touch

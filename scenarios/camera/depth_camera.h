@@ -1,0 +1,80 @@
+// A synthetic structured-light depth camera: where it looks, what it would see ideally, and what it measures.
+// Depth is measured along the optical axis with Gaussian noise that grows with z^2, then quantised with steps
+// of quantisation z^2, and lost near depth edges.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/cloud/camera.h"
+#include "core/parameters/parameter.h"
+#include "core/random/noise.h"
+
+namespace remote_touch {
+
+// The world's y is up. Each scenario says where its camera stands.
+struct DepthCameraSettings {
+  int width = 640;
+  int height = 480;
+  double focal_px = 525;
+  Vec3 camera_m{0, 0.6, 0};
+  Vec3 target_m{0, 0, 0};
+  double noise_per_m = 0.0012;
+  double quantisation_per_m = 0.00285;
+  double edge_jump_m = 0.02;
+  int hole_px = 2;
+};
+
+Parameters parameters(DepthCameraSettings& s);
+std::string conflict(const DepthCameraSettings& s);
+
+// Pose of a camera (x right, y down, z forward) that looks from `from` to `to` with the world's y up in the
+// image. Where it looks straight down or up no direction in the image is the world's up; its right is then
+// the world's +x, so that seen from above the image's up is -z. pre: from and to differ.
+RigidTransform look_at(const Vec3& from, const Vec3& to);
+
+// What a ray meets first: the place origin + t ray.
+struct RayHit {
+  double t = std::numeric_limits<double>::infinity();
+  std::uint32_t colour = 0;  // 0xRRGGBB; black where nothing is met
+};
+using RayCast = std::function<RayHit(const Vec3& origin_W, const Vec3& ray_W)>;
+
+// A scene at one instant, as an ideal camera would see it. Columns have an entry for every pixel.
+struct IdealView {
+  DepthImage depth;                             // NaN beyond 3 m
+  std::vector<char> hole;                       // 1 where the sensor gives nothing, for a depth edge is near
+  std::vector<std::uint32_t> colour;            // 0xRRGGBB; empty for a scene without colours
+  std::vector<double> depth_noise_factor = {};  // times the camera's own noise; empty: 1 everywhere
+};
+
+class DepthCamera {
+ public:
+  // Keeps a reference to the kernels. pre: conflict(settings) is empty.
+  DepthCamera(const DepthCameraSettings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  const CameraIntrinsics& intrinsics() const { return intrinsics_; }
+  const RigidTransform& pose() const { return X_WC_; }
+  bool noisy() const { return settings_.noise_per_m > 0; }
+
+  // Casts the ray of every pixel, from several threads at once.
+  IdealView view(const RayCast& cast, bool coloured) const;
+  // The organised cloud of a frame; a pure function of the view, the noise key and the frame's number. A hole
+  // keeps its colour: what gives no depth has been seen all the same.
+  PointCloud measured(const IdealView& view, int frame) const;
+
+ private:
+  std::vector<char> holes(const DepthImage& ideal) const;
+  void measure_row(const IdealView& view, const NoiseStream& stream, int row, DepthImage& depth) const;
+
+  DepthCameraSettings settings_;
+  NoiseKey key_;
+  const Kernels& kernels_;
+  CameraIntrinsics intrinsics_;
+  RigidTransform X_WC_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,111 @@
+#include "scenarios/camera/ellipsoid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// The closest point x to q on an ellipsoid with semi-axes e obeys q - x = s x / e^2 for some s (Lagrange),
+// with x in the octant of q. With s = tau - e_min^2 and g = e^2 - e_min^2, x = e^2 q / (tau + g), and tau >=
+// 0 is the root of sum (e q / (tau + g))^2 = 1, whose left side falls and is convex.
+struct ClosestPoint {
+  Vec3 scaled;  // e |q|
+  Vec3 gap;     // g
+  int shortest;
+
+  // x / e at tau, in the first octant.
+  Vec3 unit(double tau) const {
+    return {scaled.x() / (tau + gap.x()), scaled.y() / (tau + gap.y()), scaled.z() / (tau + gap.z())};
+  }
+  double excess(double tau) const { return unit(tau).squaredNorm() - 1; }
+  double root(double low) const;
+};
+
+// pre: excess(low) > 0 and low > 0.
+double ClosestPoint::root(double low) const {
+  // Where each term alone is 1 the sum is too large; without gaps it is too small.
+  low = std::max({low, scaled.x() - gap.x(), scaled.y() - gap.y(), scaled.z() - gap.z()});
+  double high = std::max(low, scaled.norm());
+  // Halves the ratio's logarithm: 12 times take the range of all doubles to a factor of 2.
+  for (int i = 0; i < 12 && high > 2 * low; ++i) {
+    const double between = std::sqrt(low) * std::sqrt(high);
+    (excess(between) > 0 ? low : high) = between;
+  }
+  // Newton's method from the left of a convex function's root cannot pass it, and from within a factor of 2
+  // has all digits after seven steps.
+  double tau = low;
+  for (int i = 0; i < 10; ++i) {
+    const Vec3 x = unit(tau);
+    const double slope = 2 * (x.x() * x.x() / (tau + gap.x()) + x.y() * x.y() / (tau + gap.y()) +
+                              x.z() * x.z() / (tau + gap.z()));
+    tau += std::max(0.0, (x.squaredNorm() - 1) / slope);
+  }
+  return tau;
+}
+
+}  // namespace
+
+Ellipsoid::Ellipsoid(const Vec3& centre_m, const Vec3& semi_axes_m, const Eigen::Matrix3d& axes)
+    : centre_(centre_m), semi_axes_(semi_axes_m), axes_(axes) {
+  for (int i = 0; i < 3; ++i) to_unit_ball_.row(i) = axes_.col(i).transpose() / semi_axes_[i];
+}
+
+Vec3 Ellipsoid::closest(const Vec3& p) const {
+  const Vec3 q = axes_.transpose() * (p - centre_);
+  ClosestPoint problem;
+  semi_axes_.minCoeff(&problem.shortest);
+  const double shortest = semi_axes_[problem.shortest];
+  problem.scaled = semi_axes_.cwiseProduct(q.cwiseAbs());
+  for (int i = 0; i < 3; ++i) problem.gap[i] = (semi_axes_[i] - shortest) * (semi_axes_[i] + shortest);
+
+  // Near the plane across the shortest axis, and deep enough inside, the root goes to 0: there the surface
+  // over and the surface under the plane are equally close, and what the others leave is the shortest's.
+  const double least = 1e-20 * shortest * shortest;
+  Vec3 unit;
+  if (problem.excess(least) > 0) {
+    unit = problem.unit(problem.root(least));
+  } else {
+    unit = problem.unit(least);
+    unit[problem.shortest] = 0;
+    unit[problem.shortest] = std::sqrt(1 - unit.squaredNorm());
+  }
+  Vec3 x;
+  for (int i = 0; i < 3; ++i) x[i] = std::copysign(semi_axes_[i] * unit[i], q[i]);
+  return centre_ + axes_ * x;
+}
+
+double Ellipsoid::signed_distance(const Vec3& p) const {
+  const double distance = (p - closest(p)).norm();
+  return level(p) < 1 ? -distance : distance;
+}
+
+// In coordinates that make the ellipsoid the unit ball. Taken from the line's middle, the half is as exact
+// for a far origin as for a near one.
+Ellipsoid::Chord Ellipsoid::chord(const Vec3& origin, const Vec3& direction) const {
+  // Most rays of a camera miss even the ball around the solid, which is told without a turn or a division.
+  const Vec3 way = centre_ - origin;
+  const double radius = 1.001 * semi_axes_.maxCoeff(), along = way.dot(direction);
+  if ((way.squaredNorm() - radius * radius) * direction.squaredNorm() > along * along)
+    return {0, std::numeric_limits<double>::quiet_NaN()};
+  const Vec3 o = to_unit_ball_ * (origin - centre_), d = to_unit_ball_ * direction;
+  const double squared = d.squaredNorm(), middle = -o.dot(d) / squared;
+  const double left = 1 - (o + middle * d).squaredNorm();
+  return {middle, left >= 0 ? std::sqrt(left / squared) : std::numeric_limits<double>::quiet_NaN()};
+}
+
+double Ellipsoid::cast(const Vec3& origin, const Vec3& direction) const {
+  const Chord line = chord(origin, direction);
+  return line.middle + line.half >= 0 ? std::max(0.0, line.middle - line.half)
+                                      : std::numeric_limits<double>::infinity();
+}
+
+double Ellipsoid::height(double x, double z) const {
+  const Chord line = chord({x, centre_.y(), z}, {0, 1, 0});
+  return std::isnan(line.half) ? -std::numeric_limits<double>::infinity()
+                               : centre_.y() + line.middle + line.half;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,166 @@
+#include "scenarios/camera/valve_tank.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/cloud/colour.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
+constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
+constexpr double kAmbient = 0.3;  // share of the light that comes from everywhere
+
+// Hue and saturation stay what they are, up to rounding; lightness varies.
+std::uint32_t dimmed(std::uint32_t rgb, double light) {
+  std::uint32_t result = 0;
+  for (int shift = 16; shift >= 0; shift -= 8)
+    result |= static_cast<std::uint32_t>(std::floor((rgb >> shift & 0xFF) * light + 0.5)) << shift;
+  return result;
+}
+
+std::uint32_t channel(double value) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
+}
+
+}  // namespace
+
+Parameters parameters(ValveTank::Settings& s) {
+  Parameters list = {
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
+      {"left_m", &s.left_m, -2, 2, "centre of the left valve's wheel; z from the wall"},
+      {"right_m", &s.right_m, -2, 2, "centre of the right valve's wheel"},
+      {"ring_radius_m", &s.ring_radius_m, 0.02, 0.2,
+       "radius of the wheels' rings, to the middle of the tube"},
+      {"left_hue_deg", &s.left_hue_deg, 0, 360, "hue of the left valve's paint: 0 red"},
+      {"right_hue_deg", &s.right_hue_deg, 0, 360,
+       "hue of the right valve's paint: 46 yellow, which turns towards green in the water"},
+      {"turbidity_per_m", &s.turbidity_per_m, 0, 20, "attenuation of light in the water, beta; 0: clear"},
+      {"colour_noise", &s.colour_noise, 0, 128, "standard deviation of each colour channel, 0 to 255"},
+      {"dropout", &s.dropout, 0, 1, "probability that a pixel has no depth in clear water"},
+  };
+  const Parameters camera = parameters(s.camera);
+  list.insert(list.end(), camera.begin(), camera.end());
+  return list;
+}
+
+std::string conflict(const ValveTank::Settings& s) {
+  if (std::min(s.left_m.z(), s.right_m.z()) <= Handwheel::kHubHalfLength_m)
+    return "left_m and right_m: allowed with z above " + std::to_string(Handwheel::kHubHalfLength_m) +
+           ", in front of the wall";
+  if (s.camera.camera_m.z() <= 0) return "camera_m: allowed with z above 0, in front of the wall";
+  return conflict(s.camera);
+}
+
+ValveTank::ValveTank(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings),
+      key_(key),
+      kernels_(kernels),
+      wheels_{Handwheel(settings.left_m, settings.ring_radius_m),
+              Handwheel(settings.right_m, settings.ring_radius_m)},
+      paint_{rgb(kWall), rgb({settings.left_hue_deg, kPaintSaturation, kPaintLightness}),
+             rgb({settings.right_hue_deg, kPaintSaturation, kPaintLightness})},
+      camera_(settings.camera, key, kernels),
+      view_(camera_.view([this](const Vec3& origin_W, const Vec3& ray_W) { return shaded(origin_W, ray_W); },
+                         /*coloured=*/true)) {
+  fill_with_water();
+}
+
+int ValveTank::frame_count() const {
+  const bool varies =
+      camera_.noisy() || settings_.colour_noise > 0 || settings_.dropout > 0 || settings_.turbidity_per_m > 0;
+  return varies ? std::numeric_limits<int>::max() : 1;
+}
+
+ValveTank::Meeting ValveTank::meet(const Vec3& origin_W, const Vec3& ray_W) const {
+  const double wall = ray_W.z() < 0 ? -origin_W.z() / ray_W.z() : std::numeric_limits<double>::infinity();
+  const double left = wheels_[0].cast(origin_W, ray_W), right = wheels_[1].cast(origin_W, ray_W);
+  if (left < wall && left <= right) return {left, Valve::left};
+  return right < wall ? Meeting{right, Valve::right} : Meeting{wall, Valve::none};
+}
+
+RayHit ValveTank::shaded(const Vec3& origin_W, const Vec3& ray_W) const {
+  const auto [t, valve] = meet(origin_W, ray_W);
+  if (std::isinf(t)) return {};
+  const auto i = static_cast<std::size_t>(valve);
+  const Vec3 normal_W =
+      valve == Valve::none ? Vec3(Vec3::UnitZ()) : wheels_[i - 1].normal(origin_W + t * ray_W);
+  const double cosine = std::clamp(-normal_W.dot(ray_W) / ray_W.norm(), 0.0, 1.0);
+  return {t, dimmed(paint_[i], kAmbient + (1 - kAmbient) * cosine)};
+}
+
+// What of the ideal view through the water is the same in every frame.
+void ValveTank::fill_with_water() {
+  const CameraIntrinsics& camera = camera_.intrinsics();
+  const Water water(settings_.turbidity_per_m);
+  const std::size_t count = view_.depth.z_m.size();
+  colour_.resize(count), lost_.resize(count), view_.depth_noise_factor.resize(count);
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * camera.width + u;
+      const double z = view_.depth.z_m[i];
+      const double distance =
+          std::isnan(z) ? std::numeric_limits<double>::infinity() : unproject(camera, u, v, z).norm();
+      colour_[i] = water.seen(view_.colour[i], distance);
+      lost_[i] = water.lost(settings_.dropout, distance);
+      view_.depth_noise_factor[i] = water.depth_noise_factor(distance);
+    }
+}
+
+PointCloud ValveTank::cloud(int frame) const {
+  PointCloud cloud = camera_.measured(view_, frame);
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < camera_.intrinsics().height; ++v) see_row(frame, v, cloud);
+  return cloud;
+}
+
+// Takes depths with their noise; leaves the colours that are seen, and fewer depths.
+void ValveTank::see_row(int frame, int row, PointCloud& cloud) const {
+  const auto width = static_cast<std::size_t>(camera_.intrinsics().width);
+  const std::size_t first = width * static_cast<std::size_t>(row);
+  const auto number = static_cast<std::uint32_t>(frame);
+  const NoiseStream colours = noise_stream(key_, NoiseUse::colour, number);
+  const NoiseStream dropouts = noise_stream(key_, NoiseUse::dropout, number);
+  std::vector<std::uint32_t> pixel(width);
+  std::iota(pixel.begin(), pixel.end(), static_cast<std::uint32_t>(first));
+  std::vector<double> red(width), green(width), blue(width);
+  kernels_.normals(colours, pixel.data(), width, red.data(), green.data(), blue.data());
+  for (std::size_t u = 0; u < width; ++u) {
+    const std::size_t i = first + u;
+    const double sd = settings_.colour_noise;
+    cloud.colour[i] = channel(colour_[i][0] + sd * red[u]) << 16 |
+                      channel(colour_[i][1] + sd * green[u]) << 8 | channel(colour_[i][2] + sd * blue[u]);
+    if (uniforms(dropouts, pixel[u])[0] < lost_[i])
+      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+std::shared_ptr<const NeighbourSearch> ValveTank::points(int frame) const {
+  return make_search(cloud(frame));
+}
+
+double ValveTank::signed_distance(const Vec3& p_W, double) const {
+  return std::min({p_W.z(), distance_to_valve(Valve::left, p_W), distance_to_valve(Valve::right, p_W)});
+}
+
+double ValveTank::distance_to_valve(Valve valve, const Vec3& p_W) const {
+  return wheels_[static_cast<std::size_t>(valve) - 1].signed_distance(p_W);
+}
+
+std::vector<Valve> ValveTank::truth() const {
+  const auto label = [this](const Vec3& origin_W, const Vec3& ray_W) {
+    const auto [t, valve] = meet(origin_W, ray_W);
+    return RayHit{t, static_cast<std::uint32_t>(valve)};
+  };
+  std::vector<Valve> classes;
+  for (const std::uint32_t value : camera_.view(label, /*coloured=*/true).colour)
+    classes.push_back(static_cast<Valve>(value));
+  return classes;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,79 @@
+// A colour and depth camera looks at two handwheel valves in a tank of turbid water: the scene of 7.5.1
+// without a recording, with known classes for every pixel.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/camera/depth_camera.h"
+#include "scenarios/camera/handwheel.h"
+#include "scenarios/camera/water.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// What a pixel sees, and what is asked about.
+enum class Valve : std::uint8_t { none, left, right };
+
+// World frame: the robot's base frame, y up; the tank's wall is the plane z = 0 and the valves stand before
+// it. X_WC, in the image layout of every cloud, is the registration of the camera. Everything rests; the
+// noise of colour and depth and the pixels without depth are other ones in each frame, pure functions of the
+// noise key and the frame's number. Lit from the camera, Lambert's law over a share of ambient light.
+class ValveTank final : public Scenario {
+ public:
+  struct Settings {
+    double frame_rate_hz = 30;
+    Vec3 left_m{-0.11, 0, 0.06};
+    Vec3 right_m{0.11, 0, 0.06};
+    double ring_radius_m = 0.045;
+    double left_hue_deg = 0;
+    double right_hue_deg = 46;
+    double turbidity_per_m = 0.6;
+    double colour_noise = 3;
+    double dropout = 0.02;
+    DepthCameraSettings camera{.camera_m = {0, 0.3, 0.9}, .target_m = {0, 0, 0.04}, .hole_px = 1};
+  };
+
+  ValveTank(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  int frame_count() const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // Of the union of wall and valves: exact outside.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+
+  // The same for one valve alone, without the wall: the clearance of a tool. pre: not none.
+  double distance_to_valve(Valve valve, const Vec3& p_W) const;
+  // The class of each pixel as an ideal camera sees it, with depth or without.
+  std::vector<Valve> truth() const;
+
+ private:
+  struct Meeting {
+    double t;
+    Valve valve;
+  };
+  Meeting meet(const Vec3& origin_W, const Vec3& ray_W) const;
+  RayHit shaded(const Vec3& origin_W, const Vec3& ray_W) const;
+  void fill_with_water();
+  void see_row(int frame, int row, PointCloud& cloud) const;
+
+  const Settings settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+  std::array<Handwheel, 2> wheels_;
+  std::array<std::uint32_t, 3> paint_;  // by Valve; of none: the wall
+  DepthCamera camera_;
+  IdealView view_;
+  // Of each pixel, through the water and without noise: its colour, and the probability that it has no depth.
+  std::vector<std::array<double, 3>> colour_;
+  std::vector<double> lost_;
+};
+
+Parameters parameters(ValveTank::Settings& s);
+std::string conflict(const ValveTank::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,87 @@
+// What a depth sensor does to the frames of any scenario: places in steps and beside the surface, lost
+// points, frames that come twice or late, rows that are read one after the other.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// Applied in this order; a point can meet several, but an outlier does not fly. "Along the view" is along one
+// direction for all points; in a cloud with an image layout along the ray of each, as a distance from the
+// camera.
+struct SensorFaults {
+  Vec3 view{0, -1, 0};      // the way the sensor looks; any length
+  double repeat_share = 0;  // frames that show the one before them
+  double shear_s = 0;       // time in which the rows of a frame are read
+  double flying_share = 0, flying_m = 0.02;
+  double outlier_share = 0, outlier_reach_m = 0.05;
+  double quantisation_m = 0;
+  double hole_share = 0, hole_radius_m = 0.005;
+  double dropout_share = 0;
+  double late_share = 0, late_s = 0.05;
+};
+
+Parameters parameters(SensorFaults& s);
+std::string conflict(const SensorFaults& s);
+
+// Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
+// fault at 0 they are the scenario's bit for bit. A point that is lost becomes NaN in all three coordinates,
+// so that the number of each stays. Truth, and what else there is to know, stays that of the scenario.
+class FaultySensor final : public Scenario {
+ public:
+  // Throws std::invalid_argument for settings with a conflict.
+  FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings, const NoiseKey& key,
+               const Kernels& kernels);
+
+  double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
+  // Where frames of one surface differ by their faults, the sensor goes on when the scenario has come to
+  // rest.
+  int frame_count() const override;
+  double captured_s(int frame) const override;
+  bool ends() const override { return scenario_->ends(); }
+  const Scenario& without_faults() const override { return *scenario_; }
+  std::optional<double> arrives_s(int frame) const override;
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return scenario_->fixtures_off(seen(frame));
+  }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return scenario_->signed_distance(p_W, time_s);
+  }
+  double surface_height(double x, double z, double time_s) const override {
+    return scenario_->surface_height(x, z, time_s);
+  }
+
+ private:
+  struct Seen {  // a cloud flat as the sensor sees it
+    PointCloud places;
+    std::vector<double> hole_radius;
+    std::vector<std::uint32_t> measured;
+  };
+  int shown(int frame) const;  // the frame whose content this one has
+  int seen(int frame) const;   // the scenario's frame for it
+  bool moves_points() const;
+  bool loses_points() const { return settings_.hole_share > 0 || settings_.dropout_share > 0; }
+  Vec3 sight(const PointCloud& cloud, const Vec3& p_W) const;
+  void shear(PointCloud& cloud, double captured_s) const;
+  Vec3 normal_at(const Vec3& p_W, double time_s) const;
+  Vec3 as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
+  void displace(PointCloud& cloud, int frame) const;
+  Seen across_the_view(const PointCloud& cloud) const;
+  void cut_holes(PointCloud& cloud, const Seen& seen, int frame) const;
+  void drop_points(PointCloud& cloud, int frame) const;
+
+  const std::unique_ptr<const Scenario> scenario_;
+  const SensorFaults settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+#include "scenarios/recordings/image_mask.h"
+
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/png/depth_png.h"
+
+namespace remote_touch {
+
+Parameters parameters(ImageMask::Settings& s) {
+  Parameters list = parameters(s.values);
+  list.push_back(
+      {"path", &s.path, 0, 0,
+       "a PNG as large as the frames; pixels that are not black are picked, 16 bits a channel are not read"});
+  return list;
+}
+
+std::string conflict(const ImageMask::Settings& s) {
+  if (s.path.empty()) return "path = \"\": allowed a PNG file";
+  return conflict(s.values);
+}
+
+RecordingPart input_files(const ImageMask::Settings& s) {
+  return {s.path};
+}
+
+ImageMask::ImageMask(const Settings& settings)
+    : FixtureRule(settings.values),
+      path_(settings.path),
+      mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
+
+std::vector<double> ImageMask::shares(const PointCloud& cloud) const {
+  if (!cloud.image) throw InputError("image-mask", "the frame is no image; allowed with a camera");
+  const CameraIntrinsics& camera = cloud.image->camera;
+  if (camera.width != width_ || camera.height != height_)
+    throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +
+                                " pixels; allowed as many as the frames: " + std::to_string(camera.width) +
+                                " x " + std::to_string(camera.height));
+  std::vector<double> shares(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    shares[i] = cloud.point(i).allFinite() && (mask_[i] & 0xFFFFFF) != 0 ? 1 : 0;
+  return shares;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,189 @@
+#include "scenarios/recordings/pcd/pcd_file.h"
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/pcd/lzf.h"
+#include "scenarios/recordings/pcd/pcd_header.h"
+#include "scenarios/recordings/pcd/pinhole_fit.h"
+
+namespace remote_touch {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "PCD data are little-endian");
+
+constexpr std::uint32_t kRgb = 0xFFFFFF;  // of a colour word 0xAARRGGBB
+
+// The whole file: header and data are views into it.
+std::string read_bytes(const std::filesystem::path& file) {
+  std::error_code no_size;
+  const std::uintmax_t size = std::filesystem::file_size(file, no_size);  // fails also for a folder
+  if (no_size) {
+    throw InputError(file.string(), "cannot be read (" + no_size.message() + "): allowed a PCD file");
+  }
+  std::string bytes(size, '\0');  // the size on disk, not one that the header claims
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) {
+    throw InputError(file.string(), "cannot be read to its end");
+  }
+  return bytes;
+}
+
+// Before anything is allocated: could the bytes behind the header hold the points that it claims?
+void check_claimed_size(const std::string& file, const PcdHeader& header, std::size_t data_bytes) {
+  std::size_t most = data_bytes / header.point_bytes;
+  if (header.encoding == "ascii") {
+    most = (data_bytes + 1) / (2 * header.point_values);  // a digit and a separator
+  } else if (header.encoding == "binary_compressed") {
+    most = data_bytes * kLzfMostExpansion / header.point_bytes;
+  }
+  if (header.points <= most) return;
+  throw InputError(file, "POINTS = " + std::to_string(header.points) + ": the " + std::to_string(data_bytes) +
+                             " bytes of " + std::string(header.encoding) + " data hold at most " +
+                             std::to_string(most));
+}
+
+// Also nan and inf, which from_chars reads in every spelling of printf.
+double real_number(const std::string& where, std::string_view word) {
+  double value = 0;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
+  if (error != std::errc() || stop != end) throw InputError(where, shown(word) + ": allowed a number or nan");
+  return value;
+}
+
+// Point i from the words of its line, in the order of FIELDS. A coordinate is rounded to its SIZE, so that a
+// cloud has the same bits in every encoding. A colour of TYPE F is the float that has the bits of the colour
+// word.
+void read_ascii_point(const std::string& where, const PcdHeader& header,
+                      const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
+  if (words.size() != header.point_values) {
+    throw InputError(where, std::to_string(words.size()) + " values: allowed " +
+                                std::to_string(header.point_values) + ", as FIELDS and COUNT say");
+  }
+  const auto read = [&](const PcdField& field) {
+    const double value = real_number(where, words[field.first_value]);
+    return field.size == 4 && field.type == 'F' ? static_cast<float>(value) : value;
+  };
+  cloud.x[i] = read(header.x), cloud.y[i] = read(header.y), cloud.z[i] = read(header.z);
+  if (!header.colour) return;
+  const double colour = read(*header.colour);
+  if (header.colour->type == 'F') {
+    cloud.colour[i] = std::bit_cast<std::uint32_t>(static_cast<float>(colour)) & kRgb;
+    return;
+  }
+  if (!(std::abs(colour) < 4294967296.0)) {
+    throw InputError(where, shown(words[header.colour->first_value]) + ": allowed a 32-bit colour");
+  }
+  cloud.colour[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(colour)) & kRgb;
+}
+
+// One point a line; empty lines are skipped, and nothing else may follow the last point.
+void read_ascii(const std::string& file, const PcdHeader& header, PcdText rest, PointCloud& cloud) {
+  const auto where = [&] { return file + ":" + std::to_string(rest.line); };
+  for (std::size_t i = 0; i < header.points;) {
+    if (rest.text.empty()) {
+      throw InputError(file, "the data end after " + std::to_string(i) +
+                                 " points: POINTS = " + std::to_string(header.points));
+    }
+    const std::vector<std::string_view> words = rest.take_line();
+    if (!words.empty()) read_ascii_point(where(), header, words, i++, cloud);
+  }
+  while (!rest.text.empty()) {
+    if (rest.take_line().empty()) continue;
+    throw InputError(where(), "a line behind the last point: POINTS = " + std::to_string(header.points));
+  }
+}
+
+// binary stores point after point; the raw block of binary_compressed stores field after field.
+void read_binary(const PcdHeader& header, const char* bytes, bool field_after_field, PointCloud& cloud) {
+  const auto value_at = [&](const PcdField& field, std::size_t i) {
+    return field_after_field ? bytes + header.points * field.first_byte + i * field.size * field.count
+                             : bytes + i * header.point_bytes + field.first_byte;
+  };
+  const auto read = [&](const PcdField& field, std::vector<double>& column) {
+    for (std::size_t i = 0; i < header.points; ++i) {
+      float single = 0;
+      if (field.size == 8) {
+        std::memcpy(&column[i], value_at(field, i), 8);
+      } else {
+        std::memcpy(&single, value_at(field, i), 4), column[i] = single;
+      }
+    }
+  };
+  read(header.x, cloud.x), read(header.y, cloud.y), read(header.z, cloud.z);
+  for (std::size_t i = 0; i < cloud.colour.size(); ++i) {
+    std::memcpy(&cloud.colour[i], value_at(*header.colour, i), 4);
+    cloud.colour[i] &= kRgb;
+  }
+}
+
+// binary_compressed: two uint32, the compressed and the raw size in bytes, then the LZF block.
+std::vector<char> read_compressed_block(const std::string& file, const PcdHeader& header,
+                                        std::string_view data) {
+  std::array<std::uint32_t, 2> sizes{};
+  if (data.size() < sizeof sizes) {
+    throw InputError(file, "the data end before the sizes of the compressed block");
+  }
+  std::memcpy(sizes.data(), data.data(), sizeof sizes);
+  data.remove_prefix(sizeof sizes);
+  if (sizes[0] > data.size()) {
+    throw InputError(file, "compressed size = " + std::to_string(sizes[0]) + ": the file has " +
+                               std::to_string(data.size()) + " bytes left");
+  }
+  const std::size_t needed = header.points * header.point_bytes;
+  if (sizes[1] != needed) {
+    throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": allowed " + std::to_string(needed) +
+                               ", as the header says");
+  }
+  return lzf_expand(file, data.substr(0, sizes[0]), needed);
+}
+
+// NaN in all three coordinates fails every distance test. Sensors mark a hole by nan or by the origin.
+void mark_missing_points(PointCloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    if (p.allFinite() && !p.isZero(0)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+PcdCloud read_pcd(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const std::string bytes = read_bytes(file);
+  PcdText rest{bytes};
+  const PcdHeader header = read_pcd_header(name, rest);
+  check_claimed_size(name, header, rest.text.size());
+
+  PcdCloud result{{}, static_cast<int>(header.width), static_cast<int>(header.height)};
+  PointCloud& cloud = result.cloud;
+  cloud.x.resize(header.points), cloud.y.resize(header.points), cloud.z.resize(header.points);
+  if (header.colour) cloud.colour.resize(header.points);
+  if (header.encoding == "ascii") {
+    read_ascii(name, header, rest, cloud);
+  } else if (header.encoding == "binary") {
+    read_binary(header, rest.text.data(), false, cloud);
+  } else {
+    read_binary(header, read_compressed_block(name, header, rest.text).data(), true, cloud);
+  }
+  mark_missing_points(cloud);
+  if (header.height > 1) {
+    cloud.grid_columns = result.width;
+    cloud.image = fit_pinhole(cloud, result.width, result.height);
+  }
+  return result;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// Intrinsics recovered from an organised cloud: what a file that keeps only the points leaves out.
+#pragma once
+
+#include <optional>
+
+#include "core/cloud/point_cloud.h"
+
+namespace remote_touch {
+
+// The pinhole camera that explains a cloud in its camera's frame, point v * width + u being that of pixel (u,
+// v): u = fx x/z + cx and v = fy y/z + cy, each fitted by least squares over the valid points. pixel_slack is
+// 1e-6 px more than the largest residual. Missing points are NaN. No camera: a point is behind it or 0.5 px
+// or more off its pixel, the image is mirrored, or the valid points do not cover two columns and two rows.
+// Pre: width * height points.
+std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height);
+
+}  // namespace remote_touch

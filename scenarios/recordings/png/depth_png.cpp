@@ -1,0 +1,181 @@
+#include "scenarios/recordings/png/depth_png.h"
+
+#include <png.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+// One PNG file being decoded. libpng reports an error by a jump to setjmp, which skips destructors: each step
+// that calls libpng keeps its state in members, and guarded() turns the error into an exception after the
+// jump.
+class PngFile {
+ public:
+  explicit PngFile(const std::filesystem::path& path);
+  ~PngFile() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngFile(const PngFile&) = delete;
+  PngFile& operator=(const PngFile&) = delete;
+
+  int width() const { return static_cast<int>(png_get_image_width(png_, info_)); }
+  int height() const { return static_cast<int>(png_get_image_height(png_, info_)); }
+  int bit_depth() const { return png_get_bit_depth(png_, info_); }
+  int colour_type() const { return png_get_color_type(png_, info_); }
+  std::string pixel_format() const;
+
+  // The rows one after the other: as stored, or as 8-bit red, green, blue.
+  const std::vector<png_byte>& decode_as_stored() { return decode(&PngFile::prepare_as_stored); }
+  const std::vector<png_byte>& decode_as_rgb() { return decode(&PngFile::prepare_as_rgb); }
+
+ private:
+  using Step = void (PngFile::*)();
+
+  [[noreturn]] static void on_error(png_structp png, png_const_charp message);
+  static void on_warning(png_structp, png_const_charp) {}  // the pixels are usable: nothing to say
+
+  void guarded(Step step);
+  const std::vector<png_byte>& decode(Step prepare);
+  void check_claimed_size() const;
+
+  void read_header();
+  void prepare_as_stored();
+  void prepare_as_rgb();
+  void read_pixels();
+
+  std::string name_;
+  std::uintmax_t file_bytes_ = 0;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  char message_[128] = "";
+  std::vector<png_byte> bytes_;
+  std::vector<png_bytep> rows_;
+};
+
+PngFile::PngFile(const std::filesystem::path& path) : name_(path.string()) {
+  std::error_code no_size;
+  file_bytes_ = std::filesystem::file_size(path, no_size);  // fails also for a folder
+  if (no_size) throw InputError(name_, "cannot be read (" + no_size.message() + "): allowed a PNG file");
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) throw InputError(name_, std::string("cannot be opened: ") + std::strerror(errno));
+  png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+  if (!png_) throw std::bad_alloc();
+  info_ = png_create_info_struct(png_);
+  try {
+    if (!info_) throw std::bad_alloc();
+    guarded(&PngFile::read_header);
+  } catch (...) {  // the destructor does not run for a constructor that throws
+    png_destroy_read_struct(&png_, &info_, nullptr);
+    throw;
+  }
+}
+
+void PngFile::on_error(png_structp png, png_const_charp message) {
+  auto* self = static_cast<PngFile*>(png_get_error_ptr(png));
+  std::snprintf(self->message_, sizeof self->message_, "%s", message);
+  png_longjmp(png, 1);
+}
+
+void PngFile::guarded(Step step) {
+  if (setjmp(png_jmpbuf(png_))) {
+    throw InputError(name_, std::string("is not a whole PNG file: ") + message_);
+  }
+  (this->*step)();
+}
+
+void PngFile::read_header() {
+  png_init_io(png_, file_.get());
+  png_read_info(png_, info_);
+}
+
+void PngFile::prepare_as_stored() {
+  png_set_interlace_handling(png_);
+  png_read_update_info(png_, info_);
+}
+
+void PngFile::prepare_as_rgb() {
+  png_set_expand(png_);  // palette and 1, 2, 4 bits to 8
+  png_set_gray_to_rgb(png_);
+  png_set_strip_alpha(png_);
+  prepare_as_stored();
+}
+
+void PngFile::read_pixels() {
+  // Interlaced images too: libpng makes all passes over the rows.
+  png_read_image(png_, rows_.data());
+  png_read_end(png_, nullptr);  // finds a file that was cut short behind the pixels
+}
+
+// A damaged header may claim an image that would not fit in memory. Deflate expands at most 1032 times.
+void PngFile::check_claimed_size() const {
+  constexpr std::uintmax_t kMostExpansion = 1032;
+  const std::uintmax_t claimed = static_cast<std::uintmax_t>(height()) * png_get_rowbytes(png_, info_);
+  if (claimed / kMostExpansion > file_bytes_) {
+    throw InputError(name_, "claims " + std::to_string(width()) + " x " + std::to_string(height()) +
+                                " pixels: more than its " + std::to_string(file_bytes_) + " bytes can hold");
+  }
+}
+
+const std::vector<png_byte>& PngFile::decode(Step prepare) {
+  check_claimed_size();
+  guarded(prepare);
+  const std::size_t row_bytes = png_get_rowbytes(png_, info_);
+  bytes_.resize(row_bytes * height());
+  for (int v = 0; v < height(); ++v) rows_.push_back(bytes_.data() + row_bytes * v);
+  guarded(&PngFile::read_pixels);
+  return bytes_;
+}
+
+std::string PngFile::pixel_format() const {
+  const int type = colour_type();
+  std::string name = std::to_string(bit_depth()) + "-bit ";
+  name += type == PNG_COLOR_TYPE_PALETTE ? "palette" : (type & PNG_COLOR_MASK_COLOR) ? "RGB" : "grey";
+  if (type & PNG_COLOR_MASK_ALPHA) name += " with alpha";
+  return name;
+}
+
+}  // namespace
+
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double farthest_m) {
+  PngFile png(file);
+  if (png.colour_type() != PNG_COLOR_TYPE_GRAY || png.bit_depth() != 16) {
+    throw InputError(file.string(),
+                     "pixels are " + png.pixel_format() + ": allowed 16-bit grey (one channel)");
+  }
+  const std::vector<png_byte>& bytes = png.decode_as_stored();
+  DepthImage depth{png.width(), png.height(), std::vector<double>(bytes.size() / 2)};
+  for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
+    const int value = bytes[2 * i] << 8 | bytes[2 * i + 1];  // PNG is big-endian
+    const double z_m = value * metres_per_unit;
+    depth.z_m[i] = value == 0 || z_m > farthest_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
+  }
+  return depth;
+}
+
+std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height) {
+  PngFile png(file);
+  if (png.bit_depth() > 8) {
+    throw InputError(file.string(), "pixels are " + png.pixel_format() + ": allowed up to 8 bits a channel");
+  }
+  width = png.width(), height = png.height();
+  const std::vector<png_byte>& bytes = png.decode_as_rgb();
+  std::vector<std::uint32_t> colour(bytes.size() / 3);
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    colour[i] = static_cast<std::uint32_t>(bytes[3 * i] << 16 | bytes[3 * i + 1] << 8 | bytes[3 * i + 2]);
+  }
+  return colour;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,22 @@
+// Depth and colour images in PNG files, as RGB-D recordings keep them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "core/cloud/camera.h"
+
+namespace remote_touch {
+
+// A 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
+// measurement) and every z beyond farthest_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
+// finite. Throws InputError if the file is missing, cut short, damaged or of another pixel format.
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double farthest_m);
+
+// Pixel (u, v) is element v * width + u, as 0xRRGGBB; sets width and height. Allowed are RGB and grey of up
+// to 8 bits a channel (alpha is dropped), and palettes. Samples are taken as stored: no gamma or colour
+// profile is applied. Throws InputError as above.
+std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height);
+
+}  // namespace remote_touch

@@ -1,0 +1,170 @@
+#include "scenarios/recordings/recorded_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/rotation.h"
+
+namespace remote_touch {
+
+namespace {
+constexpr std::size_t kMostKept = 8;  // 12 MB each
+}  // namespace
+
+Parameters parameters(RecordedScene::Settings& s) {
+  return {
+      {"path", &s.path, 0, 0, "recording folder, TUM folder, folder of PCD files, or one PCD file"},
+      {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
+      {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
+      {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0, "what follows the last frame"},
+      {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
+      {"farthest_m", &s.farthest_m, 0.01, 100, "depth beyond which a measurement is discarded"},
+      {"truth_radius_m", &s.truth_radius_m, 1e-4, 1, "size of the patch that stands for the true surface"},
+      {"camera_m", &s.camera_m, -100, 100, "where the camera is in the base frame: its registration, 6.2.1"},
+      {"camera_turn_deg", &s.camera_turn_deg, -360, 360,
+       "rotation vector of the camera in the base frame; zero: x right, y down, z forward"},
+  };
+}
+
+std::string conflict(const RecordedScene::Settings& s) {
+  if (s.path.empty()) return "path = \"\": allowed a recording folder or a PCD file";
+  if (s.last_frame >= 0 && s.last_frame < s.first_frame)
+    return "last_frame = " + std::to_string(s.last_frame) +
+           ": allowed first_frame = " + std::to_string(s.first_frame) + " or more, or -1";
+  return {};
+}
+
+RecordingPart input_files(const RecordedScene::Settings& s) {
+  return {s.path, s.first_frame, s.last_frame};
+}
+
+RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
+    : settings_(settings),
+      X_WC_(Eigen::Translation3d(settings.camera_m) * rotation(kRadiansPerDegree * settings.camera_turn_deg)),
+      recording_(index_recording(find_recording(settings.path))) {
+  const FrameRange frames = frames_of(input_files(settings), recording_);
+  first_ = frames.first, count_ = frames.last - frames.first + 1;
+  rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
+}
+
+int RecordedScene::frame_count() const {
+  return settings_.playback == Playback::hold || count_ == 1 ? count_ : std::numeric_limits<int>::max();
+}
+
+// The recorded time stamps, when the frames run once and in order at the recorded rate.
+double RecordedScene::captured_s(int frame) const {
+  if (settings_.playback != Playback::hold || settings_.frame_rate_hz > 0) return frame / rate_hz_;
+  const auto& frames = recording_.frames;
+  return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
+}
+
+// Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...
+std::size_t RecordedScene::source_frame(int frame) const {
+  int place = 0;
+  switch (settings_.playback) {
+    case Playback::hold:
+      place = std::min(frame, count_ - 1);
+      break;
+    case Playback::loop:
+      place = frame % count_;
+      break;
+    case Playback::ping_pong: {
+      const int cycle = std::max(1, 2 * count_ - 2);
+      place = frame % cycle;
+      if (place >= count_) place = cycle - place;
+      break;
+    }
+  }
+  return static_cast<std::size_t>(first_ + place);
+}
+
+// A frame in the base frame. Without a registration the bits stay as they were read.
+PointCloud RecordedScene::registered(std::size_t source) const {
+  PointCloud cloud = read_frame(recording_, source, settings_.farthest_m);
+  if (X_WC_.matrix().isIdentity(0)) return cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p_W = X_WC_ * cloud.point(i);
+    cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
+  }
+  if (cloud.image) cloud.image->X_WC = X_WC_ * cloud.image->X_WC;
+  return cloud;
+}
+
+std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
+  const std::size_t source = source_frame(frame);
+  const auto found =
+      std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.source == source; });
+  if (found != kept_.end()) {
+    std::rotate(kept_.begin(), found, found + 1);
+  } else {
+    if (kept_.size() == kMostKept) kept_.pop_back();
+    kept_.insert(kept_.begin(), {source, make_search(registered(source))});
+  }
+  return kept_.front().points;
+}
+
+std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
+  return measured(frame);
+}
+
+// A search by a grid has the points in another order than the file, which is then read for itself.
+PointCloud RecordedScene::cloud(int frame) const {
+  if (recording_.camera.width > 0) {
+    const auto points = measured(frame);
+    const auto* image = dynamic_cast<const ImageWindowSearch*>(points.get());
+    if (image) return image->cloud();
+  }
+  return registered(source_frame(frame));
+}
+
+namespace {
+
+// The plane through the pixels of a window: mean of all points, and a normal from the differences between
+// opposite halves. Unusable when a pixel is missing or the depths differ by more than the window is wide: an
+// edge.
+struct Patch {
+  Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
+  bool usable = false;
+};
+
+Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v, int half,
+                   double widest_m) {
+  Patch patch;
+  if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
+  Vec3 across = Vec3::Zero(), down = Vec3::Zero();
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (int y = -half; y <= half; ++y) {
+    for (int x = -half; x <= half; ++x) {
+      const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
+      if (!p.allFinite()) return patch;
+      patch.mean += p, across += x * p, down += y * p;
+      nearest = std::min(nearest, p.z()), farthest = std::max(farthest, p.z());
+    }
+  }
+  patch.mean /= (2 * half + 1) * (2 * half + 1);
+  patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
+  patch.usable = farthest - nearest <= widest_m && patch.normal.allFinite();
+  return patch;
+}
+
+}  // namespace
+
+double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const Vec3 p_C = X_WC_.inverse() * p_W;
+  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
+  const auto points = measured(newest_frame(time_s));
+  const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
+  if (!cloud.image) return unknown;
+  const CameraIntrinsics& camera = cloud.image->camera;
+  const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
+  const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
+  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
+  const int half = std::max(1, static_cast<int>(camera.fx * settings_.truth_radius_m / p_C.z()));
+  const Patch patch = patch_around(cloud, camera, static_cast<int>(u), static_cast<int>(v), half,
+                                   4 * settings_.truth_radius_m);
+  return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,66 @@
+// A recorded sequence of depth images or organised clouds, streamed at the rate it was recorded.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/recordings/recording.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+// The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another.
+class RecordedScene final : public Scenario {
+ public:
+  enum class Playback { hold, loop, ping_pong };
+  struct Settings {
+    std::string path;
+    int first_frame = 0;
+    int last_frame = -1;
+    Playback playback = Playback::hold;
+    double frame_rate_hz = 0;
+    double farthest_m = 3;
+    double truth_radius_m = 0.006;
+    Vec3 camera_m = Vec3::Zero();  // place and rotation vector of the camera in the base frame
+    Vec3 camera_turn_deg = Vec3::Zero();
+  };
+
+  // Throws InputError when the recording cannot be read.
+  RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return rate_hz_; }
+  int frame_count() const override;
+  double captured_s(int frame) const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // There is no truth but the measurement: the distance to a plane through the pixels around p's, within
+  // truth_radius_m, of the newest frame; positive towards the camera. NaN at holes and depth edges.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+
+ private:
+  std::size_t source_frame(int frame) const;
+  PointCloud registered(std::size_t source) const;
+  std::shared_ptr<const NeighbourSearch> measured(int frame) const;
+
+  const Settings settings_;
+  const RigidTransform X_WC_;
+  RecordingIndex recording_;
+  int first_ = 0, count_ = 0;
+  double rate_hz_ = 0;
+  // The frames asked for last, the newest in front: renderer, trajectory and truth ask in turn, and a short
+  // part is played many times.
+  struct Kept {
+    std::size_t source;
+    std::shared_ptr<const NeighbourSearch> points;
+  };
+  mutable std::vector<Kept> kept_;
+};
+
+Parameters parameters(RecordedScene::Settings& s);
+std::string conflict(const RecordedScene::Settings& s);
+RecordingPart input_files(const RecordedScene::Settings& s);  // what the scene reads
+
+}  // namespace remote_touch

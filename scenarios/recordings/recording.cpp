@@ -1,0 +1,267 @@
+#include "scenarios/recordings/recording.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "core/cloud/camera.h"
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/pcd/pcd_file.h"
+#include "scenarios/recordings/png/depth_png.h"
+#include "scenarios/recordings/tum_layout.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& problem) {
+  throw InputError(file.string(), problem);
+}
+
+constexpr double kNominalRate_hz = 30;  // of the Kinect class; used where a recording does not tell
+
+// What camera.json tells of a camera; the rate, which TUM folders do not need, is read apart.
+struct CameraFile {
+  CameraIntrinsics camera;
+  double metres_per_unit = 0;
+  bool colour_registered = false;
+};
+
+// The defaults of the TUM RGB-D benchmark.
+constexpr CameraFile kTumCamera = {{640, 480, 525, 525, 319.5, 239.5}, 1.0 / 5000, true};
+
+// camera.json: an object with these keys only, so that a misspelt one is found.
+nlohmann::json parse_camera_file(const fs::path& file) {
+  static const nlohmann::json kKeys = {
+      "width", "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered"};
+  std::ifstream stream(file);
+  try {
+    // The keys hold plain values. Deeper nesting is no camera, and deep enough it would exhaust the stack.
+    const auto refuse_deep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+      if (depth > 4) refuse(file, "is nested too deep: allowed an object of plain values");
+      return true;
+    };
+    nlohmann::json json = nlohmann::json::parse(stream, refuse_deep);
+    if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": allowed object");
+    for (const auto& [key, value] : json.items()) {
+      if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
+      refuse(file, "key " + nlohmann::json(key).dump() + ": allowed " + kKeys.dump());
+    }
+    return json;
+  } catch (const nlohmann::json::exception& error) {
+    refuse(file, std::string("is not JSON: ") + error.what());
+  }
+}
+
+// A finite number that must be there.
+double number(const fs::path& file, const nlohmann::json& json, const std::string& key, bool positive) {
+  const auto found = json.find(key);
+  if (found == json.end()) refuse(file, "has no key '" + key + "'");
+  const double value = found->is_number() ? found->get<double>() : std::nan("");
+  if (!std::isfinite(value) || (positive && value <= 0)) {
+    refuse(file, key + " = " + found->dump() + ": allowed a number" + (positive ? " above 0" : ""));
+  }
+  return value;
+}
+
+// Up to 65535: more pixels a side than any depth camera has.
+int pixel_count(const fs::path& file, const nlohmann::json& json, const std::string& key) {
+  constexpr double kMost = 65535;
+  const double value = number(file, json, key, true);
+  if (value == std::floor(value) && value <= kMost) return static_cast<int>(value);
+  refuse(file, key + " = " + json[key].dump() + ": allowed a whole number from 1 to 65535");
+}
+
+// Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
+double frame_rate(const fs::path& file, const nlohmann::json& json) {
+  constexpr double kMost_hz = 10000;
+  const double value = number(file, json, "frame_rate_hz", true);
+  if (value <= kMost_hz) return value;
+  refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": allowed above 0 to 10000");
+}
+
+// The intrinsics and the scale, all needed; colour_registered is optional.
+CameraFile read_camera(const fs::path& file, const nlohmann::json& json) {
+  CameraFile result;
+  CameraIntrinsics& camera = result.camera;
+  camera.width = pixel_count(file, json, "width"), camera.height = pixel_count(file, json, "height");
+  camera.fx = number(file, json, "fx", true), camera.fy = number(file, json, "fy", true);
+  camera.cx = number(file, json, "cx", false), camera.cy = number(file, json, "cy", false);
+  result.metres_per_unit = number(file, json, "depth_scale_m", true);
+  if (const auto found = json.find("colour_registered"); found != json.end()) {
+    if (!found->is_boolean()) {
+      refuse(file, "colour_registered = " + found->dump() + ": allowed true, false");
+    }
+    result.colour_registered = found->get<bool>();
+  }
+  return result;
+}
+
+// The files of a folder with this extension, in the order that index_recording promises.
+std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == extension) files.push_back(entry.path());
+  }
+  const auto stem = [](const fs::path& file) { return file.stem().string(); };
+  bool all_numbers = true;
+  std::size_t longest = 0;
+  for (const fs::path& file : files) {
+    all_numbers &= stem(file).find_first_not_of("0123456789") == std::string::npos;
+    longest = std::max(longest, stem(file).size());
+  }
+  // Numbers padded to one length are in order where their texts are: 9.png comes before 10.png.
+  const auto key = [&](const fs::path& file) {
+    const std::string padding(all_numbers ? longest - stem(file).size() : 0, '0');
+    return std::pair(padding + stem(file), file);
+  };
+  std::sort(files.begin(), files.end(),
+            [&](const fs::path& a, const fs::path& b) { return key(a) < key(b); });
+  return files;
+}
+
+// camera.json is optional here, and a rate in it is not used: the stamps tell the rate.
+RecordingIndex index_tum(const fs::path& folder) {
+  const std::vector<StampedFile> depth = read_stamped_list(folder / "depth.txt");
+  std::vector<StampedFile> colour;
+  CameraFile camera = kTumCamera;
+  const fs::path camera_file = folder / "camera.json";
+  RecordingIndex index;
+  index.texts = {folder / "depth.txt"};
+  if (fs::exists(camera_file)) {
+    camera = read_camera(camera_file, parse_camera_file(camera_file));
+    index.texts.push_back(camera_file);
+  }
+  if (camera.colour_registered && fs::exists(folder / "rgb.txt")) {
+    colour = read_stamped_list(folder / "rgb.txt");
+    index.texts.push_back(folder / "rgb.txt");
+  }
+  index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
+  index.frames = associate_stamps(depth, colour);
+  const double intervals = static_cast<double>(depth.size() - 1);
+  index.frame_rate_hz = intervals > 0 ? intervals / index.frames.back().captured_s : kNominalRate_hz;
+  return index;
+}
+
+// Frame j of a steady rate is captured at j / rate.
+void append_frames(RecordingIndex& index, const std::vector<fs::path>& files) {
+  for (std::size_t j = 0; j < files.size(); ++j) {
+    index.frames.push_back({static_cast<double>(j) / index.frame_rate_hz, files[j], {}});
+  }
+}
+
+// A colour image has the name of its depth image; a frame without one stays without colour.
+RecordingIndex index_depth_folder(const fs::path& folder) {
+  const fs::path camera_file = folder / "camera.json";
+  if (!fs::exists(camera_file)) {
+    refuse(camera_file,
+           "is missing: depth images need {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}");
+  }
+  const nlohmann::json json = parse_camera_file(camera_file);
+  const CameraFile camera = read_camera(camera_file, json);
+  RecordingIndex index;
+  index.texts = {camera_file};
+  index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
+  index.frame_rate_hz = frame_rate(camera_file, json);
+  append_frames(index, files_in_order(folder / "depth", ".png"));
+  if (index.frames.empty()) refuse(folder / "depth", "holds no .png file");
+  for (RecordedFrame& frame : index.frames) {
+    const fs::path colour = folder / "rgb" / frame.depth.filename();
+    if (camera.colour_registered && fs::exists(colour)) frame.colour = colour;
+  }
+  return index;
+}
+
+// Of camera.json only the rate serves: every PCD file tells its own intrinsics.
+RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
+  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}};
+  if (fs::exists(camera_file)) {
+    index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
+    index.texts = {camera_file};
+  }
+  append_frames(index, files);
+  return index;
+}
+
+// One line for the user: what was found, and how it will be taken.
+std::string describe(const fs::path& path, const RecordingIndex& index) {
+  std::ostringstream text;
+  const fs::path clean = (path / "").lexically_normal().parent_path();  // "DIR" and "DIR/" alike
+  text << clean.filename().string() << ": " << index.frames.size() << " frame(s) from "
+       << (index.kind == RecordingIndex::Kind::pcd ? "PCD" : "depth PNG") << " at " << index.frame_rate_hz
+       << " Hz";
+  if (index.camera.width > 0) text << ", " << index.camera.width << " x " << index.camera.height << " pixels";
+  return text.str();
+}
+
+// The layouts in the order that index_recording promises.
+RecordingIndex index_any(const fs::path& path) {
+  if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
+  if (!fs::is_directory(path)) {
+    refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
+                     ": allowed a recording folder or a .pcd file");
+  }
+  if (fs::exists(path / "depth.txt")) return index_tum(path);
+  if (fs::is_directory(path / "depth")) return index_depth_folder(path);
+  const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
+  if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
+  refuse(path, "is no recording: allowed a folder that holds depth.txt (TUM), depth/*.png or *.pcd");
+}
+
+// Pixel (u, v) must be point v * width + u in depth, colour and camera alike.
+void check_size(const fs::path& file, int width, int height, const CameraIntrinsics& camera) {
+  if (width == camera.width && height == camera.height) return;
+  refuse(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: allowed " +
+                   std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                   ", as the camera has");
+}
+
+}  // namespace
+
+RecordingIndex list_recording(const fs::path& path) {
+  try {
+    return index_any(path);
+  } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
+    refuse(error.path1(), "cannot be read: " + error.code().message());
+  }
+}
+
+RecordingIndex index_recording(const fs::path& path) {
+  RecordingIndex index = list_recording(path);
+  if (index.kind == RecordingIndex::Kind::pcd) {
+    const PcdCloud first = read_pcd(index.frames.front().depth);
+    if (first.cloud.image) index.camera = first.cloud.image->camera;
+  }
+  index.description = describe(path, index);
+  return index;
+}
+
+PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double farthest_m) {
+  assert(frame < index.frames.size());
+  const RecordedFrame& source = index.frames[frame];
+  if (index.kind == RecordingIndex::Kind::pcd) {
+    PointCloud cloud = read_pcd(source.depth).cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!(cloud.z[i] > farthest_m)) continue;
+      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    return cloud;
+  }
+  const DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, farthest_m);
+  check_size(source.depth, depth.width, depth.height, index.camera);
+  PointCloud cloud = cloud_from_depth(depth, index.camera, RigidTransform::Identity());
+  if (!source.colour.empty()) {
+    int width = 0, height = 0;
+    cloud.colour = read_colour_png(source.colour, width, height);
+    check_size(source.colour, width, height, index.camera);
+  }
+  return cloud;
+}
+
+}  // namespace remote_touch

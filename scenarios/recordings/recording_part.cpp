@@ -1,0 +1,68 @@
+#include "scenarios/recordings/recording_part.h"
+
+#include <cstdlib>
+#include <map>
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+std::string find_recording(const std::string& path) {
+  if (fs::exists(path)) return path;
+  const char* data = std::getenv("REMOTE_TOUCH_DATA");
+  if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
+    return (fs::path(data) / path).string();
+  throw MissingRecording(
+      path,
+      std::string(
+          "no such recording, image or mesh; allowed a folder or file here or below REMOTE_TOUCH_DATA") +
+          (data != nullptr ? std::string(" = ") + data : " (not set)"));
+}
+
+FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording) {
+  const int available = static_cast<int>(recording.frames.size());
+  const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
+  if (part.first_frame >= available || last >= available)
+    throw InputError(part.path, "first_frame = " + std::to_string(part.first_frame) +
+                                    ", last_frame = " + std::to_string(part.last_frame) + ": allowed 0 to " +
+                                    std::to_string(available - 1));
+  return {part.first_frame, last};
+}
+
+namespace {
+
+// Images, the meshes of tools, and live sessions: nothing that a recording of frames is made from.
+bool is_single_file(const fs::path& file) {
+  std::string ending = file.extension().string();
+  if (ending == ".png") return true;
+  for (char& c : ending)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".h5";
+}
+
+}  // namespace
+
+std::vector<InputFile> files_of(const RecordingPart& part) {
+  const fs::path found = find_recording(part.path);
+  if (is_single_file(found)) return {{found.filename().generic_string(), found}};
+  const RecordingIndex recording = list_recording(found);
+  const FrameRange frames = frames_of(part, recording);
+  // Absolute, because a list may name files by absolute paths: those come as ../../...
+  const fs::path place = fs::absolute(found);
+  const fs::path folder = fs::is_directory(place) ? place : place.parent_path();
+  std::map<std::string, fs::path> files;
+  const auto add = [&](const fs::path& file) {
+    files.emplace(fs::absolute(file).lexically_relative(folder).generic_string(), file);
+  };
+  for (const fs::path& text : recording.texts) add(text);
+  for (int i = frames.first; i <= frames.last; ++i) {
+    const RecordedFrame& frame = recording.frames[static_cast<std::size_t>(i)];
+    add(frame.depth);
+    if (!frame.colour.empty()) add(frame.colour);
+  }
+  std::vector<InputFile> list;
+  for (const auto& [name, file] : files) list.push_back({name, file});
+  return list;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,69 @@
+#include "scenarios/recordings/tum_layout.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+namespace {
+
+// Seconds since an arbitrary origin; digits that from_chars does not take to the end, nan and inf are
+// refused. where: the list with ":line".
+double read_stamp(const std::string& where, const std::string& stamp) {
+  double stamp_s = 0;
+  const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
+  if (error == std::errc() && end == stamp.data() + stamp.size() && std::isfinite(stamp_s)) return stamp_s;
+  throw InputError(where, "timestamp '" + stamp.substr(0, 32) + "': allowed a number of seconds");
+}
+
+}  // namespace
+
+std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
+  std::ifstream stream(list);
+  std::vector<StampedFile> files;
+  std::string line;
+  // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    if (line.ends_with('\r')) line.pop_back();
+    std::istringstream words(line);
+    std::string stamp, name, surplus;
+    if (!(words >> stamp) || stamp.front() == '#') continue;
+    const std::string where = list.string() + ":" + std::to_string(line_number);
+    const double stamp_s = read_stamp(where, stamp);
+    if (!(words >> name) || words >> surplus) {
+      throw InputError(where, "'" + line.substr(0, 64) + "': allowed one timestamp and one file name");
+    }
+    if (!files.empty() && stamp_s <= files.back().stamp_s) {
+      throw InputError(where, "timestamp " + stamp + ": allowed above that of the line before");
+    }
+    files.push_back({stamp_s, list.parent_path() / name});
+    const std::filesystem::path& file = files.back().file;
+    if (!std::filesystem::is_regular_file(file)) throw InputError(where, "no file " + file.string());
+  }
+  if (files.empty()) {
+    throw InputError(list.string(), "lists no file: needed are lines 'timestamp filename'");
+  }
+  return files;
+}
+
+std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
+                                            const std::vector<StampedFile>& colour) {
+  constexpr double kFarthestStamp_s = 0.02;  // the tolerance of the benchmark's own association
+  std::vector<RecordedFrame> frames;
+  for (const StampedFile& image : depth) {
+    RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
+    double nearest_s = kFarthestStamp_s;
+    for (const StampedFile& other : colour) {
+      const double off_s = std::abs(other.stamp_s - image.stamp_s);
+      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other.file;
+    }
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,27 @@
+// The lists of a TUM RGB-D folder (depth.txt, rgb.txt), and which colour image belongs to which depth image.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "scenarios/recordings/recording.h"
+
+namespace remote_touch {
+
+// One line of a list; the stamp counts from an arbitrary origin.
+struct StampedFile {
+  double stamp_s = 0;
+  std::filesystem::path file;
+};
+
+// Lines "timestamp_s filename", relative to the list's folder, and # comments. Throws InputError about the
+// line if it is anything else, the stamps do not strictly increase or the file is not there; about the list
+// if it is empty.
+std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list);
+
+// A frame for each depth image, counted from the first; its colour image is the one with the nearest stamp
+// within 0.02 s (the last of equals), or none. Pre: depth is not empty.
+std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
+                                            const std::vector<StampedFile>& colour);
+
+}  // namespace remote_touch

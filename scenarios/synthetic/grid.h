@@ -1,0 +1,32 @@
+// A rectangular grid of points in the x-z plane, and the noise that a scenario puts on its points.
+#pragma once
+
+#include <memory>
+
+#include "core/cloud/point_cloud.h"
+#include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
+#include "core/random/noise.h"
+
+namespace remote_touch {
+
+// columns x rows points, spacing_m apart; point row * columns + column. The middle of the grid lies at the
+// origin of x and z, moved by the phases in units of the spacing.
+struct Grid {
+  int columns = 100;
+  int rows = 100;
+  double spacing_m = 0.0015;
+  double phase_x = 0;
+  double phase_z = 0;
+
+  int size() const { return columns * rows; }
+  double x(int column) const { return (column - 0.5 * (columns - 1) + phase_x) * spacing_m; }
+  double z(int row) const { return (row - 0.5 * (rows - 1) + phase_z) * spacing_m; }
+};
+
+Parameters parameters(Grid& grid);
+
+// Adds zero-mean Gaussian noise of standard deviation sigma_m to x, y and z of every point.
+void add_noise(PointCloud& cloud, double sigma_m, const NoiseStream& stream, const Kernels& kernels);
+
+}  // namespace remote_touch

@@ -1,0 +1,40 @@
+#include "scenarios/synthetic/listed_points.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace remote_touch {
+
+Parameters parameters(ListedPoints::Settings& s) {
+  return {
+      {"points", Rows{{"x_m", "y_m", "z_m"}, &s.points}, -100, 100, "the points, world frame"},
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames per second, when fixtures change with time"},
+  };
+}
+
+std::string conflict(const ListedPoints::Settings& s) {
+  return s.points.empty() ? "points: allowed one or more" : "";
+}
+
+ListedPoints::ListedPoints(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+
+PointCloud ListedPoints::cloud(int) const {
+  PointCloud cloud;
+  const std::vector<double>& p = settings_.points;
+  for (std::size_t i = 0; i + 2 < p.size(); i += 3) cloud.append({p[i], p[i + 1], p[i + 2]});
+  return cloud;
+}
+
+std::shared_ptr<const NeighbourSearch> ListedPoints::points(int frame) const {
+  return make_search(cloud(frame));
+}
+
+double ListedPoints::signed_distance(const Vec3& p_W, double) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  const std::vector<double>& p = settings_.points;
+  for (std::size_t i = 0; i + 2 < p.size(); i += 3)
+    nearest = std::min(nearest, (p_W - Vec3(p[i], p[i + 1], p[i + 2])).norm());
+  return nearest;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,49 @@
+// A flat cloud with normals that rests and then rises: a slab that lifts a tool.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/synthetic/grid.h"
+
+namespace remote_touch {
+
+class MovingPlane final : public Scenario {
+ public:
+  struct Settings {
+    Grid grid{100, 100, 0.002, 0, 0};
+    double frame_rate_hz = 30;
+    double start_m = -0.06;
+    double wait_s = 1;
+    double speed_m_per_s = 0.1;
+    double acceleration_m_per_s2 = 0;
+    double rise_m = 0.1;
+    double noise_sigma_m = 0;
+  };
+
+  MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  // Up to the first frame in which the plane has come to rest, and stays.
+  int frame_count() const override { return frame_count_; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // Over the plane as it is at that time, between frames too.
+  double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - height(time_s); }
+  double surface_height(double, double, double time_s) const override { return height(time_s); }
+
+ private:
+  double height(double time_s) const;
+
+  const Settings settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+  double rising_s_ = 0;  // how long
+  int frame_count_ = 1;
+};
+
+Parameters parameters(MovingPlane::Settings& s);
+std::string conflict(const MovingPlane::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,119 @@
+#include "scenarios/synthetic/moving_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scenarios/synthetic/noisy_grid_search.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Where a line upwards through (x, z) meets the surface. Going up it comes ever farther above a height field
+// that is nowhere turned to the upright.
+double height_over(double x, double z, const Shape& shape, const ShapePose& pose) {
+  if (pose.sine == 0) return pose.y_m + shape.height(x - pose.x_m, z);
+  const auto is_above = [&](double y) {
+    const Vec3 p_S = pose.to_S({x, y, z});
+    return p_S.y() > shape.height(p_S.x(), p_S.z());
+  };
+  double reach = 0.001;
+  while (reach < 1e6 && (!is_above(pose.y_m + reach) || is_above(pose.y_m - reach))) reach *= 2;
+  double low = pose.y_m - reach, high = pose.y_m + reach;
+  for (double middle = pose.y_m; middle > low && middle < high; middle = 0.5 * (low + high))
+    (is_above(middle) ? high : low) = middle;
+  return high;
+}
+
+}  // namespace
+
+Parameters parameters(MovingShape::Settings& s) {
+  Parameters list = parameters(s.grid);
+  const auto add = [&list](const Parameters& more) { list.insert(list.end(), more.begin(), more.end()); };
+  add({{"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"}});
+  add(parameters(s.shape));
+  add(parameters(s.motion));
+  add({
+      {"sheets", &s.sheets, 1, 5, "parallel surfaces, the first on top; the truth is about the first"},
+      {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
+      {"redraw_noise", &s.redraw_noise, 0, 1, "new noise for every frame, or the first frame's for all"},
+      {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000,
+       "from this frame on there are no points; -1: never"},
+      {"empty_frame", &s.empty_frame, -1, 1000000, "this one frame has no points; -1: none"},
+      {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
+       "distances are to the surface as the newest frame shows it, or as it moves between frames"},
+  });
+  return list;
+}
+
+std::string conflict(const MovingShape::Settings& s) {
+  const double steepest = steepest_deg(s.shape) + std::abs(s.motion.tilt_deg) + s.motion.rock_deg;
+  if (steepest < 89) return {};
+  return "tilt_deg = " + std::to_string(s.motion.tilt_deg) +
+         ": allowed so that slope, tilt and rocking stay below 89 degrees together, not " +
+         std::to_string(steepest);
+}
+
+MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings),
+      key_(key),
+      kernels_(kernels),
+      shape_(settings.shape, settings.grid),
+      motion_(settings.motion, settings.frame_rate_hz) {
+  const Grid& grid = settings_.grid;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      nodes_S_.push_back(shape_.point(grid.x(column), grid.z(row)));
+}
+
+int MovingShape::frame_count() const {
+  if (settings_.vanish_at_frame >= 0) return settings_.vanish_at_frame + 1;
+  if (!motion_.ever_rests()) return std::numeric_limits<int>::max();
+  return std::max(motion_.lift_frames(), settings_.empty_frame + 2);
+}
+
+NoiseStream MovingShape::noise(int frame) const {
+  const auto drawn = static_cast<std::uint32_t>(settings_.redraw_noise ? frame : 0);
+  return noise_stream(key_, NoiseUse::point_position, drawn);
+}
+
+std::shared_ptr<const NeighbourSearch> MovingShape::points(int frame) const {
+  const bool is_a_level_grid =
+      settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 && motion_.is_a_lift_alone();
+  if (is_a_level_grid && !is_empty(frame))
+    return std::make_shared<NoisyGridSearch>(settings_.grid, motion_.of_frame(frame).y_m,
+                                             settings_.noise_sigma_m, noise(frame));
+  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
+}
+
+PointCloud MovingShape::cloud(int frame) const {
+  PointCloud cloud;
+  if (is_empty(frame)) return cloud;
+  const ShapePose pose = motion_.of_frame(frame);
+  const std::size_t size = nodes_S_.size() * static_cast<std::size_t>(settings_.sheets);
+  cloud.x.reserve(size), cloud.y.reserve(size), cloud.z.reserve(size);
+  for (int sheet = 0; sheet < settings_.sheets; ++sheet) {
+    const Vec3 below(0, sheet * settings_.sheet_spacing_m, 0);
+    for (const Vec3& node_S : nodes_S_) cloud.append(pose.to_W(node_S - below));
+  }
+  cloud.grid_columns = settings_.grid.columns;  // sheet after sheet, each whole rows
+  add_noise(cloud, settings_.noise_sigma_m, noise(frame), kernels_);
+  return cloud;
+}
+
+double MovingShape::signed_distance(const Vec3& p_W, double time_s) const {
+  const int frame = newest_frame(time_s);
+  if (has_vanished(frame)) return std::numeric_limits<double>::quiet_NaN();
+  const bool moving = settings_.truth == Truth::moving;
+  return shape_.signed_distance((moving ? motion_.at(time_s) : motion_.of_frame(frame)).to_S(p_W));
+}
+
+double MovingShape::surface_height(double x, double z, double time_s) const {
+  const bool vanishes = settings_.vanish_at_frame >= 0;
+  const double until_s = vanishes ? captured_s(settings_.vanish_at_frame) : time_s;
+  return height_over(x, z, shape_, motion_.at(std::min(time_s, until_s)));
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,68 @@
+// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: what renderers are
+// compared on beside the lifts of 4.3.2.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/interface/scenario.h"
+#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/shape.h"
+#include "scenarios/synthetic/shape_motion.h"
+
+namespace remote_touch {
+
+// The points are the grid's nodes on the shape, row after row, sheet after sheet, carried along by the
+// motion; noise is added in the world frame. A small grid is a patch, its border an edge to slide over. A
+// flat lift has the same bits as a moving-lift of the same settings.
+class MovingShape final : public Scenario {
+ public:
+  enum class Truth { newest_frame, moving };
+  struct Settings {
+    Grid grid{80, 80, 0.0015, 0, 0};
+    double frame_rate_hz = 30;
+    Shape::Settings shape;
+    ShapeMotion::Settings motion;
+    int sheets = 1;
+    double sheet_spacing_m = 0.015;
+    double noise_sigma_m = 0;
+    bool redraw_noise = true;
+    int vanish_at_frame = -1;
+    int empty_frame = -1;
+    Truth truth = Truth::newest_frame;
+  };
+
+  MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  // Up to the last frame that differs from the one before; noise is redrawn in those frames alone.
+  int frame_count() const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  // Without points where the frame is empty.
+  PointCloud cloud(int frame) const override;
+  // To the first sheet, positive above it, as Shape tells: where the newest frame shows it (an empty one:
+  // would have shown it), or as it moves on between frames. NaN once it has vanished.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  // Of the first sheet as it moves, continued beyond its border, so that a hand always has something to
+  // press; after it has vanished the height that it had then.
+  double surface_height(double x, double z, double time_s) const override;
+
+ private:
+  bool has_vanished(int frame) const {
+    return settings_.vanish_at_frame >= 0 && frame >= settings_.vanish_at_frame;
+  }
+  bool is_empty(int frame) const { return has_vanished(frame) || frame == settings_.empty_frame; }
+  NoiseStream noise(int frame) const;
+
+  const Settings settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+  const Shape shape_;
+  const ShapeMotion motion_;
+  std::vector<Vec3> nodes_S_;  // of the first sheet
+};
+
+Parameters parameters(MovingShape::Settings& s);
+std::string conflict(const MovingShape::Settings& s);
+
+}  // namespace remote_touch

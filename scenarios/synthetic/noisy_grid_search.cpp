@@ -1,0 +1,96 @@
+#include "scenarios/synthetic/noisy_grid_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+// Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who
+// asks for more than a proxy needs asks once a frame.
+constexpr double kSpareMargin_m = 0.010, kLargestOfProxy_m = 0.025;
+// Far above the rounding of sums of metres.
+constexpr double kRounding_m = 1e-9;
+}  // namespace
+
+NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
+    : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
+  index_.grow(size() + kLanes), x_asks_.grow(static_cast<std::size_t>(grid.columns));
+  x_.grow(size()), y_.grow(size()), z_.grow(size());
+}
+
+bool NoisyGridSearch::Cylinder::holds(const Ball& ball) const {
+  return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius + kRounding_m <= radius_m;
+}
+
+// The columns or rows whose undisturbed coordinate lies within reach of the centre.
+NoisyGridSearch::Range NoisyGridSearch::within(double centre, double reach, double start, double spacing,
+                                               int count) {
+  const auto clamped = [count](double place) {
+    return static_cast<int>(std::clamp(place, -1.0, static_cast<double>(count)));
+  };
+  return {std::max(0, clamped(std::ceil((centre - reach - start) / spacing))),
+          std::min(count - 1, clamped(std::floor((centre + reach - start) / spacing)))};
+}
+
+// First the points that can come into the cylinder at all, by their random words; then their noise.
+void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) const {
+  const double inner = cylinder.radius_m + kRounding_m, reach = inner + kLargestNormal * sigma_m_;
+  const Range columns = within(cylinder.x, reach, grid_.x(0), grid_.spacing_m, grid_.columns);
+  const Range rows = within(cylinder.z, reach, grid_.z(0), grid_.spacing_m, grid_.rows);
+  // Its noise must bring a point at this offset from the axis towards it.
+  const auto asks = [&](double offset) {
+    const double outside = std::abs(offset) - inner;
+    return outside > 0 ? asks_of(outside / sigma_m_, -offset) : asks_of(0, 0);
+  };
+  const auto width = static_cast<std::size_t>(std::max(0, columns.last - columns.first + 1));
+  for (std::size_t i = 0; i < width; ++i)
+    x_asks_[i] = asks(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x);
+  std::size_t candidates = 0;
+  for (int row = rows.first; row <= rows.last; ++row)
+    candidates +=
+        kernels.candidates(stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width,
+                           x_asks_.data(), asks(grid_.z(row) - cylinder.z), index_.data() + candidates);
+  make_points(candidates, cylinder, kernels);
+  made_ = cylinder;
+}
+
+// The noisy points of the first indices; those outside the cylinder are dropped.
+void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylinder,
+                                  const Kernels& kernels) const {
+  constexpr std::size_t kChunk = 256;
+  double nx[kChunk] = {}, ny[kChunk] = {}, nz[kChunk] = {};
+  const double squared = cylinder.radius_m * cylinder.radius_m;
+  const auto columns = static_cast<std::uint32_t>(grid_.columns);
+  std::uint32_t row_start = 0;  // the points rise, so that a new row is rare
+  double row_z = 0;
+  count_ = 0;
+  for (std::size_t done = 0; done < candidates; done += kChunk) {
+    const std::size_t chunk = std::min(kChunk, candidates - done);
+    if (sigma_m_ > 0) kernels.normals(stream_, index_.data() + done, chunk, nx, ny, nz);
+    for (std::size_t i = 0; i < chunk; ++i) {
+      const std::uint32_t point = index_[done + i];
+      if (point - row_start >= columns || (done == 0 && i == 0)) {
+        row_start = point / columns * columns;
+        row_z = grid_.z(static_cast<int>(point / columns));
+      }
+      const double x = grid_.x(static_cast<int>(point - row_start)) + sigma_m_ * nx[i];
+      const double z = row_z + sigma_m_ * nz[i];
+      const double dx = x - cylinder.x, dz = z - cylinder.z;
+      // Every candidate is stored, and only those inside move the end on.
+      x_[count_] = x, y_[count_] = height_m_ + sigma_m_ * ny[i], z_[count_] = z;
+      index_[count_] = point;
+      count_ += dx * dx + dz * dz <= squared ? 1 : 0;
+    }
+  }
+}
+
+void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  const double reach = ball.radius + kLargestNormal * sigma_m_ + kRounding_m;
+  if (std::abs(ball.centre.y() - height_m_) > reach) return;
+  const double spare_m = ball.radius <= kLargestOfProxy_m ? kSpareMargin_m : 0;
+  if (!made_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
+  out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,45 @@
+// A flat grid whose noise is made only where it is asked for.
+#pragma once
+
+#include "core/random/noise.h"
+#include "core/search/neighbour_search.h"
+#include "scenarios/synthetic/grid.h"
+
+namespace remote_touch {
+
+// Points (x, height, z) of the grid, each coordinate plus sigma times a standard normal. The result is
+// bit-identical to making every point: a normal has a hard bound (kLargestNormal), so points that start too
+// far away cannot come near; of the others only those are made whose random words let them move far enough.
+// Keeps the points made around the last place asked for, so it serves one reader at a time.
+class NoisyGridSearch final : public NeighbourSearch {
+ public:
+  NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream);
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+  std::size_t size() const override { return static_cast<std::size_t>(grid_.size()); }
+  int organised_columns() const override { return grid_.columns; }
+
+ private:
+  // Points at any height whose x and z lie within radius_m of the axis.
+  struct Cylinder {
+    double x = 0, z = 0, radius_m = -1;
+    bool holds(const Ball& ball) const;
+  };
+  struct Range {
+    int first, last;
+  };
+  static Range within(double centre, double reach, double start, double spacing, int count);
+  void make(const Cylinder& cylinder, const Kernels& kernels) const;
+  void make_points(std::size_t candidates, const Cylinder& cylinder, const Kernels& kernels) const;
+
+  const Grid grid_;
+  const double height_m_, sigma_m_;
+  const NoiseStream stream_;
+  // Room for all points, so that a query never allocates.
+  mutable Cylinder made_;
+  mutable std::size_t count_ = 0;
+  mutable Room<std::uint32_t> index_;
+  mutable Room<std::uint64_t> x_asks_;
+  mutable Room<double> x_, y_, z_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,57 @@
+#include "scenarios/synthetic/panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+namespace {
+
+// A border that falls on a point of the grid counts, and distances that differ by rounding are equal.
+constexpr double kSame_m = 1e-9;
+
+int first_index(double half_m, double phase_m, double spacing_m) {
+  return static_cast<int>(std::ceil((-half_m - phase_m - kSame_m) / spacing_m));
+}
+int last_index(double half_m, double phase_m, double spacing_m) {
+  return static_cast<int>(std::floor((half_m - phase_m + kSame_m) / spacing_m));
+}
+
+}  // namespace
+
+Vec3 FlatPanel::nearest(const Vec3& p) const {
+  const Vec3 from_centre = p - centre;
+  return centre + std::clamp(from_centre.dot(u), -half_u_m, half_u_m) * u +
+         std::clamp(from_centre.dot(v()), -half_v_m, half_v_m) * v();
+}
+
+void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid) {
+  const double s = grid.spacing_m;
+  const Vec3 v = panel.v();
+  const int last_u = last_index(panel.half_u_m, grid.phase_u_m, s);
+  const int last_v = last_index(panel.half_v_m, grid.phase_v_m, s);
+  for (int j = first_index(panel.half_v_m, grid.phase_v_m, s); j <= last_v; ++j)
+    for (int i = first_index(panel.half_u_m, grid.phase_u_m, s); i <= last_u; ++i)
+      cloud.append(panel.centre + (i * s + grid.phase_u_m) * panel.u + (j * s + grid.phase_v_m) * v,
+                   panel.normal);
+}
+
+int columns(const FlatPanel& panel, const PanelGrid& grid) {
+  return last_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) -
+         first_index(panel.half_u_m, grid.phase_u_m, grid.spacing_m) + 1;
+}
+
+double signed_distance(std::span<const FlatPanel> panels, const Vec3& p) {
+  double nearest = std::numeric_limits<double>::infinity(), over = 0;
+  for (const FlatPanel& panel : panels) {
+    const double distance = (p - panel.nearest(p)).norm();
+    const double height = panel.normal.dot(p - panel.centre);
+    if (distance > nearest + kSame_m) continue;
+    if (distance < nearest - kSame_m || std::abs(height) > std::abs(over)) over = height;
+    nearest = std::min(nearest, distance);
+  }
+  return over < 0 ? -nearest : nearest;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,41 @@
+// A flat rectangle, sampled as a grid: what the scenes of chapter 6 are built of.
+#pragma once
+
+#include <span>
+
+#include "core/cloud/point_cloud.h"
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// u, v and the normal are unit vectors at right angles; the normal points to the free side.
+struct FlatPanel {
+  Vec3 centre = Vec3::Zero();
+  Vec3 normal = Vec3::UnitY();
+  Vec3 u = Vec3::UnitX();
+  double half_u_m = 0.05, half_v_m = 0.05;
+
+  Vec3 v() const { return normal.cross(u); }
+  // The point of the rectangle nearest to p.
+  Vec3 nearest(const Vec3& p) const;
+};
+
+// Points lie where the coordinates along u and v, from the centre, are whole multiples of the spacing plus
+// the phases.
+struct PanelGrid {
+  double spacing_m = 0.003;
+  double phase_u_m = 0, phase_v_m = 0;
+};
+
+// Adds, row after row, the points of the grid that lie on the panel, its border included, with the panel's
+// normal.
+void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid);
+// How many points stand in such a row.
+int columns(const FlatPanel& panel, const PanelGrid& grid);
+
+// Distance to the nearest of the panels, positive on the side that its normal points to. Beyond a border that
+// is the side of its plane; where several panels are equally near, the one that p lies over most steeply
+// tells the side. Infinite without panels.
+double signed_distance(std::span<const FlatPanel> panels, const Vec3& p);
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+#include "scenarios/synthetic/panel_scene.h"
+
+namespace remote_touch {
+
+PointCloud PanelScene::cloud(int frame) const {
+  PointCloud cloud;
+  const std::vector<FlatPanel> all = panels(captured_s(frame));
+  for (const FlatPanel& panel : all) append(cloud, panel, grid());
+  if (all.size() == 1) cloud.grid_columns = columns(all.front(), grid());  // else rows of several widths
+  return cloud;
+}
+
+double PanelScene::signed_distance(const Vec3& p_W, double time_s) const {
+  return remote_touch::signed_distance(panels(time_s), p_W);
+}
+
+}  // namespace remote_touch

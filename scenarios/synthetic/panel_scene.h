@@ -1,0 +1,29 @@
+// A scene of panels that rest or move, each sampled as a grid of points with normals.
+#pragma once
+
+#include <vector>
+
+#include "scenarios/interface/scenario.h"
+#include "scenarios/synthetic/panel.h"
+
+namespace remote_touch {
+
+class PanelScene : public Scenario {
+ public:
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 1; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    return make_search(cloud(frame));
+  }
+  // The panels as they are when the frame is captured.
+  PointCloud cloud(int frame) const override;
+  // To the panels as they are at that time, between frames too.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+
+  virtual std::vector<FlatPanel> panels(double time_s) const = 0;
+
+ protected:
+  virtual PanelGrid grid() const = 0;
+};
+
+}  // namespace remote_touch

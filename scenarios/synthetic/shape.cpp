@@ -1,0 +1,158 @@
+#include "scenarios/synthetic/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/rotation.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kFullTurn = 360 * kRadiansPerDegree;
+
+}  // namespace
+
+Parameters parameters(Shape::Settings& s) {
+  return {
+      {"shape", choice(s.kind, {"flat", "ridge", "valley", "sphere", "ripple"}), 0, 0,
+       "flat, a roof or its mirror along z, the upper half of a ball seen from above, or a sine along x"},
+      {"slope_deg", &s.slope_deg, 0, 80, "of the flanks of a ridge or valley, which meet at x = 0"},
+      {"radius_m", &s.radius_m, 0.001, 10, "of the sphere, whose top is the origin"},
+      {"amplitude_m", &s.amplitude_m, 0, 1, "of the ripple, half its height"},
+      {"period_m", &s.period_m, 0.001, 10, "of the ripple along x"},
+  };
+}
+
+double steepest_deg(const Shape::Settings& s) {
+  switch (s.kind) {
+    case Shape::Kind::ridge:
+    case Shape::Kind::valley:
+      return s.slope_deg;
+    case Shape::Kind::ripple:
+      return std::atan(kFullTurn * s.amplitude_m / s.period_m) / kRadiansPerDegree;
+    default:
+      return 0;
+  }
+}
+
+Shape::Shape(const Settings& settings, const Grid& grid)
+    : settings_(settings),
+      x0_(grid.x(0)),
+      x1_(grid.x(grid.columns - 1)),
+      z0_(grid.z(0)),
+      z1_(grid.z(grid.rows - 1)) {
+  const auto [sine, cosine] = sin_cos(settings.slope_deg * kRadiansPerDegree);
+  if (settings.kind == Kind::flat) add_flank(x0_, x1_, 0);
+  if (settings.kind != Kind::ridge && settings.kind != Kind::valley) return;
+  slope_ = (settings.kind == Kind::ridge ? -sine : sine) / cosine;
+  if (x0_ < 0) add_flank(x0_, std::min(0.0, x1_), -slope_);
+  if (x1_ > 0 || x0_ >= 0) add_flank(std::max(0.0, x0_), x1_, slope_);
+}
+
+// The part from x0 to x1 of the plane y = slope x.
+void Shape::add_flank(double x0, double x1, double slope) {
+  const double x = 0.5 * (x0 + x1), along = std::sqrt(1 + slope * slope);
+  FlatPanel flank;
+  flank.centre = {x, slope * x, 0.5 * (z0_ + z1_)};
+  flank.u = Vec3(1, slope, 0) / along;
+  flank.normal = Vec3(-slope, 1, 0) / along;
+  flank.half_u_m = 0.5 * (x1 - x0) * along;
+  flank.half_v_m = 0.5 * (z1_ - z0_);
+  flanks_.push_back(flank);
+}
+
+Shape::Wave Shape::wave(double x) const {
+  const double periods = x / settings_.period_m, per_m = kFullTurn / settings_.period_m;
+  const auto [sine, cosine] = sin_cos(kFullTurn * (periods - std::floor(periods)));
+  const double height_m = settings_.amplitude_m * sine;
+  return {height_m, settings_.amplitude_m * per_m * cosine, -per_m * per_m * height_m};
+}
+
+double Shape::height(double x, double z) const {
+  const double r = settings_.radius_m;
+  switch (settings_.kind) {
+    case Kind::ridge:
+    case Kind::valley:
+      return slope_ * std::abs(x);
+    case Kind::sphere:
+      return std::sqrt(std::max(0.0, r * r - x * x - z * z)) - r;
+    case Kind::ripple:
+      return wave(x).height_m;
+    default:
+      return 0;
+  }
+}
+
+Vec3 Shape::point(double x, double z) const {
+  if (settings_.kind == Kind::sphere && x * x + z * z > settings_.radius_m * settings_.radius_m)
+    return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  return {x, height(x, z), z};
+}
+
+double Shape::signed_distance(const Vec3& p_S) const {
+  if (settings_.kind == Kind::sphere) return distance_to_dome(p_S);
+  if (settings_.kind == Kind::ripple) return distance_to_wave(p_S);
+  const bool over = p_S.x() >= x0_ && p_S.x() <= x1_ && p_S.z() >= z0_ && p_S.z() <= z1_;
+  if (settings_.kind == Kind::flat && over) return p_S.y();  // to the last bit
+  return remote_touch::signed_distance(flanks_, p_S);
+}
+
+// Above the plane through the ball's middle its skin is nearest, below it the rim.
+double Shape::distance_to_dome(const Vec3& p_S) const {
+  const double r = settings_.radius_m, y = p_S.y() + r;
+  const double beside = std::sqrt(p_S.x() * p_S.x() + p_S.z() * p_S.z());
+  if (y >= 0) return std::sqrt(beside * beside + y * y) - r;
+  return -std::sqrt((beside - r) * (beside - r) + y * y);
+}
+
+// Crests, and places of the same height, come at least once in a period: the nearest place of the wave is no
+// farther along it than that. It is an end, or one of the places where the way to p is upright on the wave:
+// every change of sign between samples is followed down.
+double Shape::distance_to_wave(const Vec3& p_S) const {
+  constexpr int kSamples = 64;
+  const double x = std::clamp(p_S.x(), x0_, x1_);
+  const double from = std::max(x0_, x - settings_.period_m), to = std::min(x1_, x + settings_.period_m);
+  const auto squared_at = [&](double at) {
+    const double across = at - p_S.x(), up = wave(at).height_m - p_S.y();
+    return across * across + up * up;
+  };
+  double squared = std::min(squared_at(from), squared_at(to));
+  double before = from;
+  bool falls = way_along_wave(p_S, before).value <= 0;
+  for (int i = 1; i <= kSamples; ++i) {
+    const double next = from + (to - from) * i / kSamples;
+    const bool rises = way_along_wave(p_S, next).value > 0;
+    if (falls && rises) squared = std::min(squared, squared_at(foot_on_wave(p_S, before, next)));
+    before = next, falls = !rises;
+  }
+  const double beside = p_S.z() - std::clamp(p_S.z(), z0_, z1_);
+  const double distance = std::sqrt(squared + beside * beside);
+  return p_S.y() >= wave(x).height_m ? distance : -distance;
+}
+
+// Half the slope, along x, of the squared distance from p to the wave at x; and how that changes.
+Shape::Way Shape::way_along_wave(const Vec3& p_S, double x) const {
+  const Wave w = wave(x);
+  const double up = w.height_m - p_S.y();
+  return {x - p_S.x() + up * w.slope, 1 + w.slope * w.slope + up * w.bend_per_m};
+}
+
+// Where that slope is 0, between a place where it falls and one where it rises: by Newton's method, and by
+// halving where that would leave them.
+double Shape::foot_on_wave(const Vec3& p_S, double low, double high) const {
+  constexpr int kMostSteps = 60;
+  double x = 0.5 * (low + high);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Way way = way_along_wave(p_S, x);
+    (way.value > 0 ? high : low) = x;
+    double next = x - way.value / way.slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (next == x) break;
+    x = next;
+  }
+  return x;
+}
+
+}  // namespace remote_touch

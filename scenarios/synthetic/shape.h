@@ -1,0 +1,63 @@
+// A height field in a frame S of its own, with exact distances: what a moving-shape scenario carries about.
+#pragma once
+
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/panel.h"
+
+namespace remote_touch {
+
+// y = height(x, z) in S, metres, y up; the top of a ridge or sphere, the bottom of a valley and a zero of the
+// ripple lie in the origin. Nothing but the sphere changes along z. The surface reaches from the first to the
+// last point of a grid; that of the sphere is the upper half of a ball, however large the grid is.
+class Shape {
+ public:
+  enum class Kind { flat, ridge, valley, sphere, ripple };
+  struct Settings {
+    Kind kind = Kind::flat;
+    double slope_deg = 30;       // of both flanks of a ridge or valley, which meet at x = 0
+    double radius_m = 0.04;      // of the sphere
+    double amplitude_m = 0.003;  // of the ripple, amplitude sin(2 pi x / period)
+    double period_m = 0.03;
+  };
+
+  Shape(const Settings& settings, const Grid& grid);
+
+  // Beyond the border it goes on: flanks and waves as they are, beside a sphere the plane through its middle.
+  double height(double x, double z) const;
+  // What a sensor above measures there; NaN in all three beside a sphere.
+  Vec3 point(double x, double z) const;
+  // Distance to the surface, positive above. Beyond the border it is that to the border, with the sign of the
+  // side of the plane that ends there (of the sphere: the one through its middle; of the ripple: the height
+  // at the border). Exact; of the ripple by a search along x, within 1e-6 m where it is bent towards p about
+  // as much as a circle around it.
+  double signed_distance(const Vec3& p_S) const;
+
+ private:
+  void add_flank(double x0, double x1, double slope);
+  struct Wave {
+    double height_m, slope, bend_per_m;  // and its first and second derivative
+  };
+  struct Way {
+    double value, slope;
+  };
+  Wave wave(double x) const;
+  Way way_along_wave(const Vec3& p_S, double x) const;
+  double foot_on_wave(const Vec3& p_S, double low, double high) const;
+  double distance_to_dome(const Vec3& p_S) const;
+  double distance_to_wave(const Vec3& p_S) const;
+
+  const Settings settings_;
+  const double x0_, x1_, z0_, z1_;  // the border
+  double slope_ = 0;                // rise of a flank along x, at x > 0
+  std::vector<FlatPanel> flanks_;   // of flat, ridge and valley
+};
+
+Parameters parameters(Shape::Settings& s);
+
+// The steepest place of a height field, degrees from the horizontal; 0 for the sphere, whose rim is upright.
+double steepest_deg(const Shape::Settings& s);
+
+}  // namespace remote_touch

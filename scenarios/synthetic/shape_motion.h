@@ -1,0 +1,65 @@
+// How a shape moves: a lift from frame to frame, 4.3.2, and what comes on top of it: a slide, a shake, a
+// rocking.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+// The frame S of a shape in the world: at (x, y, 0), turned about z (from x to y).
+struct ShapePose {
+  double x_m = 0, y_m = 0;
+  double sine = 0, cosine = 1;
+
+  Vec3 to_W(const Vec3& p_S) const {
+    return {cosine * p_S.x() - sine * p_S.y() + x_m, sine * p_S.x() + cosine * p_S.y() + y_m, p_S.z()};
+  }
+  Vec3 to_S(const Vec3& p_W) const {
+    const double x = p_W.x() - x_m, y = p_W.y() - y_m;
+    return {cosine * x + sine * y, cosine * y - sine * x, p_W.z()};
+  }
+};
+
+class ShapeMotion {
+ public:
+  struct Settings {
+    double tilt_deg = 0;
+    // As in moving-lift: rise_frames updates at constant velocity, then acceleration_frames with a.
+    double start_depth_m = 0;
+    double start_velocity_m_per_s = 0;
+    int rise_frames = 0;
+    double acceleration_m_per_s2 = 0;
+    int acceleration_frames = 0;
+    // Sines begin with phase 0.
+    double slide_velocity_m_per_s = 0;
+    double shake_amplitude_m = 0, shake_hz = 5;
+    double rock_deg = 0, rock_hz = 1;
+    double motion_from_s = 0;
+  };
+
+  ShapeMotion(const Settings& settings, double frame_rate_hz);
+
+  ShapePose of_frame(int frame) const;
+  // The lift goes evenly from one frame's height to the next, and rests after the last; the rest follows the
+  // time.
+  ShapePose at(double time_s) const;
+
+  int lift_frames() const { return static_cast<int>(height_m_.size()); }
+  bool ever_rests() const;
+  bool is_a_lift_alone() const;  // neither turned nor moved along x
+
+ private:
+  double lift_m(double time_s) const;
+  ShapePose moved(double lift_m, double time_s) const;
+
+  const Settings settings_;
+  const double frame_rate_hz_;
+  std::vector<double> height_m_;  // of each frame of the lift
+};
+
+Parameters parameters(ShapeMotion::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,36 @@
+// One panel that rests, seen from one side: to be touched from the back too.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/synthetic/panel_scene.h"
+
+namespace remote_touch {
+
+class Sheet final : public PanelScene {
+ public:
+  struct Settings {
+    Vec3 centre_m = Vec3::Zero();
+    Vec3 normal = Vec3::UnitZ();  // any length
+    double width_m = 0.15;
+    double height_m = 0.15;
+    double spacing_m = 0.002;
+  };
+
+  Sheet(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  std::vector<FlatPanel> panels(double time_s) const override;
+
+ protected:
+  PanelGrid grid() const override { return {settings_.spacing_m}; }
+
+ private:
+  const Settings settings_;
+};
+
+Parameters parameters(Sheet::Settings& s);
+inline std::string conflict(const Sheet::Settings& s) {
+  return s.normal.norm() > 0 ? "" : "normal = 0, 0, 0: allowed any direction";
+}
+
+}  // namespace remote_touch

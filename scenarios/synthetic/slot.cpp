@@ -1,0 +1,25 @@
+#include "scenarios/synthetic/slot.h"
+
+namespace remote_touch {
+
+Parameters parameters(Slot::Settings& s) {
+  return {
+      {"width_m", &s.width_m, 1e-3, 10, "between the walls, along z"},
+      {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
+      {"height_m", &s.height_m, 1e-3, 10, "of the walls, along y"},
+      {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
+      {"phase_m", &s.phase_m, -1, 1,
+       "shift of the columns along x; x = +-0.035 is half way between two at 0.0005 for a spacing of 0.001, "
+       "0 for 0.002, 0.0025 for 0.005"},
+  };
+}
+
+std::vector<FlatPanel> Slot::panels(double) const {
+  std::vector<FlatPanel> walls;
+  for (const double side : {-1.0, 1.0})
+    walls.push_back({side * 0.5 * settings_.width_m * Vec3::UnitZ(), -side * Vec3::UnitZ(), Vec3::UnitX(),
+                     0.5 * settings_.length_m, 0.5 * settings_.height_m});
+  return walls;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,38 @@
+// Two parallel walls. A bar turned about y between them stops at an angle that is known in closed form: one
+// of 80 x 10 mm in a slot of 40 mm at 22.62 degrees, its corners at x = +-35 mm.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/synthetic/panel_scene.h"
+
+namespace remote_touch {
+
+class Slot final : public PanelScene {
+ public:
+  struct Settings {
+    double width_m = 0.040;
+    double length_m = 0.12;
+    double height_m = 0.06;
+    // Columns at even millimetres: +-35 mm lie half way between two, the worst place for a corner.
+    double spacing_m = 0.002;
+    double phase_m = 0;
+  };
+
+  Slot(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
+
+ protected:
+  PanelGrid grid() const override { return {settings_.spacing_m, settings_.phase_m, 0}; }
+
+ private:
+  const Settings settings_;
+};
+
+Parameters parameters(Slot::Settings& s);
+inline std::string conflict(const Slot::Settings&) {
+  return {};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,72 @@
+#include "scenarios/synthetic/triangle_wave.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+
+Parameters parameters(TriangleWave::Settings& s) {
+  Parameters list = parameters(s.grid);
+  const Parameters more = {
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
+      {"period_m", &s.period_m, 1e-3, 10, "length of one wave along x"},
+      {"largest_height_m", &s.largest_height_m, 0, 10,
+       "peak-to-peak height at the end of the grid; 0 at its start"},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
+  };
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+TriangleWave::TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings), key_(key), kernels_(kernels) {}
+
+// Corners every half period from the grid's start, at the envelope's height there: 0, +, -, +, ...; straight
+// between.
+double TriangleWave::surface_height(double x, double, double) const {
+  const double start = settings_.grid.x(0), length = settings_.grid.x(settings_.grid.columns - 1) - start;
+  const double half = 0.5 * settings_.period_m;
+  const double place = std::clamp(x - start, 0.0, length) / half;
+  const auto corner = [&](double k) {
+    const double amplitude = 0.5 * settings_.largest_height_m * std::min(1.0, k * half / length);
+    return std::fmod(k, 2) == 1 ? amplitude : -amplitude;
+  };
+  const double k = std::floor(place);
+  return corner(k) + (place - k) * (corner(k + 1) - corner(k));
+}
+
+// Exact distance to the polyline across x; the wave does not change along z.
+double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
+  const double start = settings_.grid.x(0), end = settings_.grid.x(settings_.grid.columns - 1);
+  const double half = 0.5 * settings_.period_m;
+  const int corners = static_cast<int>(std::ceil((end - start) / half)) + 1;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k + 1 < corners; ++k) {
+    const double x0 = start + k * half, x1 = std::min(x0 + half, end);
+    const double y0 = surface_height(x0, 0, time_s), y1 = surface_height(x1, 0, time_s);
+    const double ex = x1 - x0, ey = y1 - y0, px = p_W.x() - x0, py = p_W.y() - y0;
+    const double t = std::clamp((px * ex + py * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+    const double dx = px - t * ex, dy = py - t * ey;
+    nearest = std::min(nearest, std::sqrt(dx * dx + dy * dy));  // not hypot: its bits depend on the machine
+  }
+  return p_W.y() >= surface_height(p_W.x(), 0, time_s) ? nearest : -nearest;
+}
+
+std::shared_ptr<const NeighbourSearch> TriangleWave::points(int frame) const {
+  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
+}
+
+PointCloud TriangleWave::cloud(int frame) const {
+  PointCloud cloud;
+  const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column)
+      cloud.append({grid.x(column), surface_height(grid.x(column), 0, 0), grid.z(row)});
+  add_noise(cloud, settings_.noise_sigma_m,
+            noise_stream(key_, NoiseUse::point_position, static_cast<std::uint32_t>(frame)), kernels_);
+  return cloud;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+// A triangle wave of growing amplitude, 4.3.3: sharp convex and concave edges, Fig 4.14.
+#pragma once
+
+#include <string>
+
+#include "scenarios/interface/scenario.h"
+#include "scenarios/synthetic/grid.h"
+
+namespace remote_touch {
+
+// The wave runs along x. Its corners lie half a period apart, alternately below and above y = 0 by an
+// amplitude that grows linearly along the grid; the flanks between them are straight.
+class TriangleWave final : public Scenario {
+ public:
+  struct Settings {
+    Grid grid{300, 100, 0.0015, 0, 0};
+    double frame_rate_hz = 30;
+    double period_m = 0.06;
+    double largest_height_m = 0.03;
+    double noise_sigma_m = 0;
+  };
+
+  TriangleWave(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  int frame_count() const override { return 1; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  double surface_height(double x, double z, double time_s) const override;
+
+ private:
+  const Settings settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+};
+
+Parameters parameters(TriangleWave::Settings& s);
+inline std::string conflict(const TriangleWave::Settings&) {
+  return {};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,63 @@
+#include "scenarios/synthetic/wedge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rotation.h"
+
+namespace remote_touch {
+
+Parameters parameters(Wedge::Settings& s) {
+  return {
+      {"angle_deg", &s.angle_deg, 0, 170, "between the walls; 0: they are parallel"},
+      {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
+      {"height_m", &s.height_m, 1e-3, 10, "of the walls, along their slope"},
+      {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
+      {"open_gap_m", &s.open_gap_m, 0, 10, "between the lower edges, at first and at last"},
+      {"closed_gap_m", &s.closed_gap_m, 0, 10, "between the lower edges, while closed; 0: they meet"},
+      {"closing_at_s", &s.closing_at_s, 0, 1e4, "the walls begin to close, evenly"},
+      {"closed_at_s", &s.closed_at_s, 0, 1e4, "the walls are closed"},
+      {"reopening_at_s", &s.reopening_at_s, 0, 1e4, "the walls begin to open again"},
+      {"open_at_s", &s.open_at_s, 0, 1e4, "the walls are open, and rest"},
+      {"offset_m", &s.offset_m, -10, 10, "shift of the wedge along z"},
+      {"tilt_deg", &s.tilt_deg, -90, 90, "turn of the wedge about x, through the middle of its lower edges"},
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
+  };
+}
+
+std::string conflict(const Wedge::Settings& s) {
+  const double times[] = {s.closing_at_s, s.closed_at_s, s.reopening_at_s, s.open_at_s};
+  return std::is_sorted(std::begin(times), std::end(times))
+             ? ""
+             : "closing_at_s, closed_at_s, reopening_at_s, open_at_s: allowed only in this order";
+}
+
+Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)
+    : settings_(settings),
+      frame_count_(1 + static_cast<int>(std::ceil(settings.open_at_s * settings.frame_rate_hz - 1e-6))) {
+  const auto [s, c] = sin_cos(settings.tilt_deg * kRadiansPerDegree);
+  up_ = {0, c, s}, across_ = {0, -s, c};
+  std::tie(sine_, cosine_) = sin_cos(0.5 * settings.angle_deg * kRadiansPerDegree);
+}
+
+double Wedge::gap_m(double time_s) const {
+  const Settings& s = settings_;
+  if (time_s < s.closing_at_s || time_s >= s.open_at_s) return s.open_gap_m;
+  if (time_s >= s.closed_at_s && time_s <= s.reopening_at_s) return s.closed_gap_m;
+  const double open = time_s < s.closed_at_s ? (s.closed_at_s - time_s) / (s.closed_at_s - s.closing_at_s)
+                                             : (time_s - s.reopening_at_s) / (s.open_at_s - s.reopening_at_s);
+  return s.closed_gap_m + open * (s.open_gap_m - s.closed_gap_m);
+}
+
+std::vector<FlatPanel> Wedge::panels(double time_s) const {
+  std::vector<FlatPanel> walls;
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 outwards = side * across_, slope = cosine_ * up_ + sine_ * outwards;
+    const Vec3 lower_edge = settings_.offset_m * Vec3::UnitZ() + 0.5 * gap_m(time_s) * outwards;
+    walls.push_back({lower_edge + 0.5 * settings_.height_m * slope, sine_ * up_ - cosine_ * outwards,
+                     Vec3::UnitX(), 0.5 * settings_.length_m, 0.5 * settings_.height_m});
+  }
+  return walls;
+}
+
+}  // namespace remote_touch

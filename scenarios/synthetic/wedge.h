@@ -1,0 +1,49 @@
+// Two walls that lean apart and close on what is between them: motions of a tool that nothing can allow.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "scenarios/synthetic/panel_scene.h"
+
+namespace remote_touch {
+
+class Wedge final : public PanelScene {
+ public:
+  struct Settings {
+    double angle_deg = 60;
+    double length_m = 0.16;
+    double height_m = 0.12;
+    double spacing_m = 0.002;
+    double open_gap_m = 0.05;
+    double closed_gap_m = 0;
+    double closing_at_s = 1;
+    double closed_at_s = 2;
+    double reopening_at_s = 3;
+    double open_at_s = 4;
+    double offset_m = 0;
+    double tilt_deg = 0;
+    double frame_rate_hz = 30;
+  };
+
+  Wedge(const Settings& settings, const NoiseKey&, const Kernels&);
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  int frame_count() const override { return frame_count_; }
+  std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
+  // Between the lower edges of the walls; it changes evenly.
+  double gap_m(double time_s) const;
+
+ protected:
+  PanelGrid grid() const override { return {settings_.spacing_m}; }
+
+ private:
+  const Settings settings_;
+  int frame_count_;
+  Vec3 up_, across_;      // of the wedge: y and z, tilted about x
+  double sine_, cosine_;  // of half the angle
+};
+
+Parameters parameters(Wedge::Settings& s);
+std::string conflict(const Wedge::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,261 @@
+// Where two traces part: in what situation, and what is told of it.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "analysis/comparison/trace_comparison.h"
+#include "tests/analysis/comparison/changed_traces.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+using namespace changed_traces;
+
+// --- in what situation the runs part ---
+
+TEST(Causes, Drift) {
+  const std::size_t tick = quiet_tick();
+  const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
+  EXPECT_EQ(found.cause, Cause::drift);
+  EXPECT_EQ(found.situation, Cause::drift);
+  EXPECT_HAS(found.because, "no frame came in and the state, ");
+  EXPECT_HAS(found.because, "did not change");
+}
+
+TEST(Causes, FrameUpdate) {
+  const std::size_t tick = tick_where(true, false);
+  Columns columns = lift();
+  const std::string frame = "frame " + std::to_string(integers(columns, "frame_index")[tick]);
+  const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
+  EXPECT_EQ(found.cause, Cause::frame_update);
+  EXPECT_EQ(found.because, frame + " came in with this tick, the same in both");
+  // A tick before and a tick after it are none.
+  for (const std::size_t other : {tick - 1, tick + 1})
+    EXPECT_NE(divergence(after([&](Columns& c) { proxy_x(c, other) += 1e-9; })).cause, Cause::frame_update);
+}
+
+TEST(Causes, TheVeryFirstFrameIsAnUpdate) {
+  Columns columns = lift();
+  const auto first_tick = [&](std::int32_t frame) {
+    auto& frames = integers(columns, "frame_index");
+    for (std::size_t i = 0; i < 30; ++i) frames[i] = frame;
+    Columns changed = columns;
+    proxy_x(changed, 0) += 1;
+    return divergence(compare(columns, changed));
+  };
+  EXPECT_EQ(first_tick(0).cause, Cause::frame_update);
+  EXPECT_EQ(first_tick(-1).cause, Cause::drift);
+}
+
+TEST(Causes, StateTransition) {
+  // Both change it: something else differs in the tick of the change.
+  const std::size_t tick = tick_where(false, true);
+  const Divergence both = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
+  EXPECT_EQ(both.cause, Cause::state_transition);
+  // One changes it.
+  const std::size_t quiet = quiet_tick();
+  Columns steady = lift(), leaves = lift();
+  integers(steady, "state")[quiet - 1] = integers(steady, "state")[quiet] = 1;
+  leaves = steady;
+  integers(leaves, "state")[quiet] = 0;
+  const std::string stays = "contact to contact", goes = "contact to free";
+  EXPECT_EQ(divergence(compare(steady, leaves)).because, "baseline " + stays + ", candidate " + goes);
+  EXPECT_EQ(divergence(compare(leaves, steady)).because, "baseline " + goes + ", candidate " + stays);
+  EXPECT_EQ(divergence(compare(leaves, steady)).cause, Cause::state_transition);
+  // There is none before the first tick.
+  integers(steady, "frame_index")[0] = integers(leaves, "frame_index")[0] = -1;
+  integers(leaves, "state")[0] = 2 - integers(steady, "state")[0];
+  EXPECT_EQ(divergence(compare(steady, leaves)).cause, Cause::state_transition);
+  EXPECT_EQ(divergence(compare(steady, leaves)).because, "baseline free, candidate entrenched");
+}
+
+TEST(Causes, EveryInput) {
+  const std::size_t tick = quiet_tick();
+  const std::pair<const char*, Change> inputs[] = {
+      {"time", [&](Columns& c) { numbers(c, "time")[tick] += 1e-9; }},
+      {"hip_position", [&](Columns& c) { numbers(c, "hip_position")[3 * tick + 2] += 1e-9; }},
+      {"frame_hash", [&](Columns& c) { hashes(c, "frame_hash")[tick] ^= 1; }},
+  };
+  for (const auto& [name, change] : inputs) {
+    const Divergence found = divergence(after([&, change = change](Columns& c) {
+      change(c);
+      proxy_x(c, tick) += 1;  // what follows from it
+    }));
+    EXPECT_EQ(found.cause, Cause::input) << name;
+    EXPECT_EQ(found.because, std::string(name) + " differs; the renderer was given something else");
+  }
+  const Divergence all = divergence(after([&](Columns& c) {
+    for (const auto& [name, change] : inputs) change(c);
+  }));
+  EXPECT_HAS(all.because, "time, hip_position, frame_hash differs");
+  // A device that turns.
+  Columns turning = lift(), turned;
+  turning.push_back({"hip_orientation", "1", "", std::vector<double>(4 * length(), 0.5), 4, {}});
+  turned = turning;
+  numbers(turned, "hip_orientation")[4 * tick] = -0.5;
+  EXPECT_HAS(divergence(compare(turning, turned)).because, "hip_orientation differs");
+}
+
+// Which frame is in use is the renderer's own doing when both were given the same.
+TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
+  for (const std::size_t tick : {quiet_tick(), tick_where(true, false)}) {
+    const Change change = [&](Columns& c) {
+      integers(c, "frame_index")[tick] -= 1;
+      proxy_x(c, tick) += 1;
+    };
+    const Divergence found = divergence(after(change));
+    EXPECT_EQ(found.cause, Cause::frame_update);
+    EXPECT_HAS(found.because, "one did not take the newest");
+  }
+}
+
+// At the same place another distance to the true surface: the truth is another. At another place it follows.
+TEST(Causes, TheTruthAloneIsAnInput) {
+  const std::size_t tick = quiet_tick();
+  const Change truth = [&](Columns& c) { numbers(c, "signed_distance")[tick] += 1e-3; };
+  const Divergence alone = divergence(after(truth));
+  EXPECT_EQ(alone.cause, Cause::input);
+  EXPECT_HAS(alone.because, "signed_distance (the true surface) differs");
+  const Divergence follows = divergence(after([&](Columns& c) {
+    truth(c);
+    proxy_x(c, tick) += 1e-3;
+  }));
+  EXPECT_EQ(follows.cause, Cause::drift);
+}
+
+TEST(Causes, TheConfigurationIsTheCauseAndTheSituationIsToldBeside) {
+  const std::size_t tick = tick_where(true, false);
+  const Texts differences = {"renderer.r1_m 0.004 against 0.005", "seed 1 against 2"};
+  const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }, {}, differences));
+  EXPECT_EQ(found.cause, Cause::configuration);
+  EXPECT_EQ(found.because, "renderer.r1_m 0.004 against 0.005, seed 1 against 2");
+  EXPECT_EQ(found.situation, Cause::frame_update);
+  EXPECT_HAS(found.seen, "came in with this tick");
+}
+
+// Configuration before input before frame update before state transition before drift: at a tick that is
+// all of these, taken away one by one.
+TEST(Causes, HaveAnOrder) {
+  const std::size_t tick = tick_where(true, false);
+  Columns baseline = lift(), candidate;
+  auto& state = integers(baseline, "state");
+  state[tick] = (state[tick - 1] + 1) % 3;
+  candidate = baseline;
+  proxy_x(candidate, tick) += 1e-3;
+  numbers(candidate, "hip_position")[3 * tick] += 1e-3;
+  const auto cause = [&](const Texts& configuration = {}) {
+    return divergence(compare(baseline, candidate, {}, configuration)).cause;
+  };
+  EXPECT_EQ(cause({"seed 1 against 2"}), Cause::configuration);
+  EXPECT_EQ(cause(), Cause::input);
+  numbers(candidate, "hip_position")[3 * tick] = numbers(baseline, "hip_position")[3 * tick];
+  EXPECT_EQ(cause(), Cause::frame_update);
+  for (Columns* columns : {&baseline, &candidate})
+    integers(*columns, "frame_index")[tick] = integers(*columns, "frame_index")[tick - 1];
+  EXPECT_EQ(cause(), Cause::state_transition);
+  for (Columns* columns : {&baseline, &candidate}) integers(*columns, "state")[tick] = state[tick - 1];
+  EXPECT_EQ(cause(), Cause::drift);
+}
+
+// What comes after the runs parted is a consequence, or at least cannot have been the cause.
+TEST(Causes, AreThoseOfTheTickAtWhichTheRunsPart) {
+  const std::size_t tick = quiet_tick();
+  const Divergence found = divergence(after([&](Columns& c) {
+    proxy_x(c, tick) += 1e-9;
+    numbers(c, "hip_position")[3 * (tick + 1)] += 1;
+    integers(c, "state")[tick + 1] = (integers(c, "state")[tick] + 1) % 3;
+    hashes(c, "frame_hash")[tick + 2] ^= 1;
+  }));
+  EXPECT_EQ(found.cause, Cause::drift);
+}
+
+// Columns that a trace does not have are no obstacle.
+TEST(Causes, WithoutFramesAndStates) {
+  Columns bare, changed;
+  for (const char* name : {"time", "proxy_position"}) bare.push_back(find(lift(), name));
+  changed = bare;
+  proxy_x(changed, 200) += 1;
+  const Divergence found = divergence(compare(bare, changed));
+  EXPECT_EQ(found.cause, Cause::drift);
+  EXPECT_HAS(found.because, "the state, unknown,");
+  EXPECT_EQ(found.frame, "unknown: the traces have no frame_index here");
+}
+
+TEST(Causes, HaveNames) {
+  std::set<std::string> names;
+  for (const Cause cause :
+       {Cause::configuration, Cause::input, Cause::frame_update, Cause::state_transition, Cause::drift})
+    names.insert(name_of(cause));
+  EXPECT_EQ(names.size(), 5u);
+}
+
+// --- what is shown of it ---
+
+TEST(Rows, OfTheTickBeforeAndOfTheTickItself) {
+  const std::size_t tick = 640;
+  const Divergence found = divergence(after([&](Columns& c) {
+    proxy_x(c, tick) = 7;
+    numbers(c, "force")[3 * (tick + 1)] = 8;
+  }));
+  EXPECT_EQ(found.first_row, tick - 1);
+  ASSERT_EQ(found.baseline.size(), lift().size() - 1);
+  ASSERT_EQ(found.candidate.size(), lift().size() - 1);
+  const ColumnsInMemory all(lift());
+  for (std::size_t i = 0; i < found.baseline.size(); ++i) {
+    const Column want = all.rows(lift()[i].name, tick - 1, 2);
+    EXPECT_EQ(found.baseline[i].name, want.name);
+    EXPECT_EQ(found.baseline[i].units, want.units);
+    EXPECT_EQ(found.baseline[i].value_names, want.value_names);
+    EXPECT_EQ(found.baseline[i].values, want.values) << want.name;
+    EXPECT_EQ(found.candidate[i].values == want.values, want.name != "proxy_position") << want.name;
+  }
+  EXPECT_EQ(std::get<std::vector<double>>(find(found.candidate, "proxy_position").values)[3], 7);
+}
+
+// Columns that one of them has not, not that far or as something else are left out, and tell nothing.
+TEST(Rows, AreOfColumnsThatBothHave) {
+  const std::size_t tick = quiet_tick();
+  for (const char* odd : {"state", "frame_index", "frame_hash", "status"}) {
+    Columns baseline = lift(), another_kind = lift(), shorter = lift();
+    for (Columns* candidate : {&another_kind, &shorter}) {
+      candidate->erase(candidate->begin() + 1);
+      proxy_x(*candidate, tick) += 1;
+    }
+    find(another_kind, odd).values = std::vector<double>(length(), 0.5);
+    find(shorter, odd) = ColumnsInMemory(baseline).rows(odd, 0, tick);
+    for (const auto& [first, second] : {std::pair(baseline, another_kind), std::pair(baseline, shorter),
+                                        std::pair(another_kind, baseline), std::pair(shorter, baseline)}) {
+      const Divergence found = divergence(compare(first, second));
+      EXPECT_EQ(found.tick, tick);
+      EXPECT_EQ(found.cause, Cause::drift);
+      EXPECT_EQ(found.baseline.size(), lift().size() - 3);  // without tick_hash too
+      ASSERT_EQ(found.candidate.size(), found.baseline.size());
+      for (std::size_t i = 0; i < found.baseline.size(); ++i) {
+        EXPECT_EQ(found.baseline[i].name, found.candidate[i].name);
+        for (const std::string absent : {"hip_position", odd}) EXPECT_NE(found.baseline[i].name, absent);
+      }
+    }
+  }
+}
+
+TEST(FrameText, TellsTheFrameAndTheNextOne) {
+  Columns columns = lift();
+  auto& frames = integers(columns, "frame_index");
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    frames[i] = i < 10 ? -1 : i < 50 ? 0 : i < 90 ? 4 : 5;  // frames 1 to 3 were dropped
+  const auto at = [&](std::size_t tick) {
+    Columns changed = columns;
+    proxy_x(changed, tick) += 1;
+    return divergence(compare(columns, changed)).frame;
+  };
+  EXPECT_EQ(at(0), "none had come yet");
+  EXPECT_EQ(at(9), "none had come yet");
+  EXPECT_EQ(at(10), "frame 0 since tick 10, frame 4 with tick 50");
+  EXPECT_EQ(at(49), "frame 0 since tick 10, frame 4 with tick 50");
+  EXPECT_EQ(at(50), "frame 4 since tick 50, frame 5 with tick 90");
+  EXPECT_EQ(at(length() - 1), "frame 5 since tick 90");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,58 @@
+// Files that cannot be read as results are refused in one line.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "analysis/figures/result_file.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_unreadable(const fs::path& file) {
+  const std::string message = refusal([&] { read_hdf5(file); });
+  EXPECT_HAS(message, file.string() + ": ");
+  EXPECT_HAS(message, "allowed");
+}
+
+TEST(ReadHdf5, MissingOrAnotherKindOfFile) {
+  const TestFolder folder("hdf5_reading_test");
+  expect_unreadable(folder / "missing.h5");
+  expect_unreadable(folder.path());
+  expect_unreadable(folder.write("empty.h5", ""));
+  expect_unreadable(folder.write("text.h5", "{\"seed\": 1}\n"));
+  expect_unreadable(folder.write("signature.h5", "\x89HDF\r\n\x1a\n"));
+  expect_unreadable(folder.write("a file", "") / "inside.h5");
+  expect_unreadable(folder / std::string(300, 'a'));
+  fs::create_symlink(folder / "loop", folder / "loop");
+  expect_unreadable(folder / "loop");
+}
+
+TEST(ReadHdf5, TruncatedAnywhere) {
+  const TestFolder folder("hdf5_reading_test");
+  write_trace(folder / "whole.h5", awkward_trace(50), kProvenance, {});
+  const std::string bytes = bytes_of(folder / "whole.h5");
+  for (std::size_t i = 0; i < 200; ++i)
+    expect_unreadable(folder.write("cut.h5", bytes.substr(0, i * bytes.size() / 200)));
+  EXPECT_NO_THROW(read_hdf5(folder.write("cut.h5", bytes)));
+}
+
+// Long columns carry a checksum.
+TEST(ReadHdf5, DamagedChunk) {
+  const TestFolder folder("hdf5_reading_test");
+  write_trace(folder / "whole.h5", awkward_trace(20000), kProvenance, {});
+  std::string bytes = bytes_of(folder / "whole.h5");
+  const std::string deflate_header = "\x78\x01";  // zlib at level 1, the first bytes of a chunk
+  const std::size_t chunk = bytes.find(deflate_header);
+  ASSERT_NE(chunk, std::string::npos);
+  bytes[chunk + 20] = static_cast<char>(~bytes[chunk + 20]);
+  expect_unreadable(folder.write("damaged.h5", bytes));
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,133 @@
+#include "analysis/measures/contact_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Tick {
+  double signed_distance_m = 0.005, nearest_m = 0.005;
+  Vec3 force_N = Vec3::Zero(), hip_m = Vec3::Zero();
+  int frame = 0;
+  ContactState state = ContactState::contact;
+};
+
+// A tick a hundredth of a second.
+Trace trace_of(const std::vector<Tick>& ticks) {
+  Trace trace;
+  for (const Tick& tick : ticks) {
+    RenderOutput out;
+    out.force_N = tick.force_N;
+    out.state = tick.state;
+    out.frame_index = tick.frame;
+    out.nearest_m = tick.nearest_m;
+    trace.append(0.01 * static_cast<double>(trace.length()), {tick.hip_m}, out,
+                 {tick.signed_distance_m, tick.signed_distance_m, 0});
+  }
+  return trace;
+}
+
+Tick pushed(double force_y_N, int frame) {
+  return {0.005, 0.005, {0, force_y_N, 0}, Vec3::Zero(), frame};
+}
+
+TEST(ContactMeasures, HeightIsThatOfTheRenderedSurfaceOverTheTrueOne) {
+  Tick above{0.0058, 0.005}, below{0.0042, 0.0048}, free{0.5, 0.1}, dark{kUnknown, 0.005},
+      alone{0.005, std::numeric_limits<double>::infinity()};
+  free.state = ContactState::free;
+  const Trace trace = trace_of({above, free, above, dark, below, alone, above});
+  EXPECT_NEAR(mean_height_m(trace), (3 * 0.0008 - 0.0006) / 4, 1e-15);
+  // Three of four at 0.8 mm and one at -0.6 mm: 1.4 mm sqrt(3/4 1/4).
+  EXPECT_NEAR(height_sd_m(trace), 0.0014 * std::sqrt(3.0) / 4, 1e-15);
+  EXPECT_TRUE(std::isnan(mean_height_m(trace_of({free, dark, alone}))));
+  EXPECT_TRUE(std::isnan(height_sd_m(trace_of({free, dark, alone}))));
+  EXPECT_EQ(height_sd_m(trace_of({above})), 0);
+}
+
+TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
+  Tick near{0.004, 0.002}, far{0.008, std::numeric_limits<double>::infinity()}, silent{0.5, 0.1},
+      dark{kUnknown};
+  near.force_N = far.force_N = dark.force_N = {0, 1, 0};
+  far.state = ContactState::free;
+  const Trace trace = trace_of({near, silent, far, dark, near});
+  EXPECT_NEAR(mean_distance_m(trace), 0.016 / 3, 1e-15);
+  // Two of three 4 mm below the third: 4 mm sqrt(2/3 1/3).
+  EXPECT_NEAR(distance_sd_m(trace), 0.004 * std::sqrt(2.0) / 3, 1e-15);
+  EXPECT_TRUE(std::isnan(mean_distance_m(trace_of({silent, dark}))));
+  EXPECT_TRUE(std::isnan(distance_sd_m(trace_of({silent, dark}))));
+}
+
+TEST(ContactMeasures, TheEndIsTheLastTick) {
+  EXPECT_EQ(end_distance_m(trace_of({{-0.01, 0.005}, {0.004, 0.005}})), 0.004);
+  EXPECT_EQ(end_distance_m(trace_of({{0.01, 0.005}, {-0.004, 0.005}})), -0.004);
+  EXPECT_TRUE(std::isnan(end_distance_m(trace_of({{0.01, 0.005}, {kUnknown, 0.005}}))));
+  EXPECT_TRUE(std::isnan(end_distance_m(Trace())));
+}
+
+TEST(ContactMeasures, TicksWithAForce) {
+  const Trace trace = trace_of({pushed(0, 0), pushed(1e-12, 0), pushed(-2, 1), pushed(0, 1), pushed(0, 2)});
+  EXPECT_EQ(force_share(trace), 0.4);
+  EXPECT_EQ(last_force_time_s(trace), 0.02);
+  EXPECT_EQ(force_share(trace_of({pushed(0, 0)})), 0);
+  EXPECT_EQ(force_share(Trace()), 0);
+  EXPECT_TRUE(std::isnan(last_force_time_s(trace_of({pushed(0, 0)}))));
+}
+
+// Changes of 3 and 4 N at updates, of 1, 1 and 2 N between them; no change counts from or to no force.
+TEST(ContactMeasures, ChangesOfTheForceAtUpdatesAndBetweenThem) {
+  const Trace trace = trace_of({pushed(0, 0), pushed(5, 1), pushed(6, 1), pushed(9, 2), pushed(8, 2),
+                                pushed(4, 3), pushed(2, 3), pushed(0, 3), pushed(0, 4), pushed(7, 5)});
+  EXPECT_NEAR(rms_force_jump_N(trace), std::sqrt((9.0 + 16.0) / 2), 1e-15);
+  EXPECT_NEAR(force_noise_N(trace), std::sqrt((1.0 + 1.0 + 4.0) / 3), 1e-15);
+  EXPECT_TRUE(std::isnan(rms_force_jump_N(trace_of({pushed(1, 0), pushed(2, 0), pushed(0, 1)}))));
+  EXPECT_TRUE(std::isnan(force_noise_N(trace_of({pushed(1, 0), pushed(2, 1), pushed(0, 1)}))));
+  // A force that turns changes by the way between its ends.
+  Tick along_x = pushed(0, 0), along_z = pushed(0, 0);
+  along_x.force_N = {3, 0, 0}, along_z.force_N = {0, 0, 4};
+  EXPECT_EQ(force_noise_N(trace_of({along_x, along_z})), 5);
+}
+
+// A spring that is pressed and let go gives back what it took; one that grows in between gives more.
+TEST(ContactMeasures, EnergyIsForceTimesTheWayOfTheHand) {
+  const auto at = [](double y_m, double force_N) {
+    return Tick{0.005, 0.005, {0.5, force_N, 0}, {0, y_m, 0.1}, 0};
+  };
+  EXPECT_NEAR(energy_injected_J(trace_of({at(0, 2), at(-0.01, 2), at(0, 2)})), 0, 1e-17);
+  EXPECT_NEAR(energy_injected_J(trace_of({at(0, 2), at(-0.01, 5), at(0, 100)})), 0.01 * (5 - 2), 1e-17);
+  EXPECT_LT(energy_injected_J(trace_of({at(0, 2), at(-0.01, 2)})), 0);
+  EXPECT_EQ(energy_injected_J(trace_of({at(0, 2)})), 0);
+  EXPECT_EQ(energy_injected_J(Trace()), 0);
+}
+
+TEST(ContactMeasures, AreInTheTable) {
+  const Trace trace = trace_of({pushed(5, 0), pushed(6, 0), pushed(9, 1)});
+  for (const auto& [name, of] : std::vector<std::pair<std::string, double (*)(const Trace&)>>{
+           {"mean_height", mean_height_m},
+           {"height_sd", height_sd_m},
+           {"mean_distance", mean_distance_m},
+           {"distance_sd", distance_sd_m},
+           {"end_distance", end_distance_m},
+           {"force_share", force_share},
+           {"last_force_time", last_force_time_s},
+           {"rms_force_jump", rms_force_jump_N},
+           {"force_noise", force_noise_N},
+           {"energy_injected", energy_injected_J}}) {
+    const auto found = std::find_if(measures().begin(), measures().end(),
+                                    [&name = name](const Measure& m) { return m.name == name; });
+    ASSERT_NE(found, measures().end()) << name;
+    EXPECT_EQ(found->of(trace), of(trace)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

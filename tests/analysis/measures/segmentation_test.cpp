@@ -1,0 +1,55 @@
+#include "analysis/measures/segmentation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/statistics/proportion.h"
+
+namespace remote_touch {
+namespace {
+
+// Every combination once, and some twice.
+const std::vector<char> kPicked{1, 1, 1, 0, 1, 0, 0, 0};
+const std::vector<char> kOfClass{1, 1, 0, 1, 1, 1, 0, 0};
+const std::vector<char> kDepth{1, 1, 1, 1, 0, 0, 1, 0};
+
+TEST(Segmentation, CountsPixelsWithDepthAndThoseWithoutApart) {
+  const SegmentationScore score = score_segmentation(kPicked, kOfClass, kDepth);
+  EXPECT_EQ(score.right, 2);
+  EXPECT_EQ(score.missed, 1);
+  EXPECT_EQ(score.wrong, 1);
+  EXPECT_EQ(score.of_class_without_depth, 2);
+  EXPECT_DOUBLE_EQ(score.recall(), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(score.precision(), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(score.depth_share(), 3.0 / 5);
+  EXPECT_EQ(score.recall_interval(), wilson_interval(2, 3));
+  EXPECT_EQ(score.precision_interval(), wilson_interval(2, 3));
+}
+
+TEST(Segmentation, FramesAddUp) {
+  SegmentationScore sum = score_segmentation(kPicked, kOfClass, kDepth);
+  sum += score_segmentation({1, 0}, {1, 1}, {1, 1});
+  EXPECT_EQ(sum.right, 3);
+  EXPECT_EQ(sum.missed, 2);
+  EXPECT_EQ(sum.wrong, 1);
+  EXPECT_EQ(sum.of_class_without_depth, 2);
+}
+
+TEST(Segmentation, OfNothingThereIsNoShare) {
+  const SegmentationScore none = score_segmentation({}, {}, {});
+  EXPECT_TRUE(std::isnan(none.recall()) && std::isnan(none.precision()) && std::isnan(none.depth_share()));
+  const SegmentationScore unpicked = score_segmentation({0, 0}, {1, 0}, {1, 1});
+  EXPECT_EQ(unpicked.recall(), 0);
+  EXPECT_TRUE(std::isnan(unpicked.precision()));
+  EXPECT_EQ(unpicked.precision_interval(), (std::pair(0.0, 1.0)));
+}
+
+TEST(Segmentation, ColumnsOfOtherLengthsAreRefused) {
+  EXPECT_THROW(score_segmentation({1}, {1, 0}, {1, 1}), std::invalid_argument);
+  EXPECT_THROW(score_segmentation({1, 0}, {1, 0}, {1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,83 @@
+#include "analysis/storage/hdf5_appender.h"
+
+#include <gtest/gtest.h>
+
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/hdf5_seal.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+using Number = Hdf5Appender::Number;
+
+template <class T>
+std::vector<T> numbers_of(const Hdf5Reader& file, const std::string& dataset) {
+  return std::get<std::vector<T>>(file.column(dataset).values);
+}
+
+std::size_t files_in(const TestFolder& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder.path()),
+                                                std::filesystem::directory_iterator()));
+}
+
+TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
+  const TestFolder folder("hdf5_appender");
+  const auto file = folder / "grown.h5";
+  {
+    Hdf5Appender out(file);
+    out.attributes("/", {{"schema", "remote-touch-test/1"}, {"empty", ""}});
+    out.group("/a");
+    out.dataset({"/a/x", "m", "lengths", Number::f64, {3}, 7});
+    out.dataset({"/a/image", "1", "pixels", Number::u16, {2, 4}, 1});
+    out.dataset({"/a/many", "1", "bits", Number::u64});
+    for (int i = 0; i < 100; ++i) {
+      const std::vector<double> rows(6, i);
+      out.append("/a/x", rows.data(), 2);
+      const std::vector<std::uint16_t> image(8, static_cast<std::uint16_t>(65000 + i));
+      out.append("/a/image", image.data(), 1);
+      const std::uint64_t bits = ~std::uint64_t{0} - static_cast<std::uint64_t>(i);
+      out.append("/a/many", &bits, 1);
+      out.append("/a/many", nullptr, 0);
+    }
+    EXPECT_FALSE(std::filesystem::exists(file)) << "before it is whole";
+    out.finish();
+  }
+  EXPECT_EQ(seal_of(file), Seal::intact);
+  EXPECT_EQ(files_in(folder), 1u);
+  const Hdf5Reader in(file);
+  EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/1");
+  const Column x = in.column("/a/x");
+  EXPECT_EQ(x.width, 3);
+  EXPECT_EQ(x.units, "m");
+  ASSERT_EQ(x.length(), 200u);
+  EXPECT_EQ(std::get<std::vector<double>>(x.values)[599], 99);
+  const Column image = in.rows("/a/image", 41, 1);
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(image.values), std::vector<std::int32_t>(8, 65041));
+  EXPECT_EQ(numbers_of<std::uint64_t>(in, "/a/many")[99], ~std::uint64_t{0} - 99);
+}
+
+TEST(Hdf5Appender, WithoutFinishNothingIsLeft) {
+  const TestFolder folder("hdf5_appender");
+  { Hdf5Appender out(folder / "left.h5"); }
+  EXPECT_EQ(files_in(folder), 0u);
+}
+
+TEST(Hdf5Appender, AFileThatWasThereStaysUntilTheNewOneIsWhole) {
+  const TestFolder folder("hdf5_appender");
+  const auto file = folder.write("old.h5", "old");
+  { Hdf5Appender out(file); }
+  EXPECT_EQ(std::filesystem::file_size(file), 3u);
+  Hdf5Appender out(file);
+  out.finish();
+  EXPECT_EQ(seal_of(file), Seal::intact);
+}
+
+TEST(Hdf5Appender, TellsWhereItCannotWrite) {
+  const TestFolder folder("hdf5_appender");
+  EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
+  EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,198 @@
+// HDF5 files of other programs: attributes and datasets of shapes that this program does not write are read
+// as they are, or refused in one line before memory is taken for what they claim.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+
+Handle new_file(const fs::path& file) {
+  return Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+}
+
+Handle text_of(std::size_t length, H5T_str_t padding) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  check(H5Tset_size(type, length));
+  check(H5Tset_strpad(type, padding));
+  return type;
+}
+
+// texts: of length characters each, one after the other.
+void write_texts(hid_t object, const char* name, const std::string& texts, std::size_t length,
+                 H5T_str_t padding = H5T_STR_NULLTERM) {
+  const Handle type = text_of(length, padding);
+  const hsize_t count = texts.size() / length;
+  const Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Handle made(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  check(H5Awrite(made, type, texts.data()));
+}
+
+struct Shape {
+  std::vector<hsize_t> extent;
+  std::vector<hsize_t> chunk = {};  // empty: in one piece
+};
+
+// A dataset whose values are never written: what is read of it is the fill value.
+Handle add_dataset(hid_t file, const char* name, hid_t type, const Shape& shape) {
+  const int rank = static_cast<int>(shape.extent.size());
+  const std::vector<hsize_t> max_extent(shape.extent.size(),
+                                        H5S_UNLIMITED);  // a chunk may be larger than what is in it
+  const Handle space(rank == 0 ? H5Screate(H5S_SCALAR)
+                               : H5Screate_simple(rank, shape.extent.data(),
+                                                  shape.chunk.empty() ? nullptr : max_extent.data()),
+                     H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  if (!shape.chunk.empty()) {
+    check(H5Pset_chunk(creation, rank, shape.chunk.data()));
+    check(H5Pset_deflate(creation, 9));
+  }
+  return Handle(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
+}
+
+std::string refusal_of(const fs::path& file) {
+  return refusal([&] { read_hdf5(file); });
+}
+
+TEST(ForeignAttributes, OfSeveralTextsAreReadWhole) {
+  const TestFolder folder("hdf5_foreign_test");
+  {
+    const Handle file = new_file(folder / "x.h5");
+    write_texts(file, "axes", std::string("x\0\0\0y\0\0\0time", 12), 4, H5T_STR_NULLPAD);
+    const Handle data = add_dataset(file, "data", H5T_NATIVE_DOUBLE, {{3}});
+    write_texts(data, "units", std::string("m\0mmsm", 6), 2, H5T_STR_NULLPAD);
+    write_texts(data, "long_name", std::string(32000, 'n'), 8, H5T_STR_NULLPAD);
+  }
+  const Hdf5Content content = read_hdf5(folder / "x.h5");
+  EXPECT_EQ(attribute(content.attributes, "axes"), "x, y, time");
+  ASSERT_EQ(content.datasets.size(), 1u);
+  EXPECT_EQ(content.datasets[0].second.units, "m, mm, sm");
+  EXPECT_EQ(content.datasets[0].second.long_name.size(), 4000u * 8 + 3999 * 2);
+}
+
+TEST(ForeignAttributes, EndWhereTheirTypeSays) {
+  const TestFolder folder("hdf5_foreign_test");
+  {
+    const Handle file = new_file(folder / "x.h5");
+    write_texts(file, "by a zero", std::string("ab\0cd", 5), 5, H5T_STR_NULLTERM);
+    write_texts(file, "by zeros", std::string("ab\0\0\0", 5), 5, H5T_STR_NULLPAD);
+    write_texts(file, "by blanks", "a b  ", 5, H5T_STR_SPACEPAD);
+    write_texts(file, "full", "abcde", 5, H5T_STR_NULLPAD);
+  }
+  const TextAttributes found = Hdf5Reader(folder / "x.h5").attributes();
+  EXPECT_EQ(attribute(found, "by a zero"), "ab");
+  EXPECT_EQ(attribute(found, "by zeros"), "ab");
+  EXPECT_EQ(attribute(found, "by blanks"), "a b");
+  EXPECT_EQ(attribute(found, "full"), "abcde");
+}
+
+TEST(ForeignAttributes, OfOtherKindsAreNoTexts) {
+  const TestFolder folder("hdf5_foreign_test");
+  {
+    const Handle file = new_file(folder / "x.h5");
+    const hsize_t three = 3;
+    const Handle space(H5Screate_simple(1, &three, nullptr), H5Sclose), null(H5Screate(H5S_NULL), H5Sclose);
+    const Handle pointers(H5Tcopy(H5T_C_S1), H5Tclose);
+    check(H5Tset_size(pointers, H5T_VARIABLE));
+    const Handle numbers(H5Acreate2(file, "numbers", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+    const Handle variable(H5Acreate2(file, "variable", pointers, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const std::array<const char*, 3> texts{"a", "b", "c"};
+    check(H5Awrite(variable, pointers, texts.data()));
+    const Handle nothing(
+        H5Acreate2(file, "nothing", text_of(8, H5T_STR_NULLTERM), null, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  }
+  const TextAttributes found = Hdf5Reader(folder / "x.h5").attributes();
+  EXPECT_EQ(found.size(), 3u);
+  for (const auto& [name, text] : found) EXPECT_EQ(text, "") << name;
+}
+
+TEST(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {
+  const TestFolder folder("hdf5_foreign_test");
+  for (const hsize_t width : {hsize_t{1} << 31, hsize_t{1} << 32, (hsize_t{1} << 32) + 3}) {
+    add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {{0, width}});
+    EXPECT_HAS(refusal_of(folder / "x.h5"), "data has rows of " + std::to_string(width) + " values");
+  }
+  add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {{0, 3}});
+  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.length(), 0u);
+}
+
+TEST(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
+  const TestFolder folder("hdf5_foreign_test");
+  const hsize_t many = hsize_t{1} << 29;
+  const Shape shapes[] = {{{many}},
+                          {{many}, {4096}},
+                          {{many}, {many / 2}},
+                          {{many, many}, {1, 4096}},
+                          {{many, many, many}, {1, 1, 4096}},
+                          {{1}, {many / 2}}};
+  for (const Shape& shape : shapes) {
+    add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, shape);
+    EXPECT_HAS(refusal_of(folder / "x.h5"), "data claims more values than the file can hold");
+  }
+  add_dataset(new_file(folder / "x.h5"), "data", text_of(100'000'000, H5T_STR_NULLPAD), {{40}});
+  EXPECT_HAS(refusal_of(folder / "x.h5"), "data claims more values than the file can hold");
+}
+
+// What compresses well is read: deflate's best is 1032 to 1.
+TEST(ForeignDatasets, ZerosThatAreCompressedAreRead) {
+  const TestFolder folder("hdf5_foreign_test");
+  const std::vector<double> zeros(1'000'000);
+  {
+    const Handle file = new_file(folder / "x.h5");
+    const Handle data = add_dataset(file, "data", H5T_NATIVE_DOUBLE, {{zeros.size()}, {zeros.size()}});
+    check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()));
+  }
+  EXPECT_LT(fs::file_size(folder / "x.h5"), 20'000u);
+  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.values, Values(zeros));
+}
+
+// A file may say that its values lie in another one, whoever owns that.
+TEST(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
+  const TestFolder folder("hdf5_foreign_test");
+  folder.write("secret", std::string(800, 's'));
+  {
+    const Handle file = new_file(folder / "x.h5");
+    const hsize_t count = 100;
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    check(H5Pset_external(creation, (folder / "secret").c_str(), 0, 800));
+    const Handle made(H5Dcreate2(file, "data", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                      H5Dclose);
+  }
+  EXPECT_HAS(refusal_of(folder / "x.h5"), "data has its values in another file");
+}
+
+TEST(ForeignDatasets, OfOtherKindsAreNamed) {
+  const TestFolder folder("hdf5_foreign_test");
+  add_dataset(new_file(folder / "x.h5"), "data", H5T_STD_REF_OBJ, {{3}});
+  EXPECT_HAS(refusal_of(folder / "x.h5"), "data is neither numbers nor texts of one length");
+  add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {});
+  EXPECT_HAS(refusal_of(folder / "x.h5"), "data has no dimension");
+}
+
+// 32 bits would cut them: they come as numbers, exact to 2^53.
+TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
+  const TestFolder folder("hdf5_foreign_test");
+  const std::vector<std::int64_t> values{0, -1, 1'000'000'000'000, -9'007'199'254'740'991};
+  {
+    const Handle file = new_file(folder / "x.h5");
+    const Handle data = add_dataset(file, "data", H5T_NATIVE_INT64, {{values.size()}});
+    check(H5Dwrite(data, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  }
+  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.values,
+            Values(std::vector<double>(values.begin(), values.end())));
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,229 @@
+// The files of sweeps: what is written comes back, finished or not, and damage is noticed.
+#include "analysis/sweeps/sweep_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/file_lock.h"
+#include "analysis/sweeps/sweep_in_progress.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// 2 x 3 cells of 2 replicates, with every state and numbers that a careless writer would change.
+SweepResult awkward(int replicates = 2, bool refined = true) {
+  SweepResult result;
+  result.axes = {{"rule", "1", "renderer.rule", std::vector<std::int32_t>{0, 1}, 1, {"fixed", "variable"}},
+                 {"sigma_m", "m", "scenario.sigma_m", std::vector<double>{0, 0.1, 1.0 / 3}, 1, {}}};
+  result.replicates = replicates;
+  result.measures = {{"first", "1", "a measure", {}, 1, {}}, {"second", "N", "another", {}, 1, {}}};
+  result.start(refined);
+  const double values[] = {0.1, -0.0, 5e-324, 1.0 / 3, -1e308, kNan};
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    result.state[run] = run % 6 == 5 ? RunState::failed : run % 4 == 3 ? RunState::pending : RunState::done;
+    if (refined) result.round[run] = static_cast<std::int32_t>(run % 3);
+    if (result.state[run] == RunState::failed) result.error[run] = "no Bögen, tick " + std::to_string(run);
+    if (result.state[run] != RunState::done) continue;
+    std::get<std::vector<double>>(result.measures[0].values)[run] = values[run % 6];
+    std::get<std::vector<double>>(result.measures[1].values)[run] = static_cast<double>(run);
+  }
+  return result;
+}
+
+void expect_same(const SweepResult& a, const SweepResult& b) {
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_EQ(a.round, b.round);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.replicates, b.replicates);
+  const auto expect_equal = [](const std::vector<Column>& x, const std::vector<Column>& y) {
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_TRUE(same_bits(x[i], y[i])) << x[i].name;
+      EXPECT_EQ(x[i].name, y[i].name);
+      EXPECT_EQ(x[i].units, y[i].units);
+      EXPECT_EQ(x[i].long_name, y[i].long_name);
+      EXPECT_EQ(x[i].value_names, y[i].value_names);
+    }
+  };
+  expect_equal(a.axes, b.axes), expect_equal(a.measures, b.measures);
+}
+
+const TextAttributes kAttributes = {{"command", "remote-touch sweep x"}, {"config", "{}"}, {"shard", "1/2"}};
+
+TEST(SweepFile, WhatIsWrittenComesBack) {
+  const TestFolder folder("sweep_file_test");
+  for (const int replicates : {1, 2, 1000})  // with 1000 the arrays are chunked and compressed
+    for (const bool refined : {false, true}) {
+      const SweepResult result = awkward(replicates, refined);
+      const std::string sum = write_sweep(folder / "x.h5", result, kAttributes);
+      const StoredSweep stored = read_sweep(folder / "x.h5");
+      expect_same(stored.result, result);
+      EXPECT_EQ(stored.attributes, kAttributes);
+      EXPECT_FALSE(stored.in_progress);
+      EXPECT_EQ(attribute(read_hdf5(folder / "x.h5"), "digest"), sum);
+      // Read and written again it has the same bytes.
+      write_sweep(folder / "again.h5", stored.result, stored.attributes);
+      EXPECT_EQ(bytes_of(folder / "again.h5"), bytes_of(folder / "x.h5"));
+    }
+}
+
+TEST(SweepFile, TheDigestIsOfEveryValue) {
+  const TestFolder folder("sweep_file_test");
+  const std::string sum = write_sweep(folder / "x.h5", awkward(), kAttributes);
+  const auto expect_another = [&](auto&& change) {
+    SweepResult other = awkward();
+    change(other);
+    EXPECT_NE(write_sweep(folder / "y.h5", other, kAttributes), sum);
+  };
+  expect_another(
+      [](SweepResult& r) { std::get<std::vector<double>>(r.axes[1].values)[1] = std::nextafter(0.1, 1); });
+  expect_another([](SweepResult& r) { std::get<std::vector<double>>(r.measures[1].values)[4] = -4; });
+  expect_another([](SweepResult& r) { r.state[3] = RunState::not_sampled; });
+  expect_another([](SweepResult& r) { r.round[3] = 9; });
+  expect_another([](SweepResult& r) { r.error[5] += "."; });
+  EXPECT_EQ(write_sweep(folder / "y.h5", awkward(), {{"command", "another"}}), sum);
+}
+
+TEST(SweepInProgress, IsReadAsFarAsItIs) {
+  const TestFolder folder("sweep_file_test");
+  SweepResult result = awkward();
+  write_sweep_in_progress(folder / "x.h5", result, kAttributes);
+  EXPECT_EQ(std::filesystem::file_size(folder / "x.h5"), size_in_progress(result, kAttributes));
+  StoredSweep stored = read_sweep(folder / "x.h5");
+  EXPECT_TRUE(stored.in_progress);
+  EXPECT_EQ(stored.attributes, kAttributes);
+  result.error.assign(result.run_count(), "");  // told again when the run is tried again
+  expect_same(stored.result, result);
+
+  // One run more, while the file is held.
+  SweepInProgress storage(folder / "x.h5", result, kAttributes, true);
+  result.state[3] = RunState::done;
+  for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[3] = -0.25;
+  storage.record(result, 3);
+  storage.flush();
+  expect_same(read_sweep(folder / "x.h5").result, result);
+}
+
+// Every byte of a run's own values: it is pending again then, and no other run changes.
+TEST(SweepInProgress, ARunWrittenInPartIsPending) {
+  const TestFolder folder("sweep_file_test");
+  SweepResult result = awkward();
+  result.error.assign(result.run_count(), "");
+  write_sweep_in_progress(folder / "x.h5", result, kAttributes);
+  const std::string whole = bytes_of(folder / "x.h5");
+  SweepResult expected = result;
+  expected.state[8] = RunState::pending;
+  for (Column& measure : expected.measures) std::get<std::vector<double>>(measure.values)[8] = kNan;
+  const std::pair<const char*, std::size_t> parts[] = {
+      {"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}};
+  for (const auto& [name, size] : parts) {
+    const auto begin =
+        static_cast<std::size_t>(offset_of(folder / "x.h5", std::string("/sweep/") + name)) + 8 * size;
+    for (std::size_t byte = 0; byte < size; ++byte) {
+      if (std::string(name) == "state" && byte > 0) continue;  // no state at all: the file is refused below
+      std::string torn = whole;
+      torn[begin + byte] ^= 1;
+      expect_same(read_sweep(folder.write("torn.h5", torn)).result, expected);
+    }
+  }
+  std::string mad = whole;
+  mad[static_cast<std::size_t>(offset_of(folder / "x.h5", "/sweep/state")) + 33] ^= 1;
+  EXPECT_HAS(refusal([&] { read_sweep(folder.write("mad.h5", mad)); }), "damaged (a state is unknown)");
+}
+
+TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
+  const TestFolder folder("sweep_file_test");
+  const SweepResult result = awkward();
+  write_sweep_in_progress(folder / "x.h5", result, kAttributes);
+  std::string swapped = bytes_of(folder / "x.h5");
+  for (const auto& [name, size] : {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}}) {
+    char* begin = swapped.data() + offset_of(folder / "x.h5", std::string("/sweep/") + name);
+    std::memcpy(begin + 2 * size, begin + 8 * size, static_cast<std::size_t>(size));  // run 8 over run 2
+  }
+  EXPECT_EQ(read_sweep(folder.write("swapped.h5", swapped)).result.state[2], RunState::pending);
+}
+
+// What nobody asked for stays so, whatever its bytes became.
+TEST(SweepInProgress, DamageAsksForNoRuns) {
+  const TestFolder folder("sweep_file_test");
+  SweepResult result = awkward();
+  result.state[4] = RunState::not_sampled, result.round[4] = -1;
+  for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[4] = kNan;
+  write_sweep_in_progress(folder / "x.h5", result, kAttributes);
+  std::string torn = bytes_of(folder / "x.h5");
+  torn[static_cast<std::size_t>(offset_of(folder / "x.h5", "/sweep/first")) + 32] ^= 1;
+  EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
+}
+
+TEST(FileLock, OneHolderAtATime) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  folder.write("x.h5.partial-123", "left by a killed program");
+  {
+    const FileLock first(file);
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.partial-123"));
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing it");
+    EXPECT_NO_THROW(FileLock(folder / "y.h5"));
+    write_sweep(file, awkward(), kAttributes);  // the file may be replaced under the lock
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing it");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.lock"));
+  folder.write("x.h5.lock", "");  // of a killed process
+  EXPECT_NO_THROW(FileLock{file});
+  EXPECT_HAS(refusal([&] { FileLock lock(folder / "nowhere" / "x.h5"); }), "x.h5: cannot be written");
+}
+
+TEST(SweepInProgress, NoticesThatItsFileIsGone) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  const SweepResult result = awkward();
+  write_sweep_in_progress(file, result, kAttributes);
+  SweepInProgress second(file, result, kAttributes, true);
+  std::filesystem::rename(file, folder / "elsewhere.h5");
+  EXPECT_HAS(refusal([&] { second.flush(); }), "was replaced or removed");
+}
+
+TEST(SweepFile, DamageIsRefused) {
+  const TestFolder folder("sweep_file_test");
+  const auto why = [&](const std::string& bytes) {
+    const auto file = folder.write("damaged.h5", bytes);
+    const std::string message = refusal([&] { read_sweep(file); });
+    EXPECT_HAS(message, "damaged.h5: ");
+    return message;
+  };
+  // A value of a finished file; an axis and a round of one in progress.
+  write_sweep(folder / "x.h5", awkward(), kAttributes);
+  const std::string third = raw(1.0 / 3), changed = raw(std::nextafter(1.0 / 3, 1));
+  std::string whole = bytes_of(folder / "x.h5");
+  whole.replace(whole.rfind(third), 8, changed);
+  EXPECT_HAS(why(whole), "damaged (not as it was written");
+
+  write_sweep_in_progress(folder / "y.h5", awkward(), kAttributes);
+  const std::string sound = bytes_of(folder / "y.h5");
+  std::string bytes = sound;
+  bytes.replace(bytes.find(third), 8, changed);
+  EXPECT_HAS(why(bytes), "damaged (its plan has changed)");
+  bytes = sound;
+  std::string rounds, other;
+  for (std::int32_t run = 0; run < 12; ++run) rounds += raw(run % 3), other += raw(run % 3 + 1);
+  bytes.replace(bytes.find(rounds), rounds.size(), other);
+  EXPECT_HAS(why(bytes), "damaged (its plan has changed)");
+
+  why(sound.substr(0, sound.size() / 2)), why(sound.substr(0, 100)), why(""), why("text");
+  write_trace(folder / "trace.h5", awkward_trace(20), kProvenance, {});
+  EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "allowed remote-touch-sweep/1");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,112 @@
+#include "analysis/theory/lift_updates.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "analysis/measures/measures.h"
+#include "analysis/theory/lift_noise.h"
+#include "runners/experiment/experiment.h"
+#include "runners/figures/pop_through_map.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+namespace {
+
+std::vector<LiftUpdate> lift(const std::vector<std::string>& overrides) {
+  return lift_updates(simulate(Experiment::load("fig4.12", overrides)), Vec3(0, 1, 0), 0.00499, 30);
+}
+
+// Without noise everything is known: v_j from the definition of the lift, v_hat_j = v_{j-1}, n_hat = n.
+TEST(LiftUpdates, QuantitiesOfALiftWithoutNoise) {
+  const auto updates = lift({"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=3"});
+  ASSERT_EQ(updates.size(), 25u);
+  for (const LiftUpdate& update : updates) {
+    const int accelerated = std::max(0, update.frame - 15);
+    EXPECT_NEAR(update.velocity_m_per_s, 0.1 + 3 * accelerated / 30.0, 1e-9) << update.frame;
+    if (update.frame <= 16) continue;
+    EXPECT_NEAR(update.estimate_m_per_s, 0.1 + 3 * (accelerated - 1) / 30.0, 0.02) << update.frame;
+    EXPECT_NEAR(update.carried_m, update.estimate_m_per_s / 30, 1e-9);
+    EXPECT_NEAR(update.normal_error, 0, 1e-6);
+    EXPECT_NEAR(update.thickness_m, 0, 2e-4);  // the proxy sits a little low between the points
+    EXPECT_TRUE(update.above_before && update.above_after);
+    EXPECT_NEAR(update.margin_m(0.00499, 30), 0.00499 - 3 / 900.0, 1e-3);
+  }
+}
+
+// The margin is the height of the carried proxy over the new plane, by definition of its parts.
+TEST(LiftUpdates, MarginIsTheHeightOverTheNewPlane) {
+  const Trace trace = simulate(Experiment::load("fig4.12", {"scenario.acceleration_m_per_s2=4"}));
+  std::size_t next = 0;
+  const auto updates = lift_updates(trace, Vec3(0, 1, 0), 0.00499, 30);
+  for (std::size_t i = 1; i < trace.length(); ++i) {
+    if (!trace.frame_update(i)) continue;
+    const double plane = trace.proxy(i).y() - trace.signed_distance_m[i];
+    EXPECT_NEAR(updates.at(next).margin_m(0.00499, 30), trace.proxy(i - 1).y() + trace.carried(i).y() - plane,
+                1e-12);
+    ++next;
+  }
+  EXPECT_EQ(next, updates.size());
+  EXPECT_EQ(updates.back().above_after, popped_through(trace) == 0);
+}
+
+TEST(LiftUpdates, CriterionTellsAPopThroughWithoutNoise) {
+  const auto updates = lift({"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=5"});
+  int pops = 0;
+  for (const LiftUpdate& update : updates) {
+    if (update.frame <= 15 || !update.above_before) continue;
+    EXPECT_EQ(update.margin_m(0.00499, 30) > 0, update.above_after) << update.frame;
+    pops += update.above_after ? 0 : 1;
+  }
+  EXPECT_EQ(pops, 1);
+}
+
+// An autoregressive velocity error of known gain, and thickness and normal error of known moments.
+TEST(LiftNoise, FindsTheMomentsOfSyntheticLifts) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  std::vector<std::vector<LiftUpdate>> lifts;
+  for (int i = 0; i < 400; ++i) {
+    double error = 0.1 * normal(random);
+    auto& updates = lifts.emplace_back();
+    for (int frame = 1; frame <= 60; ++frame) {
+      LiftUpdate update;
+      update.frame = frame;
+      update.velocity_m_per_s = 0.1;
+      update.estimate_m_per_s = 0.1 + 0.05 + error;
+      update.thickness_m = 0.004 + 0.001 * normal(random);
+      update.normal_error = 0.2 + 0.03 * normal(random);
+      update.above_before = frame <= 50;
+      if (frame > 50 || frame <= 20) update.thickness_m = 1e9;  // must not count
+      updates.push_back(update);
+      error = (1 - 0.3) * error + 0.1 * std::sqrt(1 - 0.7 * 0.7) * normal(random);
+    }
+  }
+  const NoiseEffect effect = noise_effect(lifts, {20}, 0.00499, 30);
+  EXPECT_NEAR(effect.thickness_m, 0.004, 5e-5);
+  EXPECT_NEAR(effect.thickness_sd_m, 0.001, 3e-5);
+  EXPECT_NEAR(effect.normal_error, 0.2, 2e-3);
+  EXPECT_NEAR(effect.normal_error_sd, 0.03, 1e-3);
+  EXPECT_NEAR(effect.velocity_bias_m_per_s, 0.05, 0.005);
+  EXPECT_NEAR(effect.velocity_sd_m_per_s, 0.1, 0.004);
+  EXPECT_NEAR(effect.gain, 0.3, 0.03);
+  EXPECT_NEAR(effect.margin_sd_m, 0.001, 3e-5);  // carried_m is 0 here: only the thickness scatters
+  EXPECT_NEAR(lift_means(lifts.front(), {20}).thickness_m, 0.004, 1e-3);
+  EXPECT_TRUE(std::isnan(lift_means(lifts.front(), {50}).thickness_m));
+}
+
+// The figures on lifts state the experiment's numbers; they must be those of the experiment.
+TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
+  const std::string json = Experiment::load("fig4.12").to_json();
+  const auto holds = [&](const std::string& part) { return json.find(part) != std::string::npos; };
+  EXPECT_TRUE(holds("\"r1_m\":0.00499,") && holds("\"r2_m\":0.00501,")) << json;
+  EXPECT_EQ(kLift.r1_m, 0.00499);
+  EXPECT_EQ(kContactRadius_m, 0.005);
+  EXPECT_TRUE(holds("\"frame_rate_hz\":30.0,") && kLift.frame_rate_hz == 30) << json;
+  EXPECT_TRUE(holds("\"start_velocity_m_per_s\":0.1,") && kLift.start_velocity_m_per_s == 0.1) << json;
+  EXPECT_TRUE(holds("\"acceleration_frames\":10,") && kLift.updates == 10) << json;
+  EXPECT_TRUE(holds("\"rise_frames\":15,") && kRiseFrames == 15) << json;
+}
+
+}  // namespace
+}  // namespace remote_touch

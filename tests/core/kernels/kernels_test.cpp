@@ -1,0 +1,315 @@
+#include "core/kernels/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "tests/support/every_level.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+using Real = long double;
+using std::nextafter;
+constexpr double kReach = 0.005;  // r_c
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr ProxyRegions kRegions{0.00499, 0.00501, 0.01, 1.5 * 1024, 600};
+constexpr double kOnGrid =
+    kRegions.sum_grid / 1.5 * 0x1p-53;  // half a step of the grid that terms are rounded to
+const Vec3 kOrigin = Vec3::Zero();
+
+PointCloud random_points(int count, double half_width, unsigned seed, bool with_radius, bool with_stiffness) {
+  PointCloud cloud = scenes::random_cloud(count, half_width, seed);
+  const PointCloud more = scenes::random_cloud(count, 1, seed + 1000);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (with_radius) cloud.fixture_radius_m.push_back(0.002 * (more.x[i] + 1));
+    if (with_stiffness) cloud.stiffness_N_per_m.push_back(5000 * (more.y[i] + 1));
+  }
+  return cloud;
+}
+
+PointCloud one_point(const Vec3& p, double r_f = 0) {
+  PointCloud cloud;
+  cloud.append(p);
+  if (r_f > 0) cloud.fixture_radius_m.push_back(r_f);
+  return cloud;
+}
+
+// The whole cloud in columns, padded.
+GatheredPoints columns(const PointCloud& cloud) {
+  GatheredPoints out;
+  out.reserve(cloud.size(), !cloud.fixture_radius_m.empty(), !cloud.stiffness_N_per_m.empty());
+  BruteForceSearch(cloud).gather({kOrigin, 1e6}, scenes::kernels(), out);
+  out.finish();
+  return out;
+}
+
+Real radius_of(const PointCloud& cloud, std::size_t i) {
+  return cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
+}
+
+// (4.1), (4.2), (5.8) as printed, with r_n of (5.5).
+void expect_survey(const Survey& got, const PointCloud& cloud, const Vec3& p) {
+  Real nearest = kInfinity, normal[3] = {0, 0, 0}, weights = 0, stiffness = 0;
+  int touching = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Real d[3] = {Real{p.x()} - cloud.x[i], Real{p.y()} - cloud.y[i], Real{p.z()} - cloud.z[i]};
+    const Real distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const Real r = distance - radius_of(cloud, i), t = (r - kRegions.r1) / (Real{kRegions.r3} - kRegions.r1);
+    const Real psi = r <= kRegions.r1 ? 1 : r >= kRegions.r3 ? 0 : std::pow(1 - t, Real{4}) * (4 * t + 1);
+    nearest = std::min(nearest, r), touching += r <= kRegions.r2;
+    for (int k = 0; k < 3; ++k) normal[k] += distance > 0 ? d[k] / distance * psi : 0;
+    if (cloud.stiffness_N_per_m.empty()) continue;
+    weights += psi, stiffness += psi * cloud.stiffness_N_per_m[i];
+  }
+  // Beside the grid, psi and the unit vector of a point carry a few roundings of their own.
+  const double rounding = static_cast<double>(cloud.size()) * (kOnGrid + 2e-15);
+  EXPECT_NEAR(got.nearest, static_cast<double>(nearest), 1e-17);
+  EXPECT_EQ(got.touching, touching);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(got.normal_sum[k], static_cast<double>(normal[k]), rounding);
+  EXPECT_NEAR(got.weight_sum, static_cast<double>(weights), rounding);
+  EXPECT_NEAR(got.stiffness_sum, static_cast<double>(stiffness), 0x1p20 * rounding);  // a coarser grid
+}
+
+TEST(Survey, AgreesWithTheEquations) {
+  const PointCloud at = scenes::random_cloud(40, 0.01, 2);
+  for (const bool with_radius : {false, true})
+    for (const bool with_stiffness : {false, true}) {
+      const PointCloud cloud = random_points(700, 0.012, 1, with_radius, with_stiffness);
+      const GatheredPoints points = columns(cloud);
+      for (const Kernels* kernels : every_level())
+        for (std::size_t i = 0; i < at.size(); ++i)
+          expect_survey(kernels->survey(points.view(), at.point(i).data(), kRegions), cloud, at.point(i));
+    }
+}
+
+TEST(Survey, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
+  const PointCloud cloud = random_points(601, 0.012, 3, true, true), at = scenes::random_cloud(20, 0.01, 4);
+  const GatheredPoints plain = columns(cloud);
+  std::vector<std::size_t> order(640);  // the last ones stand for far points
+  std::iota(order.begin(), order.end(), 0u);
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+    PointCloud mixed;
+    for (const std::size_t i : order) {
+      const bool far = i >= cloud.size();
+      if (far && seed == 0) continue;  // once without
+      mixed.append(far ? Vec3(0.03 * static_cast<double>(i), -0.5, 1) : cloud.point(i));
+      mixed.fixture_radius_m.push_back(far ? 0.001 : cloud.fixture_radius_m[i]);
+      mixed.stiffness_N_per_m.push_back(far ? 600 : cloud.stiffness_N_per_m[i]);
+    }
+    const GatheredPoints other = columns(mixed);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Survey first = every_level()[0]->survey(plain.view(), at.point(i).data(), kRegions);
+      ASSERT_GT(first.touching, 0);
+      for (const Kernels* kernels : every_level()) {
+        const Survey got = kernels->survey(other.view(), at.point(i).data(), kRegions);
+        EXPECT_EQ(std::memcmp(&got, &first, sizeof got), 0) << kernels->isa << " " << seed;
+      }
+    }
+  }
+}
+
+// A point without a stiffness of its own is one with the renderer's, bit for bit.
+TEST(Survey, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
+  const PointCloud at = scenes::random_cloud(20, 0.01, 4);
+  for (const bool with_radius : {false, true}) {
+    PointCloud some = random_points(601, 0.012, 3, with_radius, true), filled = some;
+    for (std::size_t i = 0; i < some.size(); i += 1 + i % 3)
+      some.stiffness_N_per_m[i] = (i % 2 ? -1 : 1) * std::nan(""),
+      filled.stiffness_N_per_m[i] = kRegions.stiffness;
+    const GatheredPoints with_nan = columns(some), with_own = columns(filled);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3 p = at.point(i);
+      const Survey want = every_level()[0]->survey(with_own.view(), p.data(), kRegions);
+      expect_survey(want, filled, p);
+      for (const Kernels* kernels : every_level()) {
+        const Survey got = kernels->survey(with_nan.view(), p.data(), kRegions);
+        EXPECT_EQ(std::memcmp(&got, &want, sizeof got), 0) << kernels->isa;
+      }
+    }
+  }
+}
+
+TEST(Survey, WeightFallsFromOneAtR1ToZeroAtR3) {
+  const double halfway = 0.5 * (kRegions.r1 + kRegions.r3);  // (1/2)^4 (4/2 + 1) = 3/16
+  const std::pair<double, double> cases[] = {
+      {0.001, 1}, {kRegions.r1, 1}, {halfway, 0.1875}, {kRegions.r3, 0}, {0.5, 0}};
+  for (const Kernels* kernels : every_level())
+    for (const auto& [distance, psi] : cases) {
+      const GatheredPoints one = columns(one_point({0, 0, -distance}));
+      const Survey got = kernels->survey(one.view(), kOrigin.data(), kRegions);
+      EXPECT_NEAR(got.normal_sum[2], psi, kOnGrid) << distance;
+      EXPECT_EQ(got.normal_sum[0], 0);
+      EXPECT_EQ(got.nearest, distance);
+    }
+}
+
+TEST(Survey, PointAtTheProxyGivesNoDirection) {
+  const GatheredPoints alone = columns(one_point(kOrigin)), none = columns({});
+  for (const Kernels* kernels : every_level()) {
+    const Survey got = kernels->survey(alone.view(), kOrigin.data(), kRegions);
+    EXPECT_EQ(Vec3(got.normal_sum), kOrigin);
+    EXPECT_EQ(got.nearest, 0);
+    EXPECT_EQ(got.touching, 1);
+    EXPECT_EQ(kernels->survey(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
+  }
+}
+
+TEST(Survey, TouchingIncludesR2) {
+  PointCloud cloud;
+  for (const double d : {kRegions.r2, nextafter(kRegions.r2, 1.0), nextafter(kRegions.r2, 0.0)})
+    cloud.append({0, d, 0}), cloud.append({-d, 0, 0});
+  const GatheredPoints points = columns(cloud);
+  for (const Kernels* kernels : every_level())
+    EXPECT_EQ(kernels->survey(points.view(), kOrigin.data(), kRegions).touching, 4);
+}
+
+// Roots of |x - p - d u| = r by the quadratic formula, which long double can afford.
+struct Roots {
+  bool real;
+  Real along, near, far;
+};
+Roots roots(const Vec3& x, const Vec3& p, const Vec3& u, Real r) {
+  Real a = 0, b = 0, c = -r * r;
+  for (int k = 0; k < 3; ++k) {
+    const Real e = Real{x[k]} - p[k];
+    a += Real{u[k]} * u[k], b += e * u[k], c += e * e;
+  }
+  const Real d = b * b - a * c, root = std::sqrt(std::max(d, Real{0}));
+  return {d >= 0, b, (b - root) / a, (b + root) / a};
+}
+
+TEST(FirstHit, ClosedFormsForOnePoint) {
+  for (const Kernels* kernels : every_level()) {
+    const auto hit = [&](const Vec3& x, double r_f = 0) {
+      return kernels->first_hit(columns(one_point(x, r_f)).view(), kOrigin.data(),
+                                Vec3::UnitX().eval().data(), kReach);
+    };
+    EXPECT_NEAR(hit({0.02, 0, 0}), 0.015, 1e-17);
+    EXPECT_NEAR(hit({0.02, 0.003, 0}), 0.016, 1e-17);  // a 3-4-5 triangle
+    EXPECT_NEAR(hit({0.02, 0, 0.006}, 0.005), 0.012, 1e-17);
+    EXPECT_EQ(hit({0.1, kReach, 0}), 0.1) << "a tangent counts as a hit";
+    EXPECT_EQ(hit({0.1, nextafter(kReach, 1.0), 0}), kInfinity);
+    EXPECT_EQ(hit({-0.02, 0, 0}), kInfinity) << "behind";
+    EXPECT_EQ(hit({0.003, 0, 0}), kInfinity) << "within reach already: its near root is behind";
+  }
+}
+
+TEST(WayOut, ClosedFormsForOnePoint) {
+  for (const Kernels* kernels : every_level()) {
+    const auto way_out = [&](const Vec3& x, double r_f = 0) {
+      return kernels->way_out(columns(one_point(x, r_f)).view(), kOrigin.data(), Vec3::UnitY().eval().data(),
+                              kReach, kRegions.r1);
+    };
+    EXPECT_NEAR(way_out({0, -0.003, 0}), 0.002, 1e-17);
+    EXPECT_NEAR(way_out({0, 0.003, 0}), 0.008, 1e-17);
+    EXPECT_NEAR(way_out({0.003, 0, 0}), 0.004, 1e-17);
+    EXPECT_NEAR(way_out({0, 0, 0.006}, 0.005), 0.008, 1e-17) << "r_f moves both radii out";
+    EXPECT_EQ(way_out({0, -kRegions.r1, 0}), 0) << "at r1 is not within r1";
+    EXPECT_GT(way_out({0, -nextafter(kRegions.r1, 0.0), 0}), 0);
+  }
+}
+
+TEST(Roots, SmallestAheadAndLargestWithinR1OfManyPoints) {
+  const PointCloud at = scenes::random_cloud(200, 0.06, 6), way = scenes::random_cloud(200, 1, 7);
+  int hits = 0, entrenched = 0;
+  for (const bool with_radius : {false, true}) {
+    const PointCloud cloud = random_points(600, 0.06, 5, with_radius, false);
+    const GatheredPoints points = columns(cloud);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3 p = at.point(i), u = way.point(i).normalized();
+      Real first = kInfinity, longest = 0;
+      for (std::size_t j = 0; j < cloud.size(); ++j) {
+        const Real r_f = radius_of(cloud, j);
+        const Roots r = roots(cloud.point(j), p, u, kReach + r_f);
+        if (r.real && r.along > 0 && r.near > 0) first = std::min(first, r.near);
+        if ((cloud.point(j) - p).norm() < kRegions.r1 + r_f) longest = std::max(longest, r.far);
+      }
+      for (const Kernels* kernels : every_level()) {
+        const double hit = kernels->first_hit(points.view(), p.data(), u.data(), kReach);
+        const double out = kernels->way_out(points.view(), p.data(), u.data(), kReach, kRegions.r1);
+        ASSERT_TRUE(hit == first || std::abs(hit - first) < 1e-13);  // no ray here grazes a point closer
+        ASSERT_NEAR(out, static_cast<double>(longest), 1e-15);       // some roundings of a centimetre
+      }
+      hits += first<kInfinity, entrenched += longest> 0;
+    }
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_GT(entrenched, 100);
+}
+
+// As a sensor's file has it. volatile: before arithmetic in long double, g++ 12 -O3 leaves the rounding to
+// float out.
+double stored_as_float(double value) {
+  volatile float stored = static_cast<float>(value);
+  return stored;
+}
+
+// At 1 m the discriminant of the quadratic loses 4e-16 m^2, which is 4e-14 m at r_c; the perpendicular form
+// stays at the rounding of the coordinates.
+TEST(FirstHit, LandsOnTheContactRadiusFromAMetreAway) {
+  const PointCloud at = scenes::random_cloud(300, 1, 8), offset = scenes::random_cloud(300, 0.0028, 9);
+  for (const Kernels* kernels : every_level())
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3 p = 0.1 * at.point((i + 1) % at.size()), u = (at.point(i) - p).normalized();
+      const Vec3 moved = at.point(i) + offset.point(i);
+      const Vec3 x(stored_as_float(moved.x()), stored_as_float(moved.y()), stored_as_float(moved.z()));
+      const double d = kernels->first_hit(columns(one_point(x)).view(), p.data(), u.data(), kReach);
+      Real squared = 0;
+      for (int k = 0; k < 3; ++k) squared += std::pow(Real{p[k]} + Real{d} * u[k] - x[k], Real{2});
+      ASSERT_NEAR(static_cast<double>(std::sqrt(squared) - Real{kReach}), 0, 1e-15);
+    }
+}
+
+// Every length around the lanes and the chunks, appended behind points already there.
+TEST(AppendWithin, SamePointsAsAPlainLoop) {
+  PointCloud cloud = random_points(200, 0.01, 13, true, true);
+  for (std::size_t i = 4; i < cloud.size(); i += 9)
+    (i % 3 == 0 ? cloud.x : i % 3 == 1 ? cloud.y : cloud.z)[i] = std::nan("");
+  std::vector<std::uint32_t> names(cloud.size());
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = static_cast<std::uint32_t>(4000000000u - 7 * i);
+  std::vector<std::size_t> lengths{63, 64, 65, 72, 127, 128, 129, 199};
+  for (std::size_t length = 0; length <= 40; ++length) lengths.push_back(length);
+
+  const std::size_t before = 3;
+  for (const Kernels* kernels : every_level())
+    for (const std::size_t length : lengths)
+      for (const double reach : {0.007, 0.0, kInfinity})
+        for (const bool named : {false, true}) {
+          const std::size_t room = before + length + kLanes;
+          std::vector<double> out[5];
+          for (auto& column : out) column.assign(room + 1, -1);
+          std::vector<std::uint32_t> index(room + 1, 77);
+          const std::size_t count = kernels->append_within(
+              {cloud.x.data(), cloud.y.data(), cloud.z.data(),
+               named ? cloud.fixture_radius_m.data() : nullptr, cloud.stiffness_N_per_m.data(),
+               named ? names.data() : nullptr, 900, length},
+              kOrigin.data(), reach,
+              {out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), index.data()},
+              before);
+          std::size_t n = before;
+          for (std::size_t i = 0; i < length; ++i) {
+            const Vec3 p = cloud.point(i);
+            const double far = named ? reach + cloud.fixture_radius_m[i] : reach;
+            if (!(p.x() * p.x() + p.y() * p.y() + p.z() * p.z() <= far * far)) continue;
+            ASSERT_LT(n, count);
+            EXPECT_EQ(Vec3(out[0][n], out[1][n], out[2][n]), p);
+            EXPECT_EQ(index[n], named ? names[i] : 900 + i);
+            EXPECT_EQ(out[3][n], named ? cloud.fixture_radius_m[i] : -1);
+            EXPECT_EQ(out[4][n++], cloud.stiffness_N_per_m[i]);
+          }
+          ASSERT_EQ(count, n);
+          EXPECT_EQ(out[0][before - 1], -1) << "wrote before the end";
+          EXPECT_TRUE(out[0][room] == -1 && index[room] == 77) << "wrote beyond the room";
+        }
+}
+
+}  // namespace
+}  // namespace remote_touch

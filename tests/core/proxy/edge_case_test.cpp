@@ -1,0 +1,252 @@
+// The cases in which proxy renderers are known to fail, each through the whole renderer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kContactRadius = 0.005, kShell = 1.0001e-5;
+
+// The same HIP for some ticks; the last output.
+RenderOutput hold(Renderer& renderer, const Vec3& hip, int ticks = 20, double start_s = 0) {
+  RenderOutput out;
+  for (int tick = 0; tick < ticks; ++tick) out = renderer.step({hip}, start_s + 0.001 * tick);
+  return out;
+}
+
+TEST(EdgeCase, Float32PointsOneMetreAway) {
+  PointCloud cloud = scenes::flat_grid(60, 0.0015, 1.0);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.x[i] = static_cast<float>(cloud.x[i] + 1), cloud.y[i] = static_cast<float>(cloud.y[i]);
+    cloud.z[i] = static_cast<float>(cloud.z[i] + 1);
+  }
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  hold(renderer, Vec3(1, 1.02, 1), 1);
+  for (int tick = 1; tick < 300; ++tick) {
+    const RenderOutput out = renderer.step({Vec3(1 + 1e-4 * tick / 3, 0.99, 1)}, 0.001 * tick);
+    ASSERT_NEAR(out.nearest_m, kContactRadius, kShell) << tick;
+    ASSERT_GT(out.force_N.y(), 5) << tick;
+  }
+}
+
+TEST(EdgeCase, APointExactlyAtTheProxy) {
+  PointCloud cloud;
+  cloud.append({0, 0, 0});
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  const RenderOutput stuck = renderer.step({Vec3::Zero()}, 0);  // starts on the point: no direction is better
+  EXPECT_EQ(stuck.status, RenderStatus::degenerate_normal);
+  EXPECT_TRUE(stuck.proxy_W.allFinite());
+  const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 5, 0.001);
+  EXPECT_TRUE(out.proxy_W.allFinite());
+  EXPECT_GE(out.nearest_m, kContactRadius - kShell);  // out it came
+}
+
+TEST(EdgeCase, SymmetricPointsHaveNoNormal) {
+  PointCloud cloud;  // midway between two points the sum of directions vanishes
+  cloud.append({0.004, 0, 0}), cloud.append({-0.004, 0, 0});
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  for (int tick = 0; tick < 50; ++tick) {
+    const RenderOutput out = renderer.step({Vec3(0, 0.02 - 0.001 * tick, 0)}, 0.001 * tick);
+    ASSERT_TRUE(out.proxy_W.allFinite() && out.normal_W.allFinite());
+  }
+}
+
+TEST(EdgeCase, HipAtTheProxy) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40)));
+  const Vec3 touching(0, kContactRadius, 0);
+  const RenderOutput out = hold(renderer, touching);
+  EXPECT_TRUE(out.proxy_W.allFinite());
+  EXPECT_TRUE(out.force_N.isZero(0));
+  EXPECT_NEAR((out.proxy_W - touching).norm(), 0, 2e-4);
+}
+
+TEST(EdgeCase, EmptyCloud) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(PointCloud{}));
+  const RenderOutput out = hold(renderer, Vec3(0.1, -0.2, 0.3));
+  EXPECT_EQ(out.proxy_W, Vec3(0.1, -0.2, 0.3));
+  EXPECT_TRUE(out.force_N.isZero(0));
+  EXPECT_TRUE(out.converged);
+}
+
+TEST(EdgeCase, AllPointsMissing) {
+  PointCloud cloud = scenes::flat_grid(30);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.x[i] = cloud.y[i] = cloud.z[i] = std::nan("");
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  EXPECT_EQ(hold(renderer, Vec3(0, -0.01, 0)).proxy_W, Vec3(0, -0.01, 0));
+}
+
+TEST(EdgeCase, TheCloudVanishesUnderTheProxy) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40)));
+  hold(renderer, Vec3(0, 0.02, 0), 1);
+  EXPECT_GT(hold(renderer, Vec3(0, -0.01, 0)).force_N.y(), 1);
+  renderer.on_frame(scenes::frame(PointCloud{}, 1));
+  const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 1, 0.034);
+  EXPECT_EQ(out.proxy_W, Vec3(0, -0.01, 0));
+  EXPECT_TRUE(out.force_N.isZero(0));
+}
+
+TEST(EdgeCase, ACloudOfOnePoint) {
+  PointCloud cloud;
+  cloud.append({0, 0, 0});
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  hold(renderer, Vec3(0.001, 0.02, 0), 1);
+  const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 100);
+  // In line with the HIP above the point, or slipped round it: never nearer than the contact radius.
+  EXPECT_GE(out.nearest_m, kContactRadius - kShell);
+}
+
+TEST(EdgeCase, HipJumpsAcrossTheCloud) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(100)));
+  hold(renderer, Vec3(0, 3, 0.0002), 1);
+  const RenderOutput below = hold(renderer, Vec3(0, -3, 0.0002), 50, 0.001);  // six metres in a tick
+  EXPECT_NEAR(below.proxy_W.y(), kContactRadius, 2e-4);
+  const RenderOutput back = hold(renderer, Vec3(0.01, 3, 0), 50, 0.051);
+  EXPECT_EQ(back.proxy_W, Vec3(0.01, 3, 0));
+}
+
+TEST(EdgeCase, AHipBeyondAllReasonIsRefused) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(100)));
+  hold(renderer, Vec3(0, 0.02, 0), 1);
+  for (const double far : {1e7, 1e155, 1e300}) {
+    const RenderOutput out = renderer.step({Vec3(far, 0, -far)}, 0.002);
+    EXPECT_EQ(out.status, RenderStatus::device_not_finite);
+    EXPECT_EQ(out.proxy_W, Vec3(0, 0.02, 0));
+  }
+}
+
+// A square grid holds a ball as long as half its diagonal is shorter than the radius: spacing sqrt(2) r_c.
+TEST(EdgeCase, SparseGridHoldsUpToItsGeometricLimit) {
+  for (const bool holds : {true, false}) {
+    const double spacing = (holds ? 1.41 : 1.415) * kContactRadius;
+    ProxyRenderer renderer = scenes::renderer();
+    renderer.on_frame(
+        scenes::frame(scenes::flat_grid(20, spacing)));  // even: the origin is the middle of a cell
+    hold(renderer, Vec3(0, 0.02, 0), 1);
+    const RenderOutput out = hold(renderer, Vec3(0, -0.02, 0), 200, 0.001);
+    EXPECT_EQ(out.proxy_W.y() > 0, holds) << out.proxy_W.transpose();
+  }
+}
+
+// On a rough cloud the steps go round in circles; the budget ends the tick, and nothing grows.
+TEST(EdgeCase, LimitCyclesEndWithTheBudget) {
+  PointCloud cloud = scenes::flat_grid(60);
+  const PointCloud noise = scenes::random_cloud(static_cast<int>(cloud.size()), 0.008, 5);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.y[i] += noise.y[i];
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  hold(renderer, Vec3(0, 0.05, 0), 1);
+  int unconverged = 0;
+  for (int tick = 1; tick < 200; ++tick) {
+    const RenderOutput out = renderer.step({Vec3(1e-4 * tick, -0.02, 0)}, 0.001 * tick);
+    unconverged += out.converged ? 0 : 1;
+    ASSERT_LE(out.steps, 30);
+    ASSERT_GT(out.proxy_W.y(), -0.008) << tick;
+    ASSERT_LT(out.proxy_W.norm(), 0.05) << tick;
+  }
+  EXPECT_GT(unconverged, 0);
+}
+
+TEST(EdgeCase, FramesOutOfOrderAreDropped) {
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0), 5));
+  hold(renderer, Vec3(0, 0.03, 0), 1, 0.17);
+  const RenderOutput before = hold(renderer, Vec3(0, -0.01, 0), 30, 0.171);
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 4));  // late
+  renderer.on_frame(scenes::frame(scenes::flat_grid(40, 0.0015, 0.01), 5));  // twice
+  const RenderOutput out = renderer.step({Vec3(0, -0.01, 0)}, 0.201);
+  EXPECT_EQ(out.status, RenderStatus::stale_frame_dropped);
+  EXPECT_EQ(out.frame_index, 5);
+  EXPECT_EQ(out.proxy_W, before.proxy_W);
+  EXPECT_EQ(renderer.step({Vec3(0, -0.01, 0)}, 0.202).status, RenderStatus::ok);
+}
+
+// A sensor that repeats a frame bit for bit: the cloud seems to stop, and then to jump by two steps.
+TEST(EdgeCase, RepeatedAndDroppedFramesOfASteadyRise) {
+  for (const bool dropped : {false, true}) {
+    ProxyRenderer renderer = scenes::renderer();
+    for (int tick = 0; tick < 600; ++tick) {
+      const int frame = tick / 33;
+      if (tick % 33 == 0 && !(dropped && frame == 10)) {
+        const double height = 0.001 * (frame == 10 ? 9 : frame) - 0.004;
+        renderer.on_frame(
+            {frame, frame / 30.0, frame / 30.0, make_search(scenes::flat_grid(40, 0.0015, height))});
+      }
+      const double surface = 0.001 * frame - 0.004;
+      const RenderOutput out = renderer.step({Vec3(0, tick < 200 ? 0.002 : surface - 0.01, 0)}, 0.001 * tick);
+      ASSERT_GT(out.proxy_W.y(), surface - 0.002) << tick;
+      if (tick > 560) {
+        ASSERT_NEAR(out.surface_velocity_m_per_s, 0.03, 1e-3);
+      }
+    }
+  }
+}
+
+TEST(EdgeCase, TheFrameRateChanges) {
+  ProxyRenderer renderer = scenes::renderer();
+  double captured = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    captured += frame < 20 ? 1.0 / 30 : 1.0 / 15;
+    renderer.on_frame(
+        {frame, captured, captured, make_search(scenes::flat_grid(40, 0.0015, 0.05 * captured - 0.02))});
+    const double hip = 0.05 * captured - (frame < 12 ? 0 : 0.03);
+    const RenderOutput out = hold(renderer, Vec3(0, hip, 0), 33, captured);
+    if (frame > 14) {
+      EXPECT_NEAR(out.surface_velocity_m_per_s, 0.05, 1e-3) << frame;
+      EXPECT_GT(out.proxy_W.y(), 0.05 * captured - 0.02) << frame;
+    }
+  }
+}
+
+// A sheet one point thick can be touched from both sides; the proxy stays on the side it came from.
+TEST(EdgeCase, ThinSheetFromBothSides) {
+  for (const double side : {1.0, -1.0}) {
+    ProxyRenderer renderer = scenes::renderer();
+    renderer.on_frame(scenes::frame(scenes::flat_grid(60)));
+    hold(renderer, Vec3(0, side * 0.02, 0), 1);
+    for (int tick = 1; tick < 200; ++tick) {
+      const RenderOutput out = renderer.step({Vec3(1e-4 * tick, -side * 0.02, 0)}, 0.001 * tick);
+      ASSERT_NEAR(side * out.proxy_W.y(), kContactRadius, 2e-4) << tick;
+      ASSERT_GT(side * out.force_N.y(), 5) << tick;
+    }
+  }
+}
+
+// Chapter 5 in the same proxy: the region around a single point of r_f = 0.1 m is never entered, Fig 5.5.
+TEST(EdgeCase, AFixtureRadiusKeepsTheProxyOut) {
+  PointCloud cloud;
+  cloud.append({0, 0, 0});
+  cloud.fixture_radius_m = {0.1};
+  cloud.stiffness_N_per_m = {250};
+  ProxyRenderer renderer = scenes::renderer();
+  renderer.on_frame(scenes::frame(cloud));
+  hold(renderer, Vec3(0.01, 0.2, 0), 1);
+  double nearest = 1, strongest = 0;
+  for (int tick = 1; tick < 1000; ++tick) {
+    const double angle = 0.002 * tick;
+    const RenderOutput out =
+        renderer.step({Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0)}, 0.001 * tick);
+    nearest = std::min(nearest, out.proxy_W.norm());
+    if (out.force_N.norm() > 0)
+      strongest =
+          out.force_N.norm() /
+          ((Vec3(0.08 * std::sin(angle), 0.08 * std::cos(angle), 0) - out.proxy_W).norm() - kContactRadius);
+  }
+  EXPECT_NEAR(nearest, 0.105, 2e-5);
+  EXPECT_NEAR(strongest, 250, 1);  // the point's own stiffness
+}
+
+}  // namespace
+}  // namespace remote_touch

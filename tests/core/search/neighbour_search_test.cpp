@@ -1,0 +1,180 @@
+#include "core/search/neighbour_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cloud/camera.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+std::vector<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball, const Kernels& kernels) {
+  GatheredPoints out;
+  out.reserve(search.size(), search.has_fixture_radius(), false);
+  search.gather(ball, kernels, out);
+  out.finish();
+  std::vector<std::uint32_t> index(out.index(), out.index() + out.size());
+  std::sort(index.begin(), index.end());
+  return index;
+}
+
+// The oracle: a loop that shares nothing with the kernels.
+std::vector<std::uint32_t> expected(const PointCloud& cloud, const Ball& ball) {
+  std::vector<std::uint32_t> index;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double dx = cloud.x[i] - ball.centre.x(), dy = cloud.y[i] - ball.centre.y(),
+                 dz = cloud.z[i] - ball.centre.z();
+    const double reach = ball.radius + (cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i]);
+    if (dx * dx + dy * dy + dz * dz <= reach * reach) index.push_back(static_cast<std::uint32_t>(i));
+  }
+  return index;
+}
+
+// A wavy wall seen by a tilted camera, with holes.
+PointCloud image_cloud() {
+  const CameraIntrinsics camera{160, 120, 130.5, 131.5, 79.2, 60.1};
+  DepthImage depth{camera.width, camera.height, {}};
+  for (int v = 0; v < depth.height; ++v)
+    for (int u = 0; u < depth.width; ++u)
+      depth.z_m.push_back((u * 7 + v * 13) % 11 == 0 ? std::nan("")
+                                                     : 0.5 + 0.1 * std::sin(0.1 * u) + 0.001 * v);
+  RigidTransform X_WC = RigidTransform::Identity();
+  X_WC.linear() = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  X_WC.translation() = Vec3(0.3, -0.2, 0.1);
+  return cloud_from_depth(depth, camera, X_WC);
+}
+
+// Most points with a small region or none, a few with a wide one: the widest must not widen the others.
+PointCloud with_regions(PointCloud cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.fixture_radius_m.push_back(i % 97 == 0  ? 0.1
+                                     : i % 3 == 0 ? 0
+                                                  : 0.0003 * static_cast<double>(i % 50));
+  return cloud;
+}
+
+// What a mesh of neighbours needs: rows of that width, and the numbers of the points as they came.
+TEST(NeighbourSearch, TellsHowWideTheRowsOfAnOrganisedFrameAre) {
+  EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
+  const PointCloud grid = scenes::flat_grid(30);
+  const UniformGridSearch search(grid, 0.004);
+  EXPECT_EQ(search.organised_columns(), 30);
+  EXPECT_EQ(search.cloud().columns(), 0) << "its own points stand in another order";
+  EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
+  GatheredPoints out;
+  out.reserve(search.size(), false, false);
+  search.gather({Vec3::Zero(), 1}, scenes::kernels(), out);
+  ASSERT_EQ(out.size(), grid.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint32_t row = out.index()[i] / 30, column = out.index()[i] % 30;
+    EXPECT_EQ(out.view().x[i], grid.x[30 * row + column]);
+    EXPECT_EQ(out.view().z[i], grid.z[30 * row + column]);
+  }
+}
+
+void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, double reach) {
+  const PointCloud centres = scenes::random_cloud(300, reach, 5);
+  std::size_t total = 0;
+  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
+    if (isa > best_isa()) continue;
+    for (std::size_t i = 0; i < centres.size(); ++i) {
+      // Every other centre lies on a point, where distances are smallest.
+      Vec3 centre = centres.point(i);
+      if (i % 2 == 0) centre = cloud.point((i * 7919) % cloud.size());
+      if (!centre.allFinite()) continue;
+      const Ball ball{centre, 0.002 + 0.0005 * static_cast<double>(i)};
+      const auto want = expected(cloud, ball);
+      ASSERT_EQ(found(search, ball, kernels_for(isa)), want) << "centre " << centre.transpose();
+      total += want.size();
+    }
+  }
+  EXPECT_GT(total, 1000u);
+}
+
+TEST(NeighbourSearch, BruteForceFindsTheSet) {
+  const PointCloud cloud = scenes::random_cloud(3000, 0.1, 1);
+  expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
+}
+
+TEST(NeighbourSearch, GridFindsTheSameSet) {
+  const PointCloud cloud = scenes::random_cloud(3000, 0.1, 1);
+  for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
+}
+
+TEST(NeighbourSearch, ImageWindowFindsTheSameSet) {
+  const PointCloud cloud = image_cloud();
+  expect_same_sets(cloud, ImageWindowSearch(cloud), 0.6);
+}
+
+TEST(NeighbourSearch, EachPointIsAskedByItsOwnRegion) {
+  const PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
+  expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
+  for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
+  const PointCloud image = with_regions(image_cloud());
+  expect_same_sets(image, ImageWindowSearch(image), 0.6);
+  expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
+}
+
+// Where the list comes from another order of the points, the columns must follow it.
+TEST(NeighbourSearch, ARegionStaysWithItsPoint) {
+  PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.stiffness_N_per_m.push_back(static_cast<double>(i));
+  GatheredPoints out;
+  out.reserve(cloud.size(), true, true);
+  UniformGridSearch(cloud, 0.01).gather({Vec3(0.02, 0.01, 0), 0.03}, scenes::kernels(), out);
+  out.finish();
+  ASSERT_GT(out.size(), 50u);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const std::uint32_t i = out.index()[k];
+    ASSERT_EQ(Vec3(out.view().x[k], out.view().y[k], out.view().z[k]), cloud.point(i));
+    ASSERT_EQ(out.view().radius[k], cloud.fixture_radius_m[i]);
+    ASSERT_EQ(out.view().stiffness[k], static_cast<double>(i));
+  }
+}
+
+TEST(NeighbourSearch, WindowAndGridAgreeOnOneCloud) {
+  const PointCloud cloud = image_cloud();
+  const ImageWindowSearch window(cloud);
+  const UniformGridSearch grid(cloud, 0.01);
+  for (std::size_t i = 0; i < cloud.size(); i += 37) {
+    if (std::isnan(cloud.x[i])) continue;
+    const Ball ball{cloud.point(i) + Vec3(0.002, 0, 0), 0.012};
+    EXPECT_EQ(found(window, ball, scenes::kernels()), found(grid, ball, scenes::kernels()));
+  }
+}
+
+TEST(NeighbourSearch, BallAroundTheCameraIsSearchedWhole) {
+  const PointCloud cloud = image_cloud();
+  const Ball ball{cloud.image->X_WC.translation(), 0.55};
+  EXPECT_EQ(found(ImageWindowSearch(cloud), ball, scenes::kernels()), expected(cloud, ball));
+}
+
+TEST(NeighbourSearch, OutliersDoNotBlowUpTheGrid) {
+  PointCloud cloud = scenes::random_cloud(500, 0.05, 2);
+  cloud.append({1e6, -1e6, 1e6});
+  const UniformGridSearch search(cloud, 0.001);
+  const Ball ball{Vec3(1e6, -1e6, 1e6), 0.01};
+  EXPECT_EQ(found(search, ball, scenes::kernels()), (std::vector<std::uint32_t>{500}));
+}
+
+TEST(NeighbourSearch, EmptyAndMissingPoints) {
+  PointCloud missing;
+  missing.append({std::nan(""), std::nan(""), std::nan("")});
+  const Ball ball{Vec3::Zero(), 10};
+  EXPECT_TRUE(found(BruteForceSearch(PointCloud{}), ball, scenes::kernels()).empty());
+  EXPECT_TRUE(found(UniformGridSearch(PointCloud{}, 0.01), ball, scenes::kernels()).empty());
+  EXPECT_TRUE(found(BruteForceSearch(missing), ball, scenes::kernels()).empty());
+  EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball, scenes::kernels()).empty());
+}
+
+TEST(NeighbourSearch, ChosenByTheCloud) {
+  EXPECT_NE(dynamic_cast<ImageWindowSearch*>(make_search(image_cloud()).get()), nullptr);
+  EXPECT_NE(dynamic_cast<BruteForceSearch*>(make_search(scenes::random_cloud(10, 1, 1)).get()), nullptr);
+  EXPECT_NE(dynamic_cast<UniformGridSearch*>(make_search(scenes::random_cloud(1000, 1, 1)).get()), nullptr);
+}
+
+}  // namespace
+}  // namespace remote_touch

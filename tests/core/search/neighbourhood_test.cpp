@@ -1,0 +1,78 @@
+#include "core/search/neighbourhood.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kReach = 0.01, kContactRadius = 0.005;
+
+std::shared_ptr<const NeighbourSearch> cloud_with_fixtures() {
+  PointCloud cloud = scenes::random_cloud(4000, 0.05, 21);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.fixture_radius_m.push_back(i % 3 == 0 ? 0.004 : 0);
+  return std::make_shared<BruteForceSearch>(cloud);
+}
+
+// Wherever in its cube the position lies, no point within reach may be missing from the list.
+TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
+  const auto points = cloud_with_fixtures();
+  const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
+  Neighbourhood near(kReach, scenes::kernels());
+  near.set_points(points);
+  const PointCloud places = scenes::random_cloud(2000, 0.04, 22);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vec3 p = places.point(k);
+    const GatheredPoints& list = near.around(p);
+    std::vector<bool> listed(cloud.size(), false);
+    for (std::size_t i = 0; i < list.size(); ++i) listed[list.index()[i]] = true;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if ((p - cloud.point(i)).norm() - cloud.fixture_radius_m[i] <= kReach) {
+        ASSERT_TRUE(listed[i]) << k;
+      }
+    }
+  }
+}
+
+// One wide region far off: the list does not take in the points between.
+TEST(Neighbourhood, AWideRegionFarAwayDoesNotWidenTheList) {
+  PointCloud cloud = scenes::random_cloud(4000, 0.05, 21);
+  const auto size_with = [&](double radius) {
+    PointCloud other = cloud;
+    other.append({0, 0, 0.3});
+    other.fixture_radius_m.assign(other.size(), 0);
+    other.fixture_radius_m.back() = radius;
+    Neighbourhood near(kReach, scenes::kernels());
+    near.set_points(make_search(other));
+    return near.around(Vec3::Zero()).size();
+  };
+  EXPECT_GT(size_with(0), 0u);
+  EXPECT_EQ(size_with(0.25), size_with(0));
+  EXPECT_EQ(size_with(0.295), size_with(0) + 1);
+}
+
+// Through hops as through the whole cloud at once, regions beside the tube included.
+TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
+  const auto points = cloud_with_fixtures();
+  GatheredPoints all;
+  all.reserve(points->size(), true, false);
+  points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
+  all.finish();
+  Neighbourhood near(kReach, scenes::kernels());
+  near.set_points(points);
+  const PointCloud from = scenes::random_cloud(400, 0.3, 23), to = scenes::random_cloud(400, 0.06, 24);
+  int hits = 0;
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const Vec3 p = from.point(k), way = to.point(k) - p, u = way.normalized();
+    const double expected = scenes::kernels().first_hit(all.view(), p.data(), u.data(), kContactRadius);
+    EXPECT_EQ(near.first_hit(p, u, kContactRadius, way.norm()), std::min(expected, way.norm())) << k;
+    hits += expected < way.norm() ? 1 : 0;
+  }
+  EXPECT_GT(hits, 200);
+}
+
+}  // namespace
+}  // namespace remote_touch

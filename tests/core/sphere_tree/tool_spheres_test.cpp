@@ -1,0 +1,120 @@
+#include "core/sphere_tree/tool_spheres.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/parameters/input_error.h"
+#include "core/sphere_tree/sphere_cover.h"
+#include "core/tool/mesh/generated_tools.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+VoxelTool tool_of(const std::string& name) {
+  ToolReport report;
+  return make_voxel_tool(find_generated_tool(name)->make(), {}, report);
+}
+
+constexpr double kRounding_m = 1e-9;
+
+// One after the other, each that covers most of what is left.
+std::vector<Sphere> plain_cover(const std::vector<Vec3>& points, const std::vector<Sphere>& choice,
+                                double growth_m, std::size_t most) {
+  std::vector<Vec3> left = points;
+  std::vector<Sphere> taken;
+  while (!left.empty() && taken.size() <= most) {
+    std::size_t best = 0, best_count = 0;
+    const auto covers = [&](const Sphere& sphere, const Vec3& p) {
+      return (p - sphere.centre).norm() <= sphere.radius_m + growth_m;
+    };
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      const auto count = static_cast<std::size_t>(
+          std::count_if(left.begin(), left.end(), [&](const Vec3& p) { return covers(choice[i], p); }));
+      if (count > best_count) best = i, best_count = count;
+    }
+    if (best_count == 0) break;
+    taken.push_back({choice[best].centre, choice[best].radius_m + growth_m});
+    std::erase_if(left, [&](const Vec3& p) { return covers(choice[best], p); });
+  }
+  return taken;
+}
+
+TEST(SphereCover, TakesWhatAPlainSearchTakes) {
+  const PointCloud points = scenes::random_cloud(2000, 0.05, 1), centres = scenes::random_cloud(300, 0.06, 2);
+  std::vector<Vec3> places;
+  std::vector<Sphere> choice;
+  for (std::size_t i = 0; i < points.size(); ++i) places.push_back(points.point(i));
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    choice.push_back({centres.point(i), 0.005 + 1e-5 * static_cast<double>(i % 700)});
+  const SphereCover cover(places, choice, 0.004);
+  for (const double growth_m : {0.0, 0.004, 0.02}) {
+    const SphereCover::Result result = cover.cover(growth_m, 60);
+    const std::vector<Sphere> expected = plain_cover(places, choice, growth_m, 60);
+    ASSERT_EQ(result.spheres.size(), expected.size()) << growth_m;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_EQ(result.spheres[i].centre, expected[i].centre) << growth_m << ", sphere " << i;
+  }
+}
+
+// The surface lies inside the union, and the union close to the tool: as close as the leaves are many.
+TEST(ToolSpheres, CoverTheToolTheCloserTheMoreThereAre) {
+  for (const VoxelTool& tool : {tool_of("husky"), *scenes::box_tool({0.02, 0.005, 0.01})}) {
+    double before_m = 1;
+    for (const int leaves : {16, 112}) {
+      const ToolSpheres made = make_tool_spheres(tool, leaves);
+      EXPECT_LE(made.spheres.leaves().size(), static_cast<std::size_t>(leaves));
+      EXPECT_LT(made.outside_m, before_m) << leaves;
+      EXPECT_LE(made.outside_m, made.growth_m + kRounding_m) << leaves;
+      EXPECT_LT(made.inside_m, kRounding_m) << leaves;
+      before_m = std::max(made.outside_m, 1e-4);
+    }
+  }
+}
+
+// The same two numbers by other means: of a box the distance is known, and its surface is easily walked over.
+TEST(ToolSpheres, WhatIsToldOfABoxIsTrue) {
+  const Vec3 half_m(0.02, 0.005, 0.01);
+  const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
+  const PointCloud ways = scenes::random_cloud(3000, 1, 8);
+  double outside_m = 0, inside_m = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (const Sphere& leaf : made.spheres.leaves())
+      outside_m = std::max(
+          outside_m, scenes::box_distance(half_m, leaf.centre + leaf.radius_m * ways.point(i).normalized()));
+    const Vec3 way = ways.point(i) / ways.point(i).cwiseAbs().maxCoeff();  // one side of the box
+    double least_m = 1;
+    for (const Sphere& leaf : made.spheres.leaves())
+      least_m = std::min(least_m, (half_m.cwiseProduct(way) - leaf.centre).norm() - leaf.radius_m);
+    inside_m = std::max(inside_m, least_m);
+  }
+  EXPECT_GT(made.growth_m, 1e-3);  // or there would be nothing to tell
+  EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
+  EXPECT_LT(outside_m, made.growth_m + 1e-6);
+  EXPECT_LT(inside_m, 5e-5);
+}
+
+TEST(ToolSpheres, TellsNoLessThanItIs) {
+  ToolSpheres made;
+  made.outside_m = 0.001291;
+  EXPECT_EQ(text(made),
+            "0 spheres, at most 1.30 mm outside the mesh; its surface is at most 0.00 mm outside them");
+}
+
+TEST(ToolSpheres, ABallIsNearlyOneSphere) {
+  const ToolSpheres made = make_tool_spheres(tool_of("ball"), 1);
+  ASSERT_EQ(made.spheres.leaves().size(), 1u);
+  EXPECT_LT(made.outside_m, 1e-3);
+  EXPECT_LT(made.inside_m, 1e-4);
+}
+
+TEST(ToolSpheres, AToolWithoutInsideIsRefused) {
+  VoxelTool tool = *scenes::box_tool({0.002, 0.002, 0.002});
+  for (float& distance : tool.distance_m) distance = std::abs(distance) + 1e-6f;
+  EXPECT_THROW(make_tool_spheres(tool, 10), InputError);
+}
+
+}  // namespace
+}  // namespace remote_touch

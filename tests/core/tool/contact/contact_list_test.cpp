@@ -1,0 +1,107 @@
+#include "core/tool/contact/contact_list.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "tests/support/box_tool.h"
+#include "tests/support/formed.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
+const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
+constexpr double kCellsPer_m = 250;
+// Between its nodes the field of a convex tool is convex but for a fraction of a voxel.
+constexpr double kInterpolated_m = 5e-5;
+constexpr double kTouched_m = 3e-4;  // what is nearer is searched
+
+// Points around the tool with normals in all directions; every seventh has none.
+PointCloud cloud_of(std::size_t count) {
+  PointCloud cloud = scenes::random_cloud(count, 0.012, 21);
+  const PointCloud ways = scenes::random_cloud(count, 1, 22);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : ways.point(i).normalized();
+    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
+  }
+  return cloud;
+}
+
+struct Found {
+  std::uint64_t cell;
+  ToolContact contact;
+};
+
+// Every disk within the look-ahead as a contact, one after the other.
+std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p) {
+  TouchFinder finder(kTool, scenes::kernels());
+  finder.on_frame(formed<TiledCloud>(cloud));
+  std::vector<Found> all;
+  const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
+  for (std::uint32_t i = 0; i < finder.cloud().room(); ++i) {
+    const Vec3 p_T = R_TW * (finder.cloud().point(i) - kPose.p_W);
+    if (!(p_T.norm() < 0.1)) continue;  // padding
+    const SurfaceDisk disk{p_T, R_TW * finder.cloud().normal(i), p.disk_share * finder.cloud().spacing_m(i),
+                           sample_field(*kTool, p_T)};
+    const double lower_m = lower_bound_m(disk);
+    if (lower_m > p.look_ahead_m) continue;
+    all.push_back({cell_and_octant(p_T, -disk.at.gradient_T, kCellsPer_m),
+                   lower_m <= kTouched_m ? near_contact(*kTool, disk, nearest_place(*kTool, disk), 0)
+                                         : far_contact(disk, lower_m)});
+  }
+  return all;
+}
+
+bool same(const ToolContact& a, const ToolContact& b) {
+  return a.r_T == b.r_T && a.n_T == b.n_T && a.depth_m == b.depth_m && a.side == b.side;
+}
+
+TEST(ContactList, FewContactsAreAllThere) {
+  const PointCloud cloud = cloud_of(800);
+  const std::vector<Found> all = all_contacts(cloud, {});
+  ContactList list(kTool, {}, scenes::kernels());
+  list.on_frame(formed<TiledCloud>(cloud));
+  const NearContacts near = list.near(kPose, 0);
+  ASSERT_GT(all.size(), 20u);
+  ASSERT_LT(all.size(), 256u);
+  ASSERT_EQ(near.contacts.size(), all.size());
+  double deepest_m = -1;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_TRUE(same(near.contacts[i], all[i].contact)) << i;
+    deepest_m = std::max(deepest_m, all[i].contact.depth_m);
+  }
+  EXPECT_EQ(near.deepest_m, deepest_m);
+}
+
+// Most disks are never searched, and still it is the deepest contact of a cell that is kept: the lower bound
+// of a disk holds for a convex tool.
+TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
+  for (const std::size_t count : {20000u, 100000u}) {
+    const PointCloud cloud = cloud_of(count);
+    std::map<std::uint64_t, double> deepest;
+    const std::vector<Found> all = all_contacts(cloud, {});
+    for (const Found& found : all) {
+      const auto at = deepest.emplace(found.cell, found.contact.depth_m).first;
+      at->second = std::max(at->second, found.contact.depth_m);
+    }
+    std::vector<double> expected_m, kept_m;
+    for (const auto& cell : deepest) expected_m.push_back(cell.second);
+    ContactList list(kTool, {}, scenes::kernels());
+    list.on_frame(formed<TiledCloud>(cloud));
+    const NearContacts near = list.near(kPose, 0);
+    for (const ToolContact& contact : near.contacts) kept_m.push_back(contact.depth_m);
+    std::sort(kept_m.begin(), kept_m.end()), std::sort(expected_m.begin(), expected_m.end());
+    EXPECT_GT(all.size(), 10 * kept_m.size());
+    ASSERT_EQ(kept_m.size(), expected_m.size());
+    for (std::size_t i = 0; i < kept_m.size(); ++i) EXPECT_NEAR(kept_m[i], expected_m[i], kInterpolated_m);
+    EXPECT_EQ(near.deepest_m, expected_m.back());
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,110 @@
+#include "core/tool/contact/tiled_cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/cloud/camera.h"
+#include "core/kernels/kernels.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+PointCloud image_cloud(int width, int height) {
+  DepthImage depth{width, height, {}};
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u)
+      depth.z_m.push_back((u * 7 + v * 3) % 11 == 0 ? kNaN : 0.6 + 0.001 * u + (u > width / 2 ? 0.3 : 0));
+  return cloud_from_depth(depth, {width, height, 500, 500, 0.5 * width, 0.5 * height},
+                          RigidTransform::Identity());
+}
+
+bool holds(const SphereColumns& spheres, std::size_t i, const Vec3& p) {
+  return (p - Vec3(spheres.x[i], spheres.y[i], spheres.z[i])).norm() <= spheres.radius[i];
+}
+
+// Every measured point is there once, in a tile whose sphere holds it, in a block whose sphere holds that.
+void expect_tiled(const PointCloud& cloud) {
+  TiledCloud tiled;
+  tiled.assign(cloud);
+  std::multiset<std::array<double, 3>> expected, found;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.point(i).allFinite()) expected.insert({cloud.x[i], cloud.y[i], cloud.z[i]});
+  std::uint32_t next = 0;
+  for (const TileBlock& block : tiled.blocks())
+    for (const Tile& tile : tiled.tiles(block)) {
+      EXPECT_EQ(tile.first, next);
+      EXPECT_EQ(tile.padded_count, kTilePoints);
+      next += tile.padded_count;
+      EXPECT_LE((tile.sphere.centre_W - block.sphere.centre_W).norm() + tile.sphere.radius_m,
+                block.sphere.radius_m);
+      for (std::uint32_t i = tile.first; i < next; ++i) {
+        if (tiled.point(i).x() == kFarAway) continue;
+        found.insert({tiled.point(i).x(), tiled.point(i).y(), tiled.point(i).z()});
+        EXPECT_LE((tiled.point(i) - tile.sphere.centre_W).norm(), tile.sphere.radius_m);
+        EXPECT_TRUE(holds(tiled.tile_spheres(), i / kTilePoints, tiled.point(i)));
+        EXPECT_TRUE(holds(tiled.group_spheres(), i / kLanes, tiled.point(i)));
+      }
+    }
+  EXPECT_EQ(next, tiled.room());
+  EXPECT_EQ(found, expected);
+}
+
+TEST(TiledCloud, HoldsEveryMeasuredPointOnce) {
+  expect_tiled(image_cloud(70, 45));
+  expect_tiled(image_cloud(8, 8));
+  expect_tiled(image_cloud(1, 1));
+  expect_tiled(scenes::flat_grid(33));
+  expect_tiled(scenes::random_cloud(5000, 0.3, 4));
+  PointCloud holes = scenes::random_cloud(100, 0.3, 5);
+  holes.y[3] = kNaN, holes.z[50] = std::numeric_limits<double>::infinity();
+  expect_tiled(holes);
+  expect_tiled({});
+  PointCloud one;
+  one.append({1, 2, 3});
+  expect_tiled(one);
+  PointCloud same;
+  for (int i = 0; i < 200; ++i) same.append({1, 2, 3});
+  expect_tiled(same);
+}
+
+TEST(TiledCloud, NormalsFollowTheirPoints) {
+  PointCloud cloud;
+  for (int i = 0; i < 500; ++i)
+    cloud.append(Vec3((i * 37) % 500, i % 7, 0) * 1e-3, Vec3(i, 0, 1).normalized());
+  cloud.nx[9] = cloud.ny[9] = cloud.nz[9] = kNaN;
+  TiledCloud tiled;
+  tiled.assign(cloud);
+  EXPECT_EQ(tiled.without_normal(), 1);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (std::uint32_t j = 0; j < tiled.room(); ++j)
+      if (i != 9 && tiled.point(j) == cloud.point(i)) {
+        EXPECT_EQ(tiled.normal(j), cloud.normal(i));
+      }
+}
+
+TEST(TiledCloud, KnowsTheSpacing) {
+  TiledCloud tiled;
+  tiled.assign(scenes::flat_grid(50, 0.002));
+  for (const TileBlock& block : tiled.blocks())
+    for (const Tile& tile : tiled.tiles(block)) EXPECT_NEAR(tiled.spacing_m(tile.first), 0.002, 1e-12);
+  // a wall of an image at 1 m and 45 degrees: pixels are 2 mm apart, and 1.41 times that along the wall
+  PointCloud cloud = cloud_from_depth({8, 8, std::vector<double>(64, 1.0)}, {8, 8, 500, 500, 3.5, 3.5},
+                                      RigidTransform::Identity());
+  for (std::size_t i = 0; i < 64; ++i) {
+    const Vec3 n = Vec3(1, 0, -1).normalized();
+    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
+  }
+  tiled.assign(cloud);
+  EXPECT_NEAR(tiled.spacing_m(27), 0.002 * std::sqrt(2), 3e-5);
+}
+
+}  // namespace
+}  // namespace remote_touch

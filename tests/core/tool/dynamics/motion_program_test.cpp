@@ -1,0 +1,92 @@
+#include "core/tool/dynamics/motion_program.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/support/box_tool.h"
+
+namespace remote_touch {
+namespace {
+
+const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
+
+Vector6 wish(const Vec3& a, const Vec3& alpha = Vec3::Zero()) {
+  Vector6 both;
+  both << a, alpha;
+  return both;
+}
+
+double gap_speed(const ToolContact& c, const Vector6& a_g) {  // the left side of (6.3)
+  return c.n_T.dot(a_g.head<3>()) + c.r_T.cross(c.n_T).dot(a_g.tail<3>());
+}
+
+TEST(MotionProgram, WithoutContactsTheWishIsGranted) {
+  MotionProgram program(*kTool);
+  const Vector6 wanted = wish({1e-3, -2e-3, 5e-4}, {0.01, 0, -0.02});
+  const ConstrainedMotion motion = program.solve(wanted, {});
+  EXPECT_LT((motion.a_g - wanted).norm(), 1e-15);
+  EXPECT_EQ(motion.active_count, 0);
+}
+
+// A point under the centre stops the fall and leaves the rest.
+TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
+  MotionProgram program(*kTool);
+  const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - wish({1e-3, 0, 0})).norm(), 1e-12);
+  EXPECT_EQ(motion.active_count, 1);
+  EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);
+  EXPECT_GT(motion.side, 0);
+}
+
+// Off centre the tool tips over the point: Gauss' principle by hand. With row (n, r x n), M = diag(1, I):
+// a = wish + M^-1 row^T lambda, lambda = -row.wish / (row M^-1 row^T).
+TEST(MotionProgram, AnOffCentreContactTipsTheTool) {
+  MotionProgram program(*kTool);
+  const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const Vec3 lever = contacts[0].r_T.cross(contacts[0].n_T);
+  const Vec3 turned = kTool->inertia_m2.inverse() * lever;
+  const double lambda = 2e-3 / (1 + lever.dot(turned));
+  const ConstrainedMotion motion = program.solve(wish({0, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - wish({0, -2e-3 + lambda, 0}, lambda * turned)).norm(), 1e-12);
+  EXPECT_NEAR(gap_speed(contacts[0], motion.a_g), 0, 1e-14);
+}
+
+TEST(MotionProgram, PenetrationIsResolvedByItsDepth) {
+  MotionProgram program(*kTool);
+  const std::vector<ToolContact> contacts = {{{-0.02, -0.005, 0}, Vec3::UnitY(), 3e-4, 1},
+                                             {{0.02, -0.005, 0}, Vec3::UnitY(), 3e-4, 1},
+                                             {{0, 0.005, 0}, -Vec3::UnitY(), -1e-3, 1}};
+  const ConstrainedMotion motion = program.solve(Vector6::Zero(), contacts);
+  EXPECT_LT((motion.a_g - wish({0, 3e-4, 0})).norm(), 1e-12);
+  EXPECT_FALSE(motion.elastic);
+}
+
+// Walls that close in on both sides by 0.4 mm: no motion resolves them, each is loosened by as much, and the
+// tool still follows the device along the wedge.
+TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
+  MotionProgram program(*kTool);
+  const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
+                                             {{-0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
+                                             {{0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1},
+                                             {{-0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1}};
+  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 5e-4}), contacts);
+  EXPECT_TRUE(motion.elastic);
+  EXPECT_NEAR(motion.a_g[0], 1e-3, 1e-9);
+  EXPECT_NEAR(motion.a_g[2], 5e-4, 1e-9);
+  EXPECT_NEAR(motion.a_g[1], 0, 1e-6);
+}
+
+TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
+  MotionProgram program(*kTool);
+  std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::Constant(std::nan("")), 0, 1},
+                                       {{0, -0.005, 0}, Vec3::UnitY(), std::nan(""), 1},
+                                       {{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - wish({1e-3, 0, 0})).norm(), 1e-12);
+  EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);  // the multiplier belongs to the last of the three
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,76 @@
+// How a frame's sheet lies against the one before, from points alone.
+#include "core/tracked_sheet/sheet_registration.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr double kHalfRange = 8;
+const PatchPlace kProxy{0, 0, 1};
+
+// A sheet at height + slope_u u + slope_v v with noise, and one below it where that is asked for.
+PatchPoints sheet(double height, double slope_u, double slope_v, double sigma, unsigned seed,
+                  double second_below = 0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PatchPoints points(scenes::kernels());
+  points.reserve(10000);
+  for (double v = -7; v <= 7; v += 0.3)
+    for (double u = -7; u <= 7; u += 0.3)
+      for (const double below : {0.0, second_below}) {
+        const double h = height + slope_u * u + slope_v * v - below + sigma * normal(random);
+        points.add({PatchFrame::rounded(u), PatchFrame::rounded(v), PatchFrame::rounded(h)}, true);
+        if (second_below == 0) break;
+      }
+  return points;
+}
+
+HeightMap flat_map() {
+  HeightMap map;
+  map.set_plane(0, 0, 0, 12);
+  return map;
+}
+
+// The profile of the frame before: the same sheets at height 0.
+SheetShift shift_of(PatchPoints now, double gate, double sigma, double second_below = 0) {
+  PatchPoints before = sheet(0, 0, 0, sigma, 99, second_below);
+  before.set_residuals(flat_map());
+  const HeightProfile profile = before.profile_near(kProxy, kRegistrationReach, kHalfRange).smoothed(0.1);
+  now.set_residuals(flat_map());
+  return register_sheet(now, profile, kProxy, gate, kHalfRange, sigma);
+}
+
+TEST(SheetRegistration, FindsHowFarASheetMovedAndTurned) {
+  for (const double height : {-2.5, -0.4, 0.0, 1.7, 2.8}) {
+    const SheetShift shift = shift_of(sheet(height, 0.05, -0.1, 0, 1), 3, 0);
+    EXPECT_NEAR(shift.height, height, 2e-3);
+    EXPECT_NEAR(shift.slope_u, 0.05, 1e-3);
+    EXPECT_NEAR(shift.slope_v, -0.1, 1e-3);
+  }
+}
+
+// A mean over n points: the standard error is sigma / sqrt(n), here of some 1200.
+TEST(SheetRegistration, NoiseMovesItByItsStandardErrorAlone) {
+  for (unsigned seed = 1; seed <= 10; ++seed)
+    EXPECT_NEAR(shift_of(sheet(1.3, 0, 0, 1, seed), 3, 1).height, 1.3, 0.2) << seed;
+}
+
+// The lower sheet, three contact radii below, has moved into the place of the upper one.
+TEST(SheetRegistration, ASecondSheetInTheFirstOnesPlaceIsNotTakenForIt) {
+  EXPECT_NEAR(shift_of(sheet(2.5, 0, 0, 0.1, 1, 3), 3, 0.1, 3).height, 2.5, 0.05);
+}
+
+TEST(SheetRegistration, WithoutPointsNothingMoved) {
+  const SheetShift shift = shift_of(PatchPoints(scenes::kernels()), 3, 0.1);
+  EXPECT_EQ(shift.slope_u, 0);
+  EXPECT_EQ(shift.slope_v, 0);
+  EXPECT_EQ(shift.height, 0);
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,219 @@
+// How rules follow each other: order, blending, strength over time, and the columns of r_f and k_s.
+#include "core/virtual_fixtures/fixture_assignment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/virtual_fixtures/everywhere.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+using Column = std::vector<double>;
+
+// Shares as they are told.
+class Told final : public FixtureRule {
+ public:
+  Told(const FixtureValues& values, Column shares) : FixtureRule(values), shares_(std::move(shares)) {}
+  Column shares(const PointCloud&) const override { return shares_; }
+
+ private:
+  Column shares_;
+};
+
+struct Rule {
+  Rule(FixtureValues v, Column s) : values(std::move(v)), shares(std::move(s)) {}
+  FixtureValues values;
+  Column shares;
+};
+
+FixtureAssignment assignment(const std::vector<Rule>& rules) {
+  std::vector<std::unique_ptr<const FixtureRule>> list;
+  for (const Rule& rule : rules) list.push_back(std::make_unique<Told>(rule.values, rule.shares));
+  return FixtureAssignment(std::move(list));
+}
+
+PointCloud points(int count) {
+  PointCloud cloud;
+  for (int i = 0; i < count; ++i) cloud.append({0.1 * i, 0, 0});
+  return cloud;
+}
+
+PointCloud assigned(const std::vector<Rule>& rules, PointCloud cloud, double captured_s = 0) {
+  assignment(rules).assign(cloud, captured_s);
+  return cloud;
+}
+
+void expect_near(const Column& column, const Column& expected) {
+  ASSERT_EQ(column.size(), expected.size());
+  for (std::size_t i = 0; i < column.size(); ++i) EXPECT_NEAR(column[i], expected[i], 1e-15) << i;
+}
+
+// --- columns ---
+
+TEST(FixtureAssignment, WithoutRulesNothingIsChanged) {
+  const PointCloud plain = assigned({}, points(2));
+  EXPECT_TRUE(plain.fixture_radius_m.empty() && plain.stiffness_N_per_m.empty());
+  PointCloud own = points(2);
+  own.fixture_radius_m = {1, 2}, own.stiffness_N_per_m = {3, 4};
+  const PointCloud kept = assigned({}, own);
+  EXPECT_EQ(kept.fixture_radius_m, own.fixture_radius_m);
+  EXPECT_EQ(kept.stiffness_N_per_m, own.stiffness_N_per_m);
+  EXPECT_TRUE(assignment({}).empty() && FixtureAssignment().empty());
+  EXPECT_FALSE(assignment({{{}, {1}}}).empty());
+}
+
+TEST(FixtureAssignment, PointsThatNoRulePicksHaveNoRegion) {
+  EXPECT_EQ(assigned({{{0.02}, {0, 1, 0}}}, points(3)).fixture_radius_m, (Column{0, 0.02, 0}));
+  EXPECT_EQ(assigned({{{0.02}, {0, 0, 0}}}, points(3)).fixture_radius_m, (Column{0, 0, 0}));
+}
+
+TEST(FixtureAssignment, TheColumnsOfTheCloudAreTheStart) {
+  PointCloud cloud = points(3);
+  cloud.fixture_radius_m = {0.1, 0.2, 0.3}, cloud.stiffness_N_per_m = {10, 20, 30};
+  const PointCloud result = assigned({{{0.5, 40}, {0, 0.5, 1}}}, cloud);
+  expect_near(result.fixture_radius_m, {0.1, 0.35, 0.5});
+  expect_near(result.stiffness_N_per_m, {10, 30, 40});
+  EXPECT_EQ(result.x, cloud.x);
+}
+
+TEST(FixtureAssignment, NoRuleThatNamesAStiffnessNoColumnOfIt) {
+  EXPECT_TRUE(assigned({{{0.02}, {1, 1}}, {{0.01}, {1, 0}}}, points(2)).stiffness_N_per_m.empty());
+  PointCloud cloud = points(2);
+  cloud.stiffness_N_per_m = {5, 6};
+  EXPECT_EQ(assigned({{{0.02}, {1, 1}}}, cloud).stiffness_N_per_m, (Column{5, 6}));
+}
+
+// Half of the renderer's own stiffness is not known here.
+TEST(FixtureAssignment, APointWithoutAStiffnessTakesTheRulesAtOnce) {
+  const Column got = assigned({{{0.02, 100}, {0, 0.25, 1}}}, points(3)).stiffness_N_per_m;
+  EXPECT_TRUE(std::isnan(got[0])) << "which is the renderer's own";
+  EXPECT_EQ(got[1], 100);
+  EXPECT_EQ(got[2], 100);
+  // From then on there is something to be drawn from.
+  expect_near(assigned({{{0.02, 100}, {0.25}}, {{0.02, 200}, {0.25}}}, points(1)).stiffness_N_per_m, {125});
+  // A stiffness of 0 is one.
+  expect_near(assigned({{{0.02, 0}, {1}}, {{0.02, 200}, {0.25}}}, points(1)).stiffness_N_per_m, {50});
+}
+
+TEST(FixtureAssignment, ARuleWithoutAStiffnessLeavesThatOfTheRuleBefore) {
+  EXPECT_EQ(assigned({{{0.02, 100}, {1}}, {{0.03}, {1}}}, points(1)).stiffness_N_per_m, Column{100});
+}
+
+// --- order and blending ---
+
+TEST(FixtureAssignment, ALaterRuleOverridesAnEarlierOne) {
+  const Rule first{{0.02, 100}, {1, 1, 0, 0}}, second{{0.05, 300}, {0, 1, 1, 0}};
+  const PointCloud one = assigned({first, second}, points(4));
+  EXPECT_EQ(one.fixture_radius_m, (Column{0.02, 0.05, 0.05, 0}));
+  EXPECT_EQ(one.stiffness_N_per_m[1], 300);
+  const PointCloud other = assigned({second, first}, points(4));
+  EXPECT_EQ(other.fixture_radius_m, (Column{0.02, 0.02, 0.05, 0}));
+  EXPECT_EQ(other.stiffness_N_per_m[1], 100);
+}
+
+TEST(FixtureAssignment, ALaterRuleCanTakeARegionAway) {
+  EXPECT_EQ(assigned({{{0.02}, {1, 1}}, {{0}, {1, 0}}}, points(2)).fixture_radius_m, (Column{0, 0.02}));
+}
+
+TEST(FixtureAssignment, ARuleCanLeaveTheRadiusAsItWas) {
+  const PointCloud result = assigned({{{0.02}, {1, 0}}, {{-1, 300}, {1, 1}}}, points(2));
+  EXPECT_EQ(result.fixture_radius_m, (Column{0.02, 0}));
+  EXPECT_EQ(result.stiffness_N_per_m, (Column{300, 300}));
+}
+
+TEST(FixtureAssignment, AShareDrawsTheValueSoFar) {
+  expect_near(assigned({{{0.04}, {0.25, 0.5, 1}}, {{0.1}, {0.5, 0, 0.1}}}, points(3)).fixture_radius_m,
+              {0.055, 0.02, 0.046});
+}
+
+TEST(FixtureAssignment, AValueThatIsReachedIsReachedExactly) {
+  PointCloud cloud = points(1);
+  cloud.fixture_radius_m = {0.7}, cloud.stiffness_N_per_m = {1e4};
+  const PointCloud result = assigned({{{0.1, 0.3}, {1}}}, cloud);
+  EXPECT_EQ(result.fixture_radius_m, Column{0.1});
+  EXPECT_EQ(result.stiffness_N_per_m, Column{0.3});
+}
+
+// --- strength over time ---
+
+FixtureValues scheduled(Column rows) {
+  FixtureValues values{0.02};
+  values.schedule = std::move(rows);
+  return values;
+}
+
+double strength(const Column& rows, double time_s) {
+  return Everywhere({scheduled(rows)}).strength(time_s);
+}
+
+TEST(Schedule, IsEvenBetweenRowsAndConstantOutside) {
+  const Column rows{1, 0.25, 3, 0.75, 4, 0};
+  const double expected[][2] = {{-5, 0.25}, {0, 0.25},    {1, 0.25}, {1.5, 0.375}, {2, 0.5},
+                                {3, 0.75},  {3.5, 0.375}, {4, 0},    {4.001, 0},   {1e6, 0}};
+  for (const auto& [time_s, value] : expected) EXPECT_NEAR(strength(rows, time_s), value, 1e-15) << time_s;
+}
+
+TEST(Schedule, WithoutRowsIsAlwaysWhole) {
+  for (const double time_s : {-1.0, 0.0, 1e6}) EXPECT_EQ(strength({}, time_s), 1);
+}
+
+TEST(Schedule, OfOneRowIsConstant) {
+  for (const double time_s : {-1.0, 2.0, 1e6}) EXPECT_EQ(strength({2, 0.5}, time_s), 0.5);
+}
+
+TEST(Schedule, JumpsWhereTwoRowsHaveTheSameTime) {
+  const Column rows{1, 0, 2, 0.5, 2, 1, 2, 0.25, 3, 0.75};
+  EXPECT_NEAR(strength(rows, std::nextafter(2, 0)), 0.5, 1e-12);
+  EXPECT_EQ(strength(rows, 2), 0.25) << "the last row of that time counts from then on";
+  EXPECT_NEAR(strength(rows, 2.5), 0.5, 1e-15);
+  EXPECT_EQ(strength({0, 1, 0, 0}, 0), 0);
+  EXPECT_EQ(strength({0, 1, 0, 0}, -1e-9), 1);
+}
+
+TEST(Schedule, MultipliesTheShare) {
+  const Rule rule{scheduled({0, 0, 2, 1}), {1, 0.5}};
+  expect_near(assigned({rule}, points(2), 0).fixture_radius_m, {0, 0});
+  expect_near(assigned({rule}, points(2), 0.5).fixture_radius_m, {0.005, 0.0025});
+  expect_near(assigned({rule}, points(2), 7).fixture_radius_m, {0.02, 0.01});
+}
+
+// A rule that does not count does not give a stiffness either.
+TEST(Schedule, AtNothingTheStiffnessStaysTheRenderersOwn) {
+  FixtureValues values = scheduled({1, 0, 1, 1});
+  values.stiffness_N_per_m = 50;
+  EXPECT_TRUE(std::isnan(assigned({{values, {1}}}, points(1), 0.5).stiffness_N_per_m.at(0)));
+  EXPECT_EQ(assigned({{values, {1}}}, points(1), 1).stiffness_N_per_m.at(0), 50);
+}
+
+TEST(Schedule, ChangesWithTimeWhereItsStrengthDoes) {
+  const auto changes = [](const std::vector<Column>& schedules) {
+    std::vector<Rule> rules;
+    for (const Column& rows : schedules) rules.push_back({scheduled(rows), {1}});
+    return assignment(rules).changes_with_time();
+  };
+  EXPECT_FALSE(changes({}));
+  EXPECT_FALSE(changes({{}, {0, 0.5}, {0, 0.5, 9, 0.5}}));
+  EXPECT_TRUE(changes({{}, {0, 0.5, 9, 0.6}, {}}));
+  EXPECT_TRUE(changes({{0, 0.5, 1, 0.5, 1, 0.4}}));
+}
+
+// --- what is refused ---
+
+TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
+  EXPECT_EQ(conflict(FixtureValues{}), "");
+  EXPECT_EQ(conflict(FixtureValues{0, 0, {}}), "");
+  EXPECT_EQ(conflict(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: allowed 0 or more, or -1");
+  EXPECT_EQ(conflict(scheduled({0, 0, 0, 1, 3, 0.5})), "");
+  EXPECT_EQ(conflict(scheduled({0, 0, 1, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
+  EXPECT_EQ(conflict(scheduled({0, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
+  EXPECT_EQ(conflict(scheduled({0, 0, 2, 1, 1, 0})),
+            "schedule: time 1.000000: allowed no earlier than the row before");
+}
+
+}  // namespace
+}  // namespace remote_touch

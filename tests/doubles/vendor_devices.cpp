@@ -1,0 +1,120 @@
+#include "tests/doubles/vendor_devices.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "runners/live/devices/entact.h"
+#include "runners/live/devices/force_dimension.h"
+#include "runners/live/devices/open_haptics.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Vendors with x towards the user, y right and z up: the rows are these, in ours.
+Eigen::Matrix3d user_right_up() {
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  return axes;
+}
+
+}  // namespace
+
+const VendorDevice kForceDimension{.name = "force_dimension",
+                                   .uri = "fd:0",
+                                   .double_file = REMOTE_TOUCH_DOUBLE_DHD,
+                                   .variable = "REMOTE_TOUCH_LIBDHD",
+                                   .library = "libdhd.so.3",
+                                   .open = open_force_dimension,
+                                   .availability = force_dimension_availability,
+                                   .axes = user_right_up(),
+                                   .length_per_m = 1,
+                                   .torque_per_Nm = 1,
+                                   .has_buttons = true,
+                                   .drives_itself = false,
+                                   .has_motors_on_to_read = false,
+                                   .error = 7,
+                                   .told_error = 7,
+                                   .gone_error = 2};
+
+const VendorDevice kOpenHaptics{.name = "open_haptics",
+                                .uri = "touch:",
+                                .double_file = REMOTE_TOUCH_DOUBLE_HD,
+                                .variable = "REMOTE_TOUCH_LIBHD",
+                                .library = "libHD.so",
+                                .open = open_open_haptics,
+                                .availability = open_haptics_availability,
+                                .axes = Eigen::Matrix3d::Identity(),
+                                .length_per_m = 1000,
+                                .torque_per_Nm = 1000,
+                                .has_buttons = true,
+                                .drives_itself = true,
+                                .has_motors_on_to_read = false,
+                                .error = 0x0201,
+                                .told_error = 0x0201,
+                                .gone_error = 0x0302};
+
+const VendorDevice kEntact{.name = "entact",
+                           .uri = "entact:",
+                           .double_file = REMOTE_TOUCH_DOUBLE_ENTACT,
+                           .variable = "REMOTE_TOUCH_LIBENTACT",
+                           .library = "libEntactAPI.so",
+                           .open = open_entact,
+                           .availability = entact_availability,
+                           .axes = user_right_up(),
+                           .length_per_m = 1000,
+                           .torque_per_Nm = 1000,
+                           .has_buttons = false,
+                           .drives_itself = false,
+                           .has_motors_on_to_read = true,
+                           .error = 1,
+                           .told_error = -1,
+                           .gone_error = -1};
+
+void PrintTo(const VendorDevice* vendor, std::ostream* out) {
+  *out << vendor->name;
+}
+
+DoubleInstalled::DoubleInstalled(const VendorDevice& vendor) : variable_(vendor.variable) {
+  void* library = dlopen(vendor.double_file, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw std::runtime_error(dlerror());
+  const auto access = reinterpret_cast<DeviceDouble* (*)()>(dlsym(library, "device_double"));
+  device_ = access();
+  device_->reset();
+  setenv(variable_, vendor.double_file, 1);
+}
+
+DoubleInstalled::~DoubleInstalled() {
+  unsetenv(variable_);
+}
+
+void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick) {
+  int done = 0;
+  CallCycle cycle([&] {
+    if (done == ticks) return false;
+    tick(done++);
+    return true;
+  });
+  device.run(cycle);
+}
+
+std::vector<std::array<double, 6>> told_forces(const DeviceDouble& device) {
+  std::vector<std::array<double, 6>> told;
+  for (const DeviceDouble::Event& event : device.events())
+    if (event.told != std::array<double, 6>{} && (told.empty() || told.back() != event.told))
+      told.push_back(event.told);
+  return told;
+}
+
+ReadOnce read_once(HapticDevice& device) {
+  ReadOnce once;
+  run_ticks(device, 2, [&](int) {
+    once.fault = device.read(once.reading);
+    device.write({});
+  });
+  return once;
+}
+
+}  // namespace remote_touch

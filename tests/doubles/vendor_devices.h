@@ -1,0 +1,75 @@
+// The adapters of vendors' libraries with their test doubles, and what a test does with them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "runners/live/devices/availability.h"
+#include "runners/live/devices/haptic_device.h"
+#include "tests/doubles/device_double.h"
+
+namespace remote_touch {
+
+struct VendorDevice {
+  const char* name;
+  const char* uri;  // of the device, on the command line
+  const char* double_file;
+  const char* variable;  // names the library
+  const char* library;   // that is looked for without it
+  std::unique_ptr<HapticDevice> (*open)(const std::string& address);
+  Availability (*availability)();
+
+  Eigen::Matrix3d axes;  // takes ours to the vendor's
+  double length_per_m, torque_per_Nm;
+  bool has_buttons, drives_itself, has_motors_on_to_read;
+  int error, told_error;  // one of the vendor's codes, and what a fault tells of it
+  int gone_error;         // of a device that is unplugged
+};
+
+// For the names of tests.
+void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readability-identifier-naming)
+
+extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
+
+// The library of the vendor is its double, freshly set, as long as this lives.
+class DoubleInstalled {
+ public:
+  explicit DoubleInstalled(const VendorDevice& vendor);
+  ~DoubleInstalled();
+  DoubleInstalled(const DoubleInstalled&) = delete;
+  DoubleInstalled& operator=(const DoubleInstalled&) = delete;
+
+  DeviceDouble* operator->() const { return device_; }
+  DeviceDouble& operator*() const { return *device_; }
+
+ private:
+  const char* variable_;
+  DeviceDouble* device_;
+};
+
+// A cycle whose ticks are calls.
+class CallCycle : public DeviceCycle {
+ public:
+  explicit CallCycle(std::function<bool()> call) : call_(std::move(call)) {}
+  bool tick() noexcept override { return call_(); }
+
+ private:
+  std::function<bool()> call_;
+};
+
+// Runs the device for that many ticks and one more, which only ends it.
+void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick);
+
+// What the library was told that is not zero, once for all that was the same in a row.
+std::vector<std::array<double, 6>> told_forces(const DeviceDouble& device);
+
+// What one tick reads once the device has been told a force, and whether it was a fault.
+struct ReadOnce {
+  DeviceReading reading;
+  DeviceFault fault;
+};
+ReadOnce read_once(HapticDevice& device);
+
+}  // namespace remote_touch

@@ -1,0 +1,82 @@
+// Commands that are stored in results can be typed, and read back word by word.
+#include "runners/cli/shell_command.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+namespace remote_touch {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words kAwkward[] = {
+    {"remote-touch", "run", "fig4.11"},
+    {"remote-touch", "run", "my file.json", "--set", "title=two words"},
+    {"remote-touch", "run", "", "--set", ""},
+    {""},
+    {"", ""},
+    {" "},
+    {"  two  blanks  ", "\t", "a\tb"},
+    {"it's", "'", "''", "'''", "it''s", "'quoted'", "ends with '"},
+    {"\"", "say \"no\"", "'\"'\"'"},
+    {"\\", "\\\\", "\\'", "'\\''", "\\n", "ends with \\"},
+    {"a\nb", "\n", "two\n\nlines\n"},
+    {"axes=[{\"parameter\": \"seed\", \"values\": [1, 2]}]", "{}", "[a-z]*"},
+    {"$HOME", "$(false)", "`false`", "!!",  "#x", "~",  "~root", "*", "?", "a;b", "a; b",
+     "; ",    ";",        "a&b",     "a|b", "<x", ">x", "(",     ")", "=", "a=b"},
+    {"grün", "\xff\xfe", "\x01\x7f"},
+    {"-", "--", "-n", "%s", "%", "@", "+", ":", "1/2"},
+};
+
+TEST(ShellCommand, WordsComeBack) {
+  for (const Words& words : kAwkward)
+    EXPECT_EQ(words_of(shell_command(words)), words) << shell_command(words);
+}
+
+TEST(ShellCommand, PlainWordsStayAsTheyAre) {
+  EXPECT_EQ(shell_command({"remote-touch", "run", "a/b_c-1.json", "--set", "axes.0.to=1e-3,5:6+7%8@9"}),
+            "remote-touch run a/b_c-1.json --set axes.0.to=1e-3,5:6+7%8@9");
+  EXPECT_EQ(shell_command({"x", "", "a b", "it's"}), "x '' 'a b' 'it'\\''s'");
+}
+
+std::string said_by_shell(const std::string& command) {
+  FILE* pipe = ::popen(command.c_str(), "r");
+  if (!pipe) return "no shell";
+  std::string said;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) said += static_cast<char>(c);
+  EXPECT_EQ(::pclose(pipe), 0) << command;
+  return said;
+}
+
+TEST(ShellCommand, AShellTakesTheSameWords) {
+  for (const Words& words : kAwkward) {
+    Words command = {"printf", "%s\\n"};
+    std::string want;
+    for (const std::string& word : words) command.push_back(word), want += word + "\n";
+    EXPECT_EQ(said_by_shell(shell_command(command)), want) << shell_command(command);
+  }
+}
+
+TEST(ShellCommand, CommandsOneAfterTheOther) {
+  using Commands = std::vector<Words>;
+  EXPECT_EQ(commands_of("remote-touch sweep x"), (Commands{{"remote-touch", "sweep", "x"}}));
+  EXPECT_EQ(commands_of("a b; c d"), (Commands{{"a", "b"}, {"c", "d"}}));
+  EXPECT_EQ(commands_of("a 'b; c' d"), (Commands{{"a", "b; c", "d"}}));
+  EXPECT_EQ(commands_of(""), (Commands{{""}}));
+  Commands all(std::begin(kAwkward), std::end(kAwkward));
+  std::string text;
+  for (const Words& words : all) text += (text.empty() ? "" : "; ") + shell_command(words);
+  EXPECT_EQ(commands_of(text), all);
+}
+
+// Whatever a file says in place of a command, reading it comes to an end.
+TEST(ShellCommand, OtherTextsAreReadWithoutHarm) {
+  for (const char* text : {"'", "\\", "a'b", "; ", ";", "a; ", " ", "'a\\", "a\\"}) {
+    EXPECT_FALSE(words_of(text).empty()) << text;
+    EXPECT_FALSE(commands_of(text).back().empty()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,179 @@
+// What every renderer of the catalog owes its seam. A new one is tested here from its birth.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "runners/experiment/catalog.h"
+#include "runners/experiment/experiment.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+std::unique_ptr<Renderer> build(const RendererEntry& entry) {
+  return entry.make()->build(1000, scenes::kernels());
+}
+
+// A flat cloud that holds the renderer: with regions, where it knows nothing else.
+PointCloud grid_for(const RendererEntry& entry, int n) {
+  PointCloud cloud = scenes::flat_grid(n);
+  if (entry.held_by == HeldBy::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
+  return cloud;
+}
+
+// A press into a flat cloud with a new frame every 33 ticks, and back out.
+std::vector<RenderOutput> press(const RendererEntry& entry, Renderer& renderer) {
+  std::vector<RenderOutput> outputs;
+  for (int tick = 0; tick < 200; ++tick) {
+    if (tick % 33 == 0) renderer.on_frame(scenes::frame(grid_for(entry, 60), tick / 33));
+    const double depth = tick < 100 ? 0.02 - 0.0005 * tick : -0.03 + 0.0005 * (tick - 100);
+    outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
+  }
+  return outputs;
+}
+
+TEST(RendererContract, NoForceInFreeSpace) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
+    for (int tick = 0; tick < 50; ++tick) {
+      const RenderOutput out = renderer->step({Vec3(0.001 * tick, 0.03, 0)}, 0.001 * tick);
+      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
+      EXPECT_EQ(out.state, ContactState::free) << entry.name;
+      EXPECT_EQ(out.status, RenderStatus::ok) << entry.name;
+    }
+  }
+}
+
+TEST(RendererContract, HasAsManyDegreesOfFreedomAsItsEntrySays) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+    renderer->on_frame(scenes::frame(grid_for(entry, 40)));
+    EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+  }
+}
+
+TEST(RendererContract, PushesTheHandOutOfTheSurface) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    double highest = 0;
+    for (const RenderOutput& out : press(entry, *renderer)) highest = std::max(highest, out.force_N.y());
+    EXPECT_GT(highest, 1) << entry.name;
+  }
+}
+
+TEST(RendererContract, SameInputSameBits) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto first = build(entry), second = build(entry);
+    const auto a = press(entry, *first), b = press(entry, *second);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].proxy_W, b[i].proxy_W) << entry.name;
+      EXPECT_EQ(a[i].force_N, b[i].force_N) << entry.name;
+      EXPECT_EQ(a[i].steps, b[i].steps) << entry.name;
+    }
+  }
+}
+
+TEST(RendererContract, AStepAllocatesNothing) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->on_frame(scenes::frame(grid_for(entry, 100)));
+    for (int tick = 0; tick < 300; ++tick) {
+      // Approach, press, slide fast, jump across the cloud.
+      const Vec3 hip(tick < 200 ? 0 : 0.002 * (tick - 250), tick < 100 ? 0.02 - 0.0004 * tick : -0.02,
+                     tick % 50 == 0 ? 0.05 : 0);
+      const std::size_t before = allocation_count();
+      renderer->step({hip}, 0.001 * tick);
+      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
+    }
+  }
+}
+
+// Frames as a live loop hands them over: prepared elsewhere, and held elsewhere until after the next.
+TEST(RendererContract, APreparedFrameGivesTheSameAnswersAndIsTakenWithoutAllocating) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto plain = build(entry), live = build(entry);
+    live->reserve(4000);
+    std::vector<Frame> held;
+    for (int tick = 0; tick < 200; ++tick) {
+      if (tick % 33 == 0) {
+        const Frame frame = scenes::frame(grid_for(entry, 60 - tick / 33), tick / 33);
+        plain->on_frame(frame);
+        held.push_back(frame);
+        live->prepare(held.back());
+        const std::size_t before = allocation_count();
+        live->on_frame(held.back());
+        EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
+      }
+      const DeviceState device{Vec3(0.0001 * tick, 0.02 - 0.0004 * std::min(tick, 100), 0)};
+      const RenderOutput a = plain->step(device, 0.001 * tick), b = live->step(device, 0.001 * tick);
+      ASSERT_EQ(a.proxy_W, b.proxy_W) << entry.name << " at tick " << tick;
+      ASSERT_EQ(a.force_N, b.force_N) << entry.name << " at tick " << tick;
+    }
+  }
+}
+
+// With guidance and a task on top of it as well.
+TEST(RendererContract, AGuidedStepAllocatesNothing) {
+  std::vector<FixtureValues> fixtures(2);
+  fixtures[0].label = "table";
+  fixtures[1].label = "valve", fixtures[1].role = FixtureRole::guidance;
+  SequenceStep lock, activate;
+  lock.action = FixtureAction::lock, lock.fixture = "table", lock.not_before_s = 0.05;
+  activate.action = FixtureAction::activate, activate.fixture = "valve", activate.start = StepStart::button;
+  activate.done = StepEnd::reached, activate.deadline_s = 0.1;
+  for (const RendererEntry& entry : renderers()) {
+    GuidedRenderer renderer(build(entry), {}, fixtures, {lock, activate},
+                            std::make_shared<FixtureSwitches>());
+    Frame frame = scenes::frame(grid_for(entry, 100));
+    frame.guidance = {{100, Vec3(0.2, 0, 0), Vec3::UnitY()}};
+    renderer.on_frame(frame);
+    RenderOutput out;
+    for (int tick = 0; tick < 300; ++tick) {
+      const DeviceState device{Vec3(0, 0.02 - 0.0004 * std::min(tick, 100), 0),
+                               Eigen::Quaterniond::Identity(), tick / 10 % 10 == 9 ? 1u : 0u};
+      const std::size_t before = allocation_count();
+      out = renderer.step(device, 0.001 * tick);
+      EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
+    }
+    EXPECT_EQ(out.guidance->sequence_missed, 1) << entry.name;
+    EXPECT_TRUE(out.guidance->pulls) << entry.name;
+  }
+}
+
+TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    const RenderOutput out = renderer->step({Vec3(1, 2, 3)}, 0);
+    EXPECT_EQ(out.proxy_W, Vec3(1, 2, 3)) << entry.name;
+    EXPECT_EQ(out.status, RenderStatus::no_frame) << entry.name;
+    EXPECT_EQ(out.frame_index, -1) << entry.name;
+  }
+}
+
+TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    const double height = entry.held_by == HeldBy::nothing ? 0.002 : -0.02;
+    renderer->on_frame(scenes::frame(grid_for(entry, 60)));
+    renderer->step({Vec3(0, 0.02, 0)}, 0);
+    const RenderOutput before = renderer->step({Vec3(0, height, 0)}, 0.001);
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      const RenderOutput out = renderer->step({Vec3(0, bad, 0)}, 0.002);
+      EXPECT_EQ(out.status, RenderStatus::device_not_finite) << entry.name;
+      EXPECT_TRUE(out.force_N.isZero(0)) << entry.name;
+      EXPECT_TRUE(out.proxy_W.allFinite()) << entry.name;
+    }
+    const RenderOutput after = renderer->step({Vec3(0, height, 0)}, 0.003);
+    EXPECT_NEAR((after.proxy_W - before.proxy_W).norm(), 0, 1e-3) << entry.name;
+    EXPECT_GT(after.force_N.y(), 1) << entry.name;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

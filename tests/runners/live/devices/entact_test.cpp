@@ -1,0 +1,62 @@
+// The adapter of Entact's EntactAPI beside what all adapters promise, with a test double.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "runners/live/devices/entact.h"
+#include "tests/doubles/vendor_devices.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+class EntactTest : public testing::Test {
+ protected:
+  DoubleInstalled double_{kEntact};
+};
+
+// Towards the user 10 mm, to the right 20, up 30; a quarter turn of the handle about the upward axis takes
+// what points to the user to the right.
+TEST_F(EntactTest, MillimetresAndRowsByHand) {
+  double_->set([](DeviceDouble::State& state) {
+    state.position = {10, 20, 30};
+    state.turn = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  });
+  const auto device = open_entact("");
+  const auto [reading, fault] = read_once(*device);
+  ASSERT_FALSE(fault);
+  EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.02, 0.03, 0.01), 1e-12));
+  EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
+  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
+  EXPECT_EQ(double_->now().told, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
+}
+
+TEST_F(EntactTest, DevicesHaveAddresses) {
+  EXPECT_NO_THROW(open_entact("192.168.1.144"));
+  EXPECT_HAS(refusal([] { open_entact("192.168.1.145"); }),
+             "entact:192.168.1.145: no device answers; allowed ");
+  EXPECT_EQ(open_entact("")->traits().name, "Double W5D");
+}
+
+TEST_F(EntactTest, HomedWhereItIsNot) {
+  double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 5; });
+  EXPECT_NO_THROW(open_entact(""));
+  double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 1000; });
+  EXPECT_HAS(refusal([] { open_entact(""); }),
+             "entact: cannot be homed; hold the handle in its calibration position");
+  EXPECT_FALSE(double_->is_open());
+}
+
+TEST_F(EntactTest, AReadingIsOneTickOld) {
+  const auto device = open_entact("");
+  run_ticks(*device, 10, [&](int i) {
+    double_->set([&](DeviceDouble::State& state) { state.position = {0, 1000.0 * i, 0}; });
+    DeviceReading reading;
+    EXPECT_FALSE(device->read(reading));
+    EXPECT_EQ(reading.position_m.x(), std::max(i - 1, 0));
+    device->write({});
+  });
+}
+
+}  // namespace
+}  // namespace remote_touch

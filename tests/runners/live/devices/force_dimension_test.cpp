@@ -1,0 +1,82 @@
+// The adapter of Force Dimension's DHD beside what all adapters promise, with a test double.
+#include <gtest/gtest.h>
+
+#include "runners/live/devices/force_dimension.h"
+#include "tests/doubles/vendor_devices.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+class ForceDimensionTest : public testing::Test {
+ protected:
+  DoubleInstalled double_{kForceDimension};
+};
+
+// Towards the user 0.1, to the right 0.2, up 0.3; a quarter turn of the handle about the upward axis takes
+// what points to the user to the right.
+TEST_F(ForceDimensionTest, AxesByHand) {
+  double_->set([](DeviceDouble::State& state) {
+    state.position = {0.1, 0.2, 0.3};
+    state.turn = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  });
+  const auto device = open_force_dimension("");
+  const auto [reading, fault] = read_once(*device);
+  ASSERT_FALSE(fault);
+  EXPECT_EQ(reading.position_m, Vec3(0.2, 0.3, 0.1));
+  EXPECT_TRUE((reading.orientation * Vec3::UnitZ()).isApprox(Vec3::UnitX(), 1e-12));
+  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(4, 5, 6)}); });
+  const auto events = double_->events();
+  EXPECT_EQ(events.back().told, (std::array<double, 6>{3, 1, 2, 6, 4, 5}));
+}
+
+TEST_F(ForceDimensionTest, DevicesAreNumbered) {
+  for (const char* address : {"x", "-1", "0x", "1.5", "128", " 0"})
+    EXPECT_HAS(refusal([&] { open_force_dimension(address); }),
+               std::string("fd:") + address + ": not the number of a device; allowed 0 for the first");
+  EXPECT_HAS(refusal([] { open_force_dimension("1"); }), "fd:1: no such device; allowed 0 to 0");
+  double_->set([](DeviceDouble::State& state) { state.devices = 2; });
+  EXPECT_NO_THROW(open_force_dimension("1"));
+  EXPECT_EQ(force_dimension_availability().detail, std::string(kForceDimension.double_file) + ": 2 devices");
+}
+
+TEST_F(ForceDimensionTest, NoDevice) {
+  double_->set([](DeviceDouble::State& state) { state.devices = 0; });
+  EXPECT_HAS(refusal([] { open_force_dimension(""); }), "fd:0: no device is connected; allowed ");
+  EXPECT_FALSE(force_dimension_availability().found);
+  EXPECT_HAS(force_dimension_availability().detail, "no device is connected");
+}
+
+TEST_F(ForceDimensionTest, RefusedByTheLibrary) {
+  double_->set([](DeviceDouble::State& state) { state.switching_error = 20; });
+  EXPECT_HAS(refusal([] { open_force_dimension("0"); }),
+             "fd:0: cannot be opened (the double's text); allowed ");
+}
+
+TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {
+  double_->set([](DeviceDouble::State& state) { state.largest_force = -1, state.largest_torque = -1; });
+  EXPECT_EQ(open_force_dimension("")->traits().largest_force_N, 0);
+  EXPECT_EQ(open_force_dimension("")->traits().largest_torque_Nm, 0);
+  double_->set([](DeviceDouble::State& state) { state.largest_force = 12, state.largest_torque = 0.4; });
+  const auto device = open_force_dimension("");
+  EXPECT_EQ(device->traits().name, "double.7");
+  EXPECT_EQ(device->traits().largest_force_N, 12);
+  EXPECT_EQ(device->traits().largest_torque_Nm, 0.4);
+  EXPECT_EQ(device->traits().tick_rate_hz, 1000);
+}
+
+// Whatever its library says of a turn.
+TEST_F(ForceDimensionTest, WithoutAWristItDoesNotTurn) {
+  double_->set([](DeviceDouble::State& state) {
+    state.sensed_axes = state.actuated_axes = 3;
+    state.turn = {};
+  });
+  const auto device = open_force_dimension("");
+  const auto [reading, fault] = read_once(*device);
+  EXPECT_FALSE(fault);
+  EXPECT_EQ(device->traits().sensed_axes, 3);
+  EXPECT_TRUE(reading.orientation.isApprox(Eigen::Quaterniond::Identity()));
+}
+
+}  // namespace
+}  // namespace remote_touch

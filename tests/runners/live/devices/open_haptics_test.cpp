@@ -1,0 +1,97 @@
+// The adapter of OpenHaptics beside what all adapters promise, with a test double.
+#include <gtest/gtest.h>
+
+#include "runners/live/devices/open_haptics.h"
+#include "tests/doubles/vendor_devices.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+class OpenHapticsTest : public testing::Test {
+ protected:
+  DoubleInstalled double_{kOpenHaptics};
+};
+
+// The double hands its transform over by columns: a quarter turn about z takes x to y, not back.
+TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
+  double_->set([](DeviceDouble::State& state) {
+    state.position = {10, 20, 30}, state.velocity = {-1000, 0, 0};
+    state.turn = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  });
+  const auto device = open_open_haptics("");
+  const auto [reading, fault] = read_once(*device);
+  ASSERT_FALSE(fault);
+  EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.01, 0.02, 0.03), 1e-12));
+  EXPECT_TRUE(reading.velocity_m_per_s.isApprox(Vec3(-1, 0, 0), 1e-12));
+  EXPECT_TRUE((reading.orientation * Vec3::UnitX()).isApprox(Vec3::UnitY(), 1e-12));
+  run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
+  EXPECT_EQ(told_forces(*double_), (std::vector<std::array<double, 6>>{{1, 2, 3, 4, 5, 6}}));
+}
+
+// Neither a tick without one nor the last.
+TEST_F(OpenHapticsTest, NoForceStaysBehind) {
+  const auto device = open_open_haptics("");
+  std::array<double, 6> told_in_between{1};
+  int ticks = 0;
+  CallCycle cycle([&] {
+    if (ticks == 2) told_in_between = double_->now().told;
+    if (ticks != 1) device->write({Vec3(1, 0, 0), Vec3::Zero()});
+    return ++ticks < 4;
+  });
+  device->run(cycle);
+  EXPECT_EQ(told_in_between, (std::array<double, 6>{}));
+  EXPECT_EQ(double_->now().told, (std::array<double, 6>{}));
+  EXPECT_TRUE(double_->now().has_motors_on);
+}
+
+TEST_F(OpenHapticsTest, DevicesHaveNames) {
+  EXPECT_NO_THROW(open_open_haptics("Default Device"));
+  EXPECT_NO_THROW(open_open_haptics("Left Device"));
+  EXPECT_HAS(refusal([] { open_open_haptics("Right Device"); }),
+             "touch:Right Device: cannot be opened (the double's text, 770/-28); allowed ");
+}
+
+TEST_F(OpenHapticsTest, TraitsInOurUnits) {
+  double_->set([](DeviceDouble::State& state) {
+    state.largest_force = 3.3, state.continuous_force = 0.88;
+    state.largest_stiffness = 0.5, state.largest_torque = 300;
+  });
+  const auto device = open_open_haptics("");
+  const DeviceTraits& traits = device->traits();
+  EXPECT_EQ(traits.name, "Double Touch");
+  EXPECT_EQ(traits.sensed_axes, 6);
+  EXPECT_EQ(traits.largest_force_N, 3.3);
+  EXPECT_EQ(traits.continuous_force_N, 0.88);
+  EXPECT_EQ(traits.largest_stiffness_N_per_m, 500);
+  EXPECT_DOUBLE_EQ(traits.largest_torque_Nm, 0.3);
+}
+
+// Without a scheduler the cycle still runs, is told why nothing works and decides when to end.
+void expect_fault_of_the_scheduler(HapticDevice& device, DeviceDouble& behind, int before, const char* what) {
+  DeviceFault fault, written;
+  run_ticks(device, before + 3, [&](int i) {
+    DeviceReading reading;
+    fault = device.read(reading);
+    written = device.write({Vec3(1, 0, 0), Vec3::Zero()});
+    if (i + 1 == before) behind.set([](DeviceDouble::State& state) { state.is_scheduler_silent = true; });
+  });
+  ASSERT_TRUE(fault && written);
+  EXPECT_STREQ(fault.what, what);
+  EXPECT_STREQ(written.what, what);
+  EXPECT_FALSE(behind.now().has_motors_on);
+}
+
+TEST_F(OpenHapticsTest, ASchedulerThatDoesNotStartIsAFault) {
+  double_->set([](DeviceDouble::State& state) { state.scheduler_error = 0x0304; });
+  const auto device = open_open_haptics("");
+  expect_fault_of_the_scheduler(*device, *double_, 0, "OpenHaptics: the scheduler has no timer");
+}
+
+TEST_F(OpenHapticsTest, ASchedulerThatStopsCallingIsAFault) {
+  const auto device = open_open_haptics("");
+  expect_fault_of_the_scheduler(*device, *double_, 5, "OpenHaptics: the scheduler has stopped calling");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,168 @@
+#include "runners/live/devices/safety_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace remote_touch {
+namespace {
+
+constexpr double kTick_s = 0.001;
+
+// A loop at 1 kHz around a gate.
+struct Loop {
+  SafetyLimits limits;
+  SafetyGate gate;
+  double now_s = 0;
+  DeviceReading reading;
+  DeviceFault fault;
+
+  explicit Loop(const SafetyLimits& l = {}) : limits(l), gate(l) {}
+  Wrench tick(const Vec3& force_N, const Vec3& torque_Nm = Vec3::Zero(), double gap_s = kTick_s) {
+    now_s += gap_s;
+    return gate.pass(now_s, reading, fault, {force_N, torque_Nm}, now_s);
+  }
+  // Engaged and ramped up, with no force.
+  void engage() {
+    for (int i = 0; i < 600; ++i) tick(Vec3::Zero());
+    ASSERT_EQ(gate.state(), GateState::engaged);
+  }
+};
+
+TEST(SafetyGate, BeginsOnlyBelowTheThresholdAndThenRisesEvenly) {
+  Loop loop;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(loop.tick({1, 0, 0}).force_N.isZero(0));
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+  EXPECT_TRUE(loop.tick({0.2, 0, 0}).force_N.isZero(0));
+  EXPECT_EQ(loop.gate.state(), GateState::ramping);
+  double before = 0;
+  for (int i = 1; i < 500; ++i) {
+    const double now = loop.tick({1, 0, 0}).force_N.x();
+    EXPECT_NEAR(now, i * kTick_s / 0.5, 1e-9);
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  for (int i = 0; i < 5; ++i) loop.tick({1, 0, 0});
+  EXPECT_EQ(loop.gate.state(), GateState::engaged);
+  EXPECT_NEAR(loop.tick({1, 0, 0}).force_N.x(), 1, 1e-12);
+}
+
+TEST(SafetyGate, ATorqueKeepsItWaitingToo) {
+  Loop loop;
+  EXPECT_TRUE(loop.tick(Vec3::Zero(), {0.1, 0, 0}).torque_Nm.isZero(0));
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+}
+
+TEST(SafetyGate, CutsForceAndTorqueToTheirLargestLength) {
+  Loop loop;
+  loop.engage();
+  Wrench out;
+  for (int i = 0; i < 100; ++i) out = loop.tick({30, 40, 0}, {3, 0, 4});
+  EXPECT_NEAR((out.force_N - Vec3(3, 4, 0)).norm(), 0, 1e-12);
+  EXPECT_NEAR((out.torque_Nm - Vec3(0.12, 0, 0.16)).norm(), 0, 1e-12);
+}
+
+TEST(SafetyGate, ChangesNoFasterThanTheSlewRate) {
+  Loop loop;
+  loop.engage();
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 now = loop.tick(i / 7 % 2 == 0 ? Vec3(5, 0, 0) : Vec3(0, -5, 0)).force_N;
+    EXPECT_LE((now - before).norm(), loop.limits.force_slew_N_per_s * kTick_s * (1 + 1e-9));
+    before = now;
+  }
+}
+
+TEST(SafetyGate, LatchesOnFaultsUntilRearmed) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (int kind = 0; kind < 7; ++kind) {
+    Loop loop;
+    loop.engage();
+    for (int i = 0; i < 20; ++i) loop.tick({2, 0, 0});
+    Vec3 force(2, 0, 0), torque = Vec3::Zero();
+    if (kind == 0) loop.fault = {"a fault"};
+    if (kind == 1) loop.reading.position_m.x() = none;
+    if (kind == 2) loop.reading.orientation.w() = none;
+    if (kind == 3) loop.reading.velocity_m_per_s = Vec3(0, 3.1, 0);
+    if (kind == 4) loop.reading.turning_rad_per_s = Vec3(0, 0, 41);
+    if (kind == 5) force.y() = none;
+    if (kind == 6) torque.z() = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(loop.tick(force, torque).force_N.isZero(0)) << kind;
+    EXPECT_EQ(loop.gate.state(), GateState::latched) << kind;
+    EXPECT_NE(loop.gate.reason().what, nullptr) << kind;
+    loop.fault = {}, loop.reading = {};
+    for (int i = 0; i < 1000; ++i) EXPECT_TRUE(loop.tick({0.1, 0, 0}).force_N.isZero(0));
+    EXPECT_EQ(loop.gate.state(), GateState::latched) << kind;
+    loop.gate.rearm();
+    for (int i = 0; i < 600; ++i) loop.tick({0.1, 0, 0});
+    EXPECT_EQ(loop.gate.state(), GateState::engaged) << kind;
+    EXPECT_NEAR(loop.tick({0.1, 0, 0}).force_N.x(), 0.1, 1e-12) << kind;
+  }
+}
+
+TEST(SafetyGate, RearmingWhileTheFaultLastsLatchesAgain) {
+  Loop loop;
+  loop.fault = {"a fault"};
+  loop.tick(Vec3::Zero());
+  loop.gate.rearm();
+  loop.tick(Vec3::Zero());
+  EXPECT_EQ(loop.gate.state(), GateState::latched);
+}
+
+TEST(SafetyGate, AnOldCommandIsSlewedToNothing) {
+  Loop loop;
+  loop.engage();
+  for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});
+  const double made_s = loop.now_s;
+  Wrench out;
+  int ticks = 0;
+  for (; ticks < 100; ++ticks) {
+    loop.now_s += kTick_s;
+    out = loop.gate.pass(loop.now_s, {}, {}, {{5, 0, 0}, Vec3::Zero()}, made_s);
+    if (out.force_N.isZero(0)) break;
+  }
+  EXPECT_GE(ticks, 20);  // not stale before
+  EXPECT_LE(ticks, 20 + 10);
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+}
+
+TEST(SafetyGate, AfterALongPauseItBeginsAnew) {
+  Loop loop;
+  loop.engage();
+  for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});
+  loop.tick({5, 0, 0}, Vec3::Zero(), 0.08);
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+  for (int i = 0; i < 20; ++i) loop.tick({5, 0, 0});
+  EXPECT_TRUE(loop.tick({5, 0, 0}).force_N.isZero(0));
+}
+
+TEST(SafetyGate, RestartLeavesNoForce) {
+  Loop loop;
+  loop.engage();
+  for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});
+  loop.gate.restart();
+  EXPECT_TRUE(loop.tick({5, 0, 0}).force_N.isZero(0));
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+}
+
+TEST(SafetyLimits, AreCappedByTheDevice) {
+  DeviceTraits traits;
+  EXPECT_EQ(limits_for({}, traits).largest_force_N, SafetyLimits{}.largest_force_N);
+  traits.largest_force_N = 3.3, traits.largest_torque_Nm = 0.1;
+  EXPECT_NEAR(limits_for({}, traits).largest_force_N, 0.9 * 3.3, 1e-12);
+  EXPECT_NEAR(limits_for({}, traits).largest_torque_Nm, 0.09, 1e-12);
+}
+
+TEST(SafetyLimits, ASlewRateThatCannotLetGoIsRefused) {
+  EXPECT_TRUE(conflict(SafetyLimits{}).empty());
+  SafetyLimits slow;
+  slow.force_slew_N_per_s = 499;
+  EXPECT_NE(conflict(slow).find("force_slew_N_per_s = 499"), std::string::npos);
+  slow = {};
+  slow.torque_slew_Nm_per_s = 19;
+  EXPECT_NE(conflict(slow).find("torque_slew_Nm_per_s = 19"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace remote_touch

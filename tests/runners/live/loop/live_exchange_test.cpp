@@ -1,0 +1,94 @@
+// What threads of the live loop hand over to each other; meant for the thread sanitizer too.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <thread>
+
+#include "runners/live/loop/ring.h"
+#include "runners/live/loop/triple_buffer.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr int kValues = 200'000;
+
+// Torn, it would not hold the same number everywhere.
+using Wide = std::array<int, 64>;
+
+// Both sides yield where they would spin, so that they alternate on a single free core too.
+TEST(TripleBuffer, GivesTheNewestWholeAndInOrder) {
+  TripleBuffer<Wide> buffer;
+  std::jthread producer([&](const std::stop_token& enough) {
+    for (int i = 1; !enough.stop_requested(); ++i) {
+      buffer.back().fill(i);
+      buffer.publish();
+      if (i % 16 == 0) std::this_thread::yield();
+    }
+  });
+  int last = 0;
+  for (int taken = 0; taken < kValues / 10;) {
+    if (!buffer.take()) {
+      std::this_thread::yield();
+      continue;
+    }
+    const Wide& front = buffer.front();
+    for (const int part : front) ASSERT_EQ(part, front[0]) << "torn";
+    ASSERT_GT(front[0], last) << "reversed or repeated";
+    last = front[0], ++taken;
+  }
+}
+
+TEST(TripleBuffer, TellsWhetherAValueWasOvertaken) {
+  TripleBuffer<int> buffer;
+  buffer.back() = 1;
+  EXPECT_TRUE(buffer.publish());
+  buffer.back() = 2;
+  EXPECT_FALSE(buffer.publish());
+  EXPECT_TRUE(buffer.take());
+  EXPECT_EQ(buffer.front(), 2);
+  EXPECT_FALSE(buffer.take());
+  EXPECT_EQ(buffer.front(), 2);
+  buffer.back() = 3;
+  EXPECT_TRUE(buffer.publish());
+}
+
+TEST(Ring, HandsOverEveryValueInOrder) {
+  Ring<Wide> ring(60);
+  std::jthread producer([&](const std::stop_token& enough) {
+    for (int i = 0; i < kValues && !enough.stop_requested();) {
+      Wide* const room = ring.room();
+      if (!room) {
+        std::this_thread::yield();
+        continue;
+      }
+      room->fill(i++);
+      ring.push();
+    }
+  });
+  for (int i = 0; i < kValues;) {
+    const Wide* const oldest = ring.oldest();
+    if (!oldest) {
+      std::this_thread::yield();
+      continue;
+    }
+    for (const int part : *oldest) ASSERT_EQ(part, i);
+    ring.pop(), ++i;
+  }
+  producer.join();
+  EXPECT_EQ(ring.oldest(), nullptr);
+}
+
+TEST(Ring, HasNoRoomWhenFull) {
+  Ring<int> ring(4);
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_NE(ring.room(), nullptr);
+    *ring.room() = i;
+    ring.push();
+  }
+  EXPECT_EQ(ring.room(), nullptr);
+  ring.pop();
+  EXPECT_NE(ring.room(), nullptr);
+}
+
+}  // namespace
+}  // namespace remote_touch

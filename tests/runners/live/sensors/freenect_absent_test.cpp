@@ -1,0 +1,25 @@
+// The adapter on the real libfreenect where no Kinect is plugged in.
+#include <gtest/gtest.h>
+
+#include "runners/live/sensors/freenect_camera.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+TEST(FreenectAbsent, IsRefused) {
+  const Availability availability = freenect_availability();
+  if (availability.found) GTEST_SKIP() << "a Kinect is plugged in: " << availability.detail;
+  const std::string message = refusal([] { open_freenect("0"); });
+  if (availability.compiled_in) {
+    EXPECT_HAS(message, "freenect");
+    EXPECT_HAS(message, "; allowed ");
+    EXPECT_HAS(message, "that this user may open");
+  } else {
+    EXPECT_EQ(message, "freenect: not compiled in: install libfreenect-dev and build again");
+    EXPECT_EQ(message, "freenect: " + availability.detail);
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,148 @@
+// The adapter on fakenect, the library that libfreenect ships to play recordings in its own place.
+#include "runners/live/sensors/freenect_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "runners/live/timing/steady_clock.h"
+#include "tests/support/start_with_libraries.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
+constexpr double kPatience_s = 10;
+constexpr double kTurn_s = 4294967296.0 / 60e6;  // after which the stamps begin anew
+
+// What the sensor measures: 11 bits, 2047 where it measures nothing. The first pixel tells the number.
+int shift_at(int number, int u, int v) {
+  if (u == 0 && v == 0) return 600 + 20 * number;
+  return (7 * u + 13 * v + 31 * number) % 2048;
+}
+
+// The metres of http://openkinect.org/wiki/Imaging_Information are a fit; this is the triangulation that it
+// fits.
+int depth_of(int shift) {
+  const double across_mm = ((shift - 800) / 4.0 - 0.375) * 1.042;
+  const double z_mm = 1200 * 75 / (75 - across_mm);
+  return shift >= 2047 || z_mm <= 0 || z_mm >= 10000 ? 0 : static_cast<int>(z_mm);
+}
+
+bool shows(const SensorFrame& frame, int number) {
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u)
+      if (frame.depth[static_cast<std::size_t>(v * kWidth + u)] != depth_of(shift_at(number, u, v)))
+        return false;
+  return true;
+}
+
+int number_in(const SensorFrame& frame) {
+  for (int number = 0; number < kFrames; ++number)
+    if (frame.depth[0] == depth_of(shift_at(number, 0, 0))) return number;
+  return -1;
+}
+
+// As fakenect-record writes it: the name tells the second and the sensor's stamp. The stamps turn over before
+// frame 3, and a second passes before the last frame.
+double taken_s(int number) {
+  return 100 + number / 30.0 + (number == kFrames - 1 ? 1 : 0);
+}
+void write_recording(const TestFolder& folder) {
+  std::string index;
+  for (int number = 0; number < kFrames; ++number) {
+    const double stamp = std::fmod(kTurn_s - 0.09 + taken_s(number) - 100, kTurn_s) * 60e6;
+    char name[64];
+    std::snprintf(name, sizeof name, "d-%.6f-%u.pgm", taken_s(number), static_cast<unsigned>(stamp));
+    std::string bytes = "P5 640 480 65535\n";
+    for (int v = 0; v < kHeight; ++v)
+      for (int u = 0; u < kWidth; ++u) bytes += raw(static_cast<std::uint16_t>(shift_at(number, u, v)));
+    folder.write(name, bytes);
+    index += std::string(name) + "\n";
+  }
+  folder.write("INDEX.txt", index);
+}
+
+class FreenectCamera : public testing::Test {
+ protected:
+  void SetUp() override {
+    const Availability availability = freenect_availability();
+    if (!availability.compiled_in) GTEST_SKIP() << availability.detail;
+    ASSERT_EQ(availability.detail, "1 Kinect");
+  }
+};
+
+TEST_F(FreenectCamera, Depths) {
+  EXPECT_EQ(depth_of(2047), 0);
+  EXPECT_EQ(depth_of(1100), 0);
+  EXPECT_NEAR(depth_of(600), 123.6 * std::tan(600 / 2842.5 + 1.1863), 10);
+  EXPECT_NEAR(depth_of(1000), 123.6 * std::tan(1000 / 2842.5 + 1.1863), 100);
+}
+
+// One test: fakenect keeps its file open until the program ends, and a second camera goes on where the first
+// one was closed.
+TEST_F(FreenectCamera, PlaysARecording) {
+  const TestFolder folder("freenect_camera_test");
+  write_recording(folder);
+  setenv("FAKENECT_PATH", folder.path().c_str(), 1);
+
+  SensorFrame frame;
+  {
+    const auto closed_early = open_freenect("0");
+    ASSERT_EQ(closed_early->next(frame, kPatience_s), SensorState::frame);
+    EXPECT_TRUE(shows(frame, number_in(frame)));
+  }
+  int last = number_in(frame);
+  const auto source = open_freenect("");
+  const CameraIntrinsics& camera = source->view().camera;
+  EXPECT_EQ(camera.width, kWidth);
+  EXPECT_EQ(camera.height, kHeight);
+  EXPECT_EQ(camera.fx, 575.8);
+  EXPECT_EQ(camera.cx, 319.5);
+  EXPECT_FALSE(source->view().has_colour);  // depth is not registered here
+
+  double last_s = 0;
+  int seen = 0, waited = 0;
+  SensorState state = SensorState::frame;
+  while (state == SensorState::frame || state == SensorState::waiting) {
+    state = source->next(frame, 0.3);
+    if (state == SensorState::waiting) ++waited;
+    if (state != SensorState::frame) continue;
+    const int number = number_in(frame);
+    EXPECT_GT(number, last);
+    EXPECT_TRUE(shows(frame, number)) << number;
+    EXPECT_LE(frame.captured_s, steady_s());
+    if (seen++ > 0) {
+      EXPECT_NEAR(frame.captured_s - last_s, taken_s(number) - taken_s(last), 0.02);
+    }
+    last = number, last_s = frame.captured_s;
+  }
+  EXPECT_EQ(last, kFrames - 1);
+  EXPECT_GE(seen, 5);
+  EXPECT_GE(waited, 2);  // for the last
+  EXPECT_EQ(state, SensorState::failed);
+  EXPECT_HAS(source->failure(), "freenect:0: no more frames, the library says -1: ");
+  EXPECT_HAS(source->failure(), "a recording of fakenect is at its end");
+  EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
+}
+
+TEST_F(FreenectCamera, OtherNumbersAreRefused) {
+  EXPECT_HAS(refusal([] { open_freenect("1"); }),
+             "freenect:1: 1 Kinects are plugged in, from 0 on; allowed ");
+  for (const char* address : {"-1", "x", "0x", " 0", "99999999999"})
+    EXPECT_HAS(refusal([&] { open_freenect(address); }),
+               "freenect:" + std::string(address) + ": no camera has this number; allowed 0, 1, ...");
+}
+
+}  // namespace
+}  // namespace remote_touch
+
+int main(int argc, char** argv) {
+#ifdef REMOTE_TOUCH_FAKENECT
+  remote_touch::start_with_libraries(REMOTE_TOUCH_FAKENECT, argv);
+#endif
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,299 @@
+// The adapter on the real run-time library of OpenNI 2, its recorder and its player. Only the camera is a
+// double: a driver (tests/doubles/virtual_openni2) that the library loads like any other.
+#include "runners/live/sensors/openni2_camera.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/virtual_openni2/pattern.h"
+#include "tests/doubles/virtual_openni2/recording.h"
+#include "tests/support/start_with_libraries.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace virtual_camera;
+
+constexpr double kPatience_s = 10;
+
+class Openni2Camera : public testing::Test {
+ protected:
+  void SetUp() override {
+    const Availability availability = openni2_availability();
+    if (!availability.compiled_in) GTEST_SKIP() << availability.detail;
+    ASSERT_EQ(availability.detail, "Virtual camera (virtual-camera)");
+  }
+  void TearDown() override { unsetenv("VIRTUAL_CAMERA"); }
+
+  static void tell(const char* words) { setenv("VIRTUAL_CAMERA", words, 1); }
+};
+
+int number_in(const SensorFrame& frame) {
+  return frame.depth.empty() ? -1 : frame.depth[0];
+}
+
+// Compared as a whole: the message of a mismatch would be long. A frame may lack its colour, where the reader
+// came between colour and depth of a later one.
+void expect_pattern(const SensorFrame& frame) {
+  EXPECT_TRUE(frame.depth == depth_image(number_in(frame))) << "depth of frame " << number_in(frame);
+  if (frame.colour.empty()) return;
+  const int colour_number = static_cast<int>(frame.colour[0]);
+  EXPECT_LE(std::abs(colour_number - number_in(frame)), 1);
+  EXPECT_TRUE(frame.colour == colour_image(colour_number)) << "colour of frame " << colour_number;
+}
+
+// Takes frames until there are no more or there are so many; each is later than the one before.
+SensorState take(DepthSource& source, int most, std::vector<SensorFrame>& frames) {
+  while (static_cast<int>(frames.size()) < most) {
+    SensorFrame frame;
+    const SensorState state = source.next(frame, kPatience_s);
+    if (state != SensorState::frame) return state;
+    EXPECT_LE(frame.captured_s, steady_s());
+    if (!frames.empty()) {
+      EXPECT_GT(frame.number, frames.back().number);
+      EXPECT_GT(frame.captured_s, frames.back().captured_s);
+    }
+    frames.push_back(frame);
+  }
+  return SensorState::frame;
+}
+
+void expect_camera(const CameraIntrinsics& camera, double across_rad, double down_rad) {
+  EXPECT_EQ(camera.width, kWidth);
+  EXPECT_EQ(camera.height, kHeight);
+  EXPECT_NEAR(camera.fx, kWidth / 2 / std::tan(across_rad / 2), 1e-4);
+  EXPECT_NEAR(camera.fy, kHeight / 2 / std::tan(down_rad / 2), 1e-4);
+  EXPECT_EQ(camera.cx, 319.5);
+  EXPECT_EQ(camera.cy, 239.5);
+}
+
+TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
+  for (const char* address : {"any", "", "virtual-camera"}) {
+    const double opened_s = steady_s();
+    const auto source = open_openni2(address);
+    expect_camera(source->view().camera, kColourAcross_rad, kColourDown_rad);
+    EXPECT_EQ(source->view().metres_per_unit, 0.001);
+    EXPECT_EQ(source->view().frame_rate_hz, 30);
+    EXPECT_TRUE(source->view().has_colour);
+    std::vector<SensorFrame> frames;
+    ASSERT_EQ(take(*source, 20, frames), SensorState::frame) << source->failure();
+    int without_colour = 0;
+    for (const SensorFrame& frame : frames) {
+      EXPECT_EQ(frame.number, number_in(frame));
+      expect_pattern(frame);
+      if (frame.colour.empty()) ++without_colour;
+      EXPECT_GT(frame.captured_s, opened_s - 0.1);
+    }
+    EXPECT_LE(without_colour, 5);
+    // By then a punctual frame has come: stamps are as even as the sensor's.
+    const SensorFrame &a = frames[18], &b = frames[19];
+    EXPECT_NEAR(b.captured_s - a.captured_s, (b.number - a.number) / 30.0, 0.02);
+  }
+}
+
+TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
+  tell("stays_mirrored");
+  const auto source = open_openni2("any");
+  std::vector<SensorFrame> frames;
+  ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
+  for (const SensorFrame& frame : frames) expect_pattern(frame);
+}
+
+TEST_F(Openni2Camera, NoColourWhereDepthIsNotRegisteredToIt) {
+  tell("unregistered");
+  const auto source = open_openni2("any");
+  EXPECT_FALSE(source->view().has_colour);
+  expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
+  std::vector<SensorFrame> frames;
+  ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
+  for (const SensorFrame& frame : frames) {
+    expect_pattern(frame);
+    EXPECT_TRUE(frame.colour.empty());
+  }
+}
+
+// A reader that comes late finds the newest frame, not the oldest.
+TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
+  const auto source = open_openni2("any");
+  std::vector<SensorFrame> frames;
+  ASSERT_EQ(take(*source, 3, frames), SensorState::frame);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  ASSERT_EQ(take(*source, 4, frames), SensorState::frame);
+  EXPECT_GT(frames[3].number, frames[2].number + 2);
+  expect_pattern(frames[3]);
+}
+
+TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
+  tell("stop_after=20");
+  const auto source = open_openni2("any");
+  SensorFrame frame;
+  SensorState state = SensorState::frame;
+  while (state == SensorState::frame) state = source->next(frame, 0.5);
+  EXPECT_EQ(state, SensorState::waiting);
+  EXPECT_LE(number_in(frame), 20);
+  expect_pattern(frame);
+  const double start_s = steady_s();
+  EXPECT_EQ(source->next(frame, 0.3), SensorState::waiting);
+  EXPECT_GE(steady_s() - start_s, 0.29);
+  EXPECT_LT(steady_s() - start_s, 2);
+  EXPECT_EQ(source->next(frame, 0), SensorState::waiting);
+  EXPECT_EQ(source->failure(), "");
+}
+
+TEST_F(Openni2Camera, CameraThatIsUnplugged) {
+  tell("lose_after=20");
+  const auto source = open_openni2("any");
+  std::vector<SensorFrame> frames;
+  const double start_s = steady_s();
+  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
+  EXPECT_LT(steady_s() - start_s, kPatience_s / 2);  // told, not timed out
+  EXPECT_EQ(source->failure(), "openni2: was disconnected");
+  SensorFrame frame;
+  EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
+}
+
+TEST_F(Openni2Camera, FrameOfAnotherSize) {
+  tell("small_after=20");
+  const auto source = open_openni2("any");
+  std::vector<SensorFrame> frames;
+  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
+  EXPECT_LE(frames.size(), 20u);
+  EXPECT_HAS(source->failure(), " is 640 x 240 pixels in 307200 bytes; wanted those of the camera's mode");
+}
+
+TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
+  for (int i = 0; i < 5; ++i) {
+    const auto source = open_openni2("any");
+    std::vector<SensorFrame> frames;
+    ASSERT_EQ(take(*source, i, frames), SensorState::frame) << source->failure();
+    for (const SensorFrame& frame : frames) expect_pattern(frame);
+  }
+}
+
+TEST_F(Openni2Camera, AbsentCameras) {
+  const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5"); });
+  EXPECT_HAS(unknown, "1d27/0601@1/5: neither a file nor a camera that a driver in ");
+  EXPECT_HAS(unknown, "/OpenNI2/Drivers knows; allowed any, virtual-camera");
+  EXPECT_HAS(refusal([] { open_openni2("Dummy"); }), "Dummy: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("missing.oni"); }), "missing.oni: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("/tmp"); }), "/tmp: neither a file nor a camera");
+  tell("absent");
+  EXPECT_FALSE(openni2_availability().found);
+  EXPECT_HAS(openni2_availability().detail, "no camera that a driver in ");
+  const std::string none = refusal([] { open_openni2("any"); });
+  EXPECT_HAS(none, "openni2: no camera that a driver in ");
+  EXPECT_HAS(none, "/OpenNI2/Drivers knows; allowed one that is plugged in");
+}
+
+class Openni2Recording : public Openni2Camera {
+ protected:
+  void SetUp() override {
+    Openni2Camera::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    file_ = (folder_ / "recorded.oni").string();
+    ASSERT_EQ(record_virtual_camera(file_, 20), "");
+  }
+
+  TestFolder folder_{"openni2_camera_test"};
+  std::string file_;
+};
+
+// The camera shows a mirrored image until it is told not to, and the recorder does not tell it.
+TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
+  const auto source = open_openni2(file_);
+  EXPECT_FALSE(source->view().has_colour);
+  expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
+  std::vector<SensorFrame> frames;
+  const double start_s = steady_s();
+  EXPECT_EQ(take(*source, 100, frames), SensorState::ended) << source->failure();
+  // The recorder may lose frames at both ends, and a slow machine some on the way.
+  ASSERT_GE(frames.size(), 8u);
+  EXPECT_LE(frames.front().number, 5);
+  EXPECT_GE(frames.back().number, 15);
+  EXPECT_GT(steady_s() - start_s, 0.8 * (frames.back().number - 1) / kRate_hz);
+  for (const SensorFrame& frame : frames) {
+    expect_pattern(frame);
+    EXPECT_TRUE(frame.colour.empty());
+    EXPECT_GE(number_in(frame), frame.number);  // the recorder counts from 1
+  }
+  SensorFrame frame;
+  EXPECT_EQ(source->next(frame, kPatience_s), SensorState::ended);
+}
+
+TEST_F(Openni2Recording, IsNoCamera) {
+  const auto source = open_openni2(file_);
+  EXPECT_EQ(openni2_availability().detail, "Virtual camera (virtual-camera)");
+  tell("absent");
+  EXPECT_HAS(refusal([] { open_openni2("missing"); }), "missing: neither a file nor a camera");
+}
+
+TEST_F(Openni2Recording, ClosedInTheMiddle) {
+  for (int i = 0; i < 10; ++i) {
+    const auto source = open_openni2(file_);
+    std::vector<SensorFrame> frames;
+    ASSERT_EQ(take(*source, i % 4, frames), SensorState::frame) << source->failure();
+  }
+}
+
+TEST_F(Openni2Recording, DamagedFilesAreRefused) {
+  const std::string whole = bytes_of(file_);
+  std::string garbage(100000, ' ');
+  for (std::size_t i = 0; i < garbage.size(); ++i) garbage[i] = static_cast<char>(i * i / 7);
+  // The recorder leaves zeros behind its last record, so more than half has to go.
+  for (const std::string& bytes :
+       {std::string(), std::string("NI10"), garbage, whole.substr(0, 4) + garbage, whole.substr(0, 100),
+        whole.substr(0, 1000), whole.substr(0, whole.size() / 3)}) {
+    const std::string file = folder_.write("damaged.oni", bytes).string();
+    const std::string message = refusal([&] { open_openni2(file); });
+    EXPECT_HAS(message, file + ": ");
+    EXPECT_HAS(message, "allowed ") << bytes.size() << " bytes";
+  }
+}
+
+// The player itself would look for the next frame for ever.
+TEST_F(Openni2Recording, FramesThatAreZeroed) {
+  std::string bytes = bytes_of(file_);
+  const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // which frame begins where
+  ASSERT_NE(table, std::string::npos);
+  std::fill(bytes.begin() + 5000, bytes.begin() + static_cast<std::ptrdiff_t>(table), '\0');
+  const auto source = open_openni2(folder_.write("zeroed.oni", bytes).string());
+  std::vector<SensorFrame> frames;
+  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
+  EXPECT_LE(frames.size(), 1u);
+  EXPECT_HAS(source->failure(), "zeroed.oni: plays no further");
+}
+
+}  // namespace
+}  // namespace remote_touch
+
+#ifdef __SANITIZE_ADDRESS__
+// The library and its player leak. Drivers are unloaded before leaks are looked for: kept, they can be told
+// by their names.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libOpenNI2.so\nleak:libOniFile.so\n";
+}
+void keep_drivers(const std::string& folder) {
+  for (const auto& driver : std::filesystem::directory_iterator(folder + "/OpenNI2/Drivers"))
+    dlopen(driver.path().c_str(), RTLD_LAZY | RTLD_NODELETE);
+}
+#else
+void keep_drivers(const std::string&) {}
+#endif
+
+int main(int argc, char** argv) {
+#ifdef REMOTE_TOUCH_VIRTUAL_OPENNI2
+  remote_touch::start_with_libraries(REMOTE_TOUCH_VIRTUAL_OPENNI2, argv);
+  keep_drivers(REMOTE_TOUCH_VIRTUAL_OPENNI2);
+#endif
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

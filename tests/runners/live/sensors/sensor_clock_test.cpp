@@ -1,0 +1,72 @@
+// Stamps of a sensor on the clock of the host.
+#include "runners/live/sensors/sensor_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace remote_touch {
+namespace {
+
+constexpr double kPeriod_s = 1.0 / 30;
+constexpr double kOffset_s = 1234.5;  // from the sensor's zero to the host's
+constexpr double kLeastDelay_s = 0.02;
+
+// 20 ms and up to 10 ms of jitter, which is nothing in every seventh frame.
+double delay_s(int frame) {
+  return kLeastDelay_s + 0.01 * ((frame * 3) % 7) / 6;
+}
+
+TEST(SensorClock, JitterOfArrivalsIsGoneAfterTheFirstPunctualFrame) {
+  SensorClock clock;
+  double before_s = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    const double stamp_s = frame * kPeriod_s, arrived_s = stamp_s + kOffset_s + delay_s(frame + 1);
+    const double captured_s = clock.captured_s(stamp_s, arrived_s);
+    EXPECT_LE(captured_s, arrived_s);
+    EXPECT_GT(captured_s, before_s);
+    before_s = captured_s;
+    if (frame < 7) continue;
+    EXPECT_NEAR(captured_s, stamp_s + kOffset_s + kLeastDelay_s, 1e-4) << frame;
+  }
+}
+
+// A clock that runs too slowly by 50 millionths would be 0.18 s behind after an hour.
+TEST(SensorClock, FollowsAClockThatDrifts) {
+  for (const double rate : {1 - 50e-6, 1 + 50e-6}) {
+    SensorClock clock;
+    for (int frame = 0; frame < 108000; ++frame) {
+      const double taken_s = frame * kPeriod_s;
+      const double captured_s = clock.captured_s(rate * taken_s, taken_s + kOffset_s + delay_s(frame));
+      if (frame < 7) continue;
+      ASSERT_NEAR(captured_s, taken_s + kOffset_s + kLeastDelay_s, 1e-4) << rate << " " << frame;
+    }
+  }
+}
+
+// The first frame waited for 0.1 s: the second would be older than it.
+TEST(SensorClock, NeverTurnsFramesRound) {
+  SensorClock clock;
+  const double first_s = clock.captured_s(0, 10.1);
+  const double second_s = clock.captured_s(kPeriod_s, 10.101);
+  EXPECT_GT(second_s, first_s);
+  EXPECT_LE(second_s, 10.101);
+  EXPECT_NEAR(clock.captured_s(6 * kPeriod_s, 10 + 6 * kPeriod_s), 10 + 6 * kPeriod_s, 1e-9);
+}
+
+TEST(SensorClock, BeginsAnewWhenStampsGoBackOrStandStill) {
+  SensorClock clock;
+  EXPECT_EQ(clock.captured_s(100, 10), 10);
+  EXPECT_EQ(clock.captured_s(0, 10.5), 10.5);
+  EXPECT_EQ(clock.captured_s(0.5, 20), 20);
+}
+
+// After ten minutes without a frame the offset is not trusted more than the drift allows.
+TEST(SensorClock, PauseOfTheSensor) {
+  SensorClock clock;
+  clock.captured_s(0, kOffset_s);
+  EXPECT_NEAR(clock.captured_s(600, kOffset_s + 600.03), kOffset_s + 600.03, 1e-9);
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,89 @@
+// A device that lacks some motors, in any orientation of its handle.
+#include "runners/operator/device_motors.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/geometry/rotation.h"
+
+namespace remote_touch {
+namespace {
+
+Vec3 direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+TEST(DeviceMotors, ADeviceWithAllOfThemExertsWhatItIsTold) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 50; ++i) {
+    const Wrench told{5 * direction(random), direction(random)};
+    const Wrench felt = exerted({}, rotation(3 * direction(random)), told);
+    EXPECT_EQ(felt.force_N, told.force_N);
+    EXPECT_LT((felt.torque_Nm - told.torque_Nm).norm(), 4e-15);
+  }
+}
+
+// Whatever the orientation: about the handle's own axis nothing, about the other two as told.
+TEST(DeviceMotors, AMissingTurnIsThatOfTheHandle) {
+  std::mt19937 random(2);
+  for (int missing = 0; missing < 3; ++missing) {
+    MotorSettings motors;
+    (missing == 0 ? motors.turns_x : missing == 1 ? motors.turns_y : motors.turns_z) = false;
+    for (int i = 0; i < 50; ++i) {
+      const Eigen::Quaterniond handle_W = rotation(3 * direction(random));
+      const Wrench told{direction(random), direction(random)};
+      const Wrench felt = exerted(motors, handle_W, told);
+      EXPECT_EQ(felt.force_N, told.force_N);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 axis_W = handle_W.toRotationMatrix().col(axis);
+        EXPECT_NEAR(felt.torque_Nm.dot(axis_W), axis == missing ? 0 : told.torque_Nm.dot(axis_W), 4e-15);
+      }
+    }
+  }
+}
+
+// Turned by a quarter the handle's x is the base's y.
+TEST(DeviceMotors, TheRollOfATurnedHandleIsAnotherAxisOfTheBase) {
+  MotorSettings motors;
+  motors.turns_x = false;
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Vec3::UnitZ()));
+  EXPECT_LT((exerted(motors, quarter, {Vec3::Zero(), {1, 2, 3}}).torque_Nm - Vec3(1, 0, 3)).norm(), 4e-15);
+}
+
+TEST(DeviceMotors, AMissingMoveIsThatOfTheBase) {
+  std::mt19937 random(3);
+  MotorSettings motors;
+  motors.moves_x = motors.moves_z = false;
+  const Wrench felt = exerted(motors, rotation(direction(random)), {{1, 2, 3}, {4, 5, 6}});
+  EXPECT_EQ(felt.force_N, Vec3(0, 2, 0));
+  EXPECT_LT((felt.torque_Nm - Vec3(4, 5, 6)).norm(), 1e-14);
+  motors.moves_y = false;
+  EXPECT_EQ(exerted(motors, rotation(direction(random)), {{1, 2, 3}, {0, 0, 0}}).force_N, Vec3::Zero());
+}
+
+TEST(DeviceMotors, LongerWrenchesAreCutAndShorterOnesLeft) {
+  std::mt19937 random(4);
+  MotorSettings motors;
+  motors.largest_force_N = 3, motors.largest_torque_Nm = 0.2;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Quaterniond handle_W = rotation(3 * direction(random));
+    const Vec3 f = direction(random), t = direction(random);
+    const Wrench cut = exerted(motors, handle_W, {(3.1 + i) * f, (0.21 + i) * t});
+    EXPECT_LT((cut.force_N - 3 * f).norm(), 1e-14);
+    EXPECT_LT((cut.torque_Nm - 0.2 * t).norm(), 4e-15);
+    const Wrench left = exerted(motors, handle_W, {2.9 * f, 0.19 * t});
+    EXPECT_EQ(left.force_N, 2.9 * f);
+    EXPECT_LT((left.torque_Nm - 0.19 * t).norm(), 4e-15);
+  }
+}
+
+TEST(DeviceMotors, AZeroIsNoLimit) {
+  EXPECT_EQ(exerted({}, Eigen::Quaterniond::Identity(), {{1e6, 0, 0}, {0, 1e6, 0}}).force_N, Vec3(1e6, 0, 0));
+  EXPECT_EQ(exerted({}, Eigen::Quaterniond::Identity(), {{1e6, 0, 0}, {0, 1e6, 0}}).torque_Nm,
+            Vec3(0, 1e6, 0));
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,236 @@
+// What a tool does in scenes whose answer is known: the oracles of chapter 6, through the whole program.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "core/geometry/rotation.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+namespace {
+
+std::string number(double value) {
+  return std::to_string(value);
+}
+
+Trace run(const std::string& scenario, const std::string& renderer, const std::string& trajectory,
+          const std::vector<std::string>& overrides = {}) {
+  const std::string json = R"({"scenario": )" + scenario + R"(, "renderer": )" + renderer +
+                           R"(, "trajectory": )" + trajectory + "}";
+  return simulate(Experiment::from_json(json, "test", overrides));
+}
+
+std::string tool(const std::string& mesh, const std::string& rule) {
+  return R"({"name": "tool", "tool_mesh": ")" + mesh + R"(", "contact_rule": ")" + rule + R"("})";
+}
+
+std::string poses(const std::string& rows) {
+  return R"({"name": "poses", "poses": [)" + rows + "]}";
+}
+
+int most(const std::vector<std::int32_t>& column) {
+  return *std::max_element(column.begin(), column.end());
+}
+int sum(const std::vector<std::int32_t>& column) {
+  return std::accumulate(column.begin(), column.end(), 0);
+}
+double deepest(const Trace& trace) {
+  return *std::max_element(trace.penetration_m.begin(), trace.penetration_m.end());
+}
+
+// Degrees about y at which a bar of 80 x 10 mm comes to rest in a slot of 40 mm, turned to 30 degrees.
+double bar_stops_at(const std::string& rule, double spacing_m, double phase_m) {
+  const Trace trace = run(R"({"name": "slot"})", tool("bar", rule),
+                          poses("[0,0,0,0,0,0,0], [0,0,0,0,30,0,1], [0,0,0,0,30,0,0.2]"),
+                          {"scenario.spacing_m=" + number(spacing_m), "scenario.phase_m=" + number(phase_m)});
+  EXPECT_EQ(sum(trace.budget_exhausted), 0);
+  return rotation_vector(trace.tool_orientation_at(trace.length() - 1)).y() / kRadiansPerDegree;
+}
+
+// In closed form 40 sin(a) + 5 cos(a) = 20: 22.62 degrees. Disks hold the corner as a wall would, wherever
+// the columns of points are.
+TEST(ToolContact, ABarInASlotStopsWhereItMustByLookAhead) {
+  for (const double spacing : {0.001, 0.002, 0.005})
+    for (const double phase : {0.0, 0.3, 0.5})
+      EXPECT_NEAR(bar_stops_at("look-ahead", spacing, phase * spacing), 22.62, 0.02)
+          << spacing << " " << phase;
+}
+
+// Voxels let the corner sink between the columns: most where one is just beyond it, by spacing x tan(a).
+TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
+  const auto worst = [](double spacing_m) {
+    double largest = 0;
+    for (int i = 0; i < 4; ++i)
+      largest = std::max(largest, bar_stops_at("voxels", spacing_m, 0.25 * i * spacing_m));
+    return largest;
+  };
+  EXPECT_NEAR(worst(0.001), 23.2, 0.4);
+  EXPECT_NEAR(worst(0.002), 23.78, 0.1);
+  EXPECT_NEAR(worst(0.005), 25.74, 0.1);
+}
+
+// A plane rises at a speed under a slab that is held; true when the slab is carried.
+bool carried(int thickness_mm, double speed_m_per_s, const std::string& rule) {
+  const double rise = 0.08 + 0.006 * thickness_mm;
+  const Trace trace =
+      run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.03, "wait_s": 0.1})",
+          tool("slab-" + std::to_string(thickness_mm), rule), poses("[0,0,0,0,0,0,0]"),
+          {"scenario.speed_m_per_s=" + number(speed_m_per_s), "scenario.rise_m=" + number(rise),
+           "duration_s=" + number(0.3 + rise / speed_m_per_s)});
+  return trace.signed_distance_m.back() > 0;
+}
+
+// A frame that jumps by more than the interior of the tool passes through it: v < f_c (h - 2w).
+TEST(ToolContact, SlabsAreLiftedUpToTheBoundByVoxels) {
+  for (const int h : {5, 10, 20, 40}) {
+    const double bound = 30 * (0.001 * h - 0.001);
+    EXPECT_TRUE(carried(h, 0.98 * bound, "voxels")) << h;
+    EXPECT_FALSE(carried(h, 1.02 * bound, "voxels")) << h;
+  }
+}
+
+// The rule that remembers its side loses nothing to a shell: v < f_c h.
+TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
+  for (const int h : {5, 10, 20, 40}) {
+    EXPECT_TRUE(carried(h, 0.97 * 30 * 0.001 * h, "look-ahead")) << h;
+    EXPECT_FALSE(carried(h, 1.03 * 30 * 0.001 * h, "look-ahead")) << h;
+  }
+}
+
+// From rest the frames of an even acceleration differ by a / f_c^2: with the estimate that is all the tool
+// has to survive, a < (h - 2w) f_c^2; without it the speed grows beyond every bound.
+TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
+  const double bound = 900 * (0.01 - 0.001);
+  for (const std::string rule : {"voxels", "look-ahead"})
+    for (const bool estimate : {true, false}) {
+      const double a = 0.9 * bound, rise = 0.5;
+      const Trace trace = run(
+          R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.0048, "wait_s": 0.2, "speed_m_per_s": 0})",
+          tool("slab-10", rule), poses("[0,0,0,0,0,0,0]"),
+          {"scenario.acceleration_m_per_s2=" + number(a), "scenario.rise_m=" + number(rise),
+           "duration_s=" + number(0.5 + std::sqrt(2 * rise / a)),
+           std::string("renderer.velocity_estimate=") + (estimate ? "true" : "false")});
+      EXPECT_EQ(trace.signed_distance_m.back() > 0, estimate) << rule;
+    }
+}
+
+// From behind the sheet to 5 mm before it, and back.
+Trace from_behind(const std::string& mesh, const std::string& rule) {
+  return run(
+      R"({"name": "sheet"})", tool(mesh, rule),
+      poses("[0,0,-0.03,0,0,0,0], [0,0,0.005,0,0,0,0.5], [0,0,0.005,0,0,0,0.2], [0,0,-0.03,0,0,0,0.5]"));
+}
+
+TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
+  const struct {
+    const char* mesh;
+    double half_m;
+  } tools[] = {{"ball", 0.01}, {"bar", 0.005}, {"slab-10", 0.02}};
+  for (const auto& t : tools) {
+    const Trace trace = from_behind(t.mesh, "look-ahead");
+    for (std::size_t i = 500; i < 700; ++i) EXPECT_NEAR(trace.proxy(i).z(), -t.half_m, 2e-4) << t.mesh;
+    for (std::size_t i = 1; i < trace.length(); ++i)  // on the way back it follows as soon as it may
+      if (i > 700 && trace.hip(i).z() < -t.half_m - 1e-4) {
+        EXPECT_LT((trace.proxy(i) - trace.hip(i)).norm(), 1e-12) << t.mesh;
+      }
+  }
+}
+
+// Flush, as it comes or after a turn: the points beside the tool lie in the plane of its face, and must not
+// be walls to its sides; at its corners the field is blunt, and must not be taken for a ridge inside.
+TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
+  for (const std::string tilt : {"0", "3"})
+    for (const std::string width : {"0.078", "0.15"}) {
+      const Trace trace = run(
+          R"({"name": "sheet", "normal": [0, 1, 0], "width_m": )" + width + R"(, "height_m": )" + width + "}",
+          tool("slab-20", "look-ahead"),
+          poses("[0,-0.06,0," + tilt + ",0,0,0], [0,-0.003,0," + tilt +
+                ",0,0,0.5], [0,-0.003,0,0,0,0,0.3], [0.013,-0.003,0.009,0,0,0,0.3], "
+                "[0.013,-0.06,0.009,0,0,0,0.5]"));
+      const std::string what = "tilt " + tilt + ", width " + width;
+      for (std::size_t i = 500; i < 1100; ++i) ASSERT_LT(trace.proxy(i).y(), -0.0099) << what;
+      for (std::size_t i = 800; i < 1100; ++i) {
+        const Vec3 lag = trace.proxy(i) - trace.hip(i);
+        ASSERT_LT(std::hypot(lag.x(), lag.z()), 1e-9) << what << ", tick " << i;
+      }
+      const std::size_t last = trace.length() - 1;
+      EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12) << what;
+    }
+}
+
+// What held the tool is forgotten once it is left behind: a ball that was at the back of a plane, and went
+// round it, is lifted by it like one that was not.
+TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
+  for (const char* way :
+       {"[0,-0.05,0,0,0,0,0], [0,-0.009,0,0,0,0,0.3]", "[0,-0.05,0,0,0,0,0], [0,-0.03,0,0,0,0,0.3]"}) {
+    const Trace trace = run(
+        R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": 0, "wait_s": 1.5, "speed_m_per_s": 0.3,
+            "rise_m": 0.05})",
+        tool("ball", "look-ahead"),
+        poses(std::string(way) + ", [0,-0.05,0,0,0,0,0.2], [0.2,-0.05,0,0,0,0,0.2], [0.2,0.05,0,0,0,0,0.2], "
+                                 "[0,0.0122,0,0,0,0,0.4]"),
+        {"duration_s=2"});
+    EXPECT_NEAR(trace.proxy(trace.length() - 1).y(), 0.06, 1e-3) << way;
+  }
+}
+
+// As printed the normal pulls a tool through from behind: the reading that look-ahead mends.
+TEST(ToolContact, TheBackOfASheetSucksTheToolThroughByVoxels) {
+  const Trace trace = from_behind("ball", "voxels");
+  double farthest = -1;
+  for (std::size_t i = 0; i < trace.length(); ++i) farthest = std::max(farthest, trace.proxy(i).z());
+  EXPECT_GT(farthest, 0.005);
+}
+
+// Walls that close on a bar to less than its thickness, while the device moves along them, and open again.
+TEST(ToolContact, ATrappedToolFollowsAlongAWedgeAndRecovers) {
+  const std::string wedge =
+      R"({"name": "wedge", "angle_deg": 0, "open_gap_m": 0.03, "closed_gap_m": 0.006, "closing_at_s": 0.2,
+          "closed_at_s": 0.5, "reopening_at_s": 1.1, "open_at_s": 1.4})";
+  for (const std::string rule : {"look-ahead", "voxels"})
+    for (const char* where : {"scenario.offset_m=0", "scenario.offset_m=0.004", "scenario.tilt_deg=12"}) {
+      const Trace trace = run(wedge, tool("bar", rule),
+                              poses("[0,0.03,0,0,0,0,0], [0,0.03,0,0,0,0,0.6], [0.03,0.03,0,0,0,0,0.4], "
+                                    "[0.03,0.03,0,0,0,0,0.8]"),
+                              {where});
+      ASSERT_EQ(trace.state[900], static_cast<int>(ContactState::entrenched)) << where;
+      for (std::size_t i = 620; i < 1000; ++i)
+        EXPECT_NEAR(trace.proxy(i).x(), trace.hip(i).x(), 1.5e-3) << rule << " " << where << " " << i;
+      // 10 mm in 6 mm: 2 mm at either side, and a share more where the printed rule leaves it uneven
+      EXPECT_LT(deepest(trace), rule == "look-ahead" ? 2.1e-3 : 4.5e-3) << where;
+      const std::size_t last = trace.length() - 1;
+      EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12) << rule << " " << where;
+      EXPECT_LT(trace.force(last).norm(), 1e-9);
+    }
+}
+
+// Fig 6.3: nothing is touched before the turn, the walls stop it between 20.5 and 22.5 degrees.
+TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
+  for (const char* rule : {"look-ahead", "voxels"}) {
+    const Trace trace = simulate(Experiment::load("fig6.3", {std::string("renderer.contact_rule=") + rule}));
+    double largest = 0;
+    for (std::size_t i = 0; i < trace.length(); ++i) {
+      const double lag =
+          (rotation_vector(trace.hip_orientation_at(i)) - rotation_vector(trace.tool_orientation_at(i)))
+              .norm();
+      largest = std::max(largest, rotation_vector(trace.tool_orientation_at(i)).y() / kRadiansPerDegree);
+      if (lag > kRadiansPerDegree) {
+        EXPECT_GT(trace.contact_count[i], 0) << i;
+      }
+      if (i < 1900 || i > 6100) {
+        EXPECT_EQ(trace.contact_count[i], 0) << i;
+        EXPECT_EQ(trace.proxy(i), trace.hip(i));
+      }
+    }
+    EXPECT_GT(largest, 20.5) << rule;
+    EXPECT_LT(largest, 22.5) << rule;
+    EXPECT_LE(most(trace.active_constraints), 6);
+    EXPECT_LT(deepest(trace), 5e-4) << rule;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,181 @@
+// Doing the runs of a sweep: the bits of single runs, failures, the end before the end, refinement.
+#include "runners/sweep/sweep_run.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/parameters/input_error.h"
+#include "runners/simulation/simulation.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
+           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
+  "replicates": 2, "measures": ["largest_penetration", "popped_through"]})";
+
+Sweep quick(const std::vector<std::string>& overrides = {}) {
+  return Sweep::from_json(kQuick, "quick.json", overrides);
+}
+Sweep refined() {
+  return quick({"axes.1.count=3", "refine.budget=70", "refine.levels=2", "refine.most_replicates=5"});
+}
+
+void expect_same(const SweepResult& a, const SweepResult& b) {
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_EQ(a.round, b.round);
+  EXPECT_EQ(a.error, b.error);
+  ASSERT_EQ(a.measures.size(), b.measures.size());
+  for (const Column& measure : a.measures)
+    for (std::size_t run = 0; run < a.run_count(); ++run)
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(a.measure(measure.name)[run]),
+                std::bit_cast<std::uint64_t>(b.measure(measure.name)[run]))
+          << measure.name << " of run " << run;
+}
+
+TEST(SweepRuns, HaveTheBitsOfSingleRuns) {
+  const Sweep sweep = quick();
+  const SweepResult result = run_sweep(sweep, {});
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)));
+    EXPECT_EQ(result.measure("largest_penetration")[run], largest_penetration_m(trace));
+    EXPECT_EQ(result.measure("popped_through")[run], popped_through(trace));
+  }
+  // Replicates differ in their noise, where there is any.
+  EXPECT_EQ(result.measure("largest_penetration")[0], result.measure("largest_penetration")[1]);
+  EXPECT_NE(result.measure("largest_penetration")[22], result.measure("largest_penetration")[23]);
+}
+
+TEST(SweepRuns, DoNotDependOnThreads) {
+  for (const Sweep& sweep : {quick(), refined()}) {
+    omp_set_num_threads(1);
+    const SweepResult one = run_sweep(sweep, {});
+    for (const int threads : {2, 8}) {
+      omp_set_num_threads(threads);
+      expect_same(run_sweep(sweep, {}), one);
+    }
+  }
+}
+
+TEST(SweepRuns, OnlyWhatIsPendingIsDoneAndToldOnce) {
+  const Sweep sweep = quick();
+  SweepResult result = sweep.plan({2, 3});
+  std::vector<int> told(result.run_count(), 0);
+  SweepRunOptions options;
+  options.finished = [&](std::size_t run) {
+    EXPECT_EQ(result.state[run], RunState::done);
+    ++told[run];
+  };
+  do_pending_runs(sweep, result, options);
+  for (std::size_t run = 0; run < told.size(); ++run) {
+    const bool mine = result.cell_of(run) % 3 == 1;
+    EXPECT_EQ(told[run], mine ? 1 : 0);
+    EXPECT_EQ(result.state[run], mine ? RunState::done : RunState::elsewhere);
+    EXPECT_EQ(std::isnan(result.measure("popped_through")[run]), !mine);
+  }
+}
+
+// Whatever ended the sweep: what is done was told, what is not done is pending.
+TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
+  omp_set_num_threads(2);
+  const Sweep sweep = quick();
+  for (const bool by_signal : {true, false}) {
+    SweepResult result = sweep.plan();
+    std::atomic<bool> stop{false};
+    std::size_t told = 0;
+    SweepRunOptions options;
+    options.stop = &stop;
+    options.finished = [&](std::size_t) {
+      if (++told != 5) return;
+      if (!by_signal) throw std::out_of_range("a full disk");
+      stop = true;
+    };
+    if (by_signal) {
+      EXPECT_THROW(do_pending_runs(sweep, result, options), Interrupted);
+    } else {
+      EXPECT_THROW(do_pending_runs(sweep, result, options), std::out_of_range);
+    }
+    EXPECT_GE(told, 5u);
+    EXPECT_LT(told, 24u);
+    EXPECT_EQ(result.runs_in(RunState::done).size(), told);
+    EXPECT_EQ(result.runs_in(RunState::pending).size(), 24 - told);
+  }
+}
+
+// A recording is looked for when its run begins.
+TEST(SweepRuns, OneThatFailsIsToldAndTheOthersGoOn) {
+  const TestFolder folder("sweep_run_test");
+  const CameraIntrinsics camera{64, 48, 50, 50, 31.5, 23.5};
+  const std::string sound = folder.write("sound.pcd", organised_pcd(camera, 0)).string();
+  const std::string missing = (folder / "missing.pcd").string();
+  const Sweep sweep = Sweep::from_json(
+      R"({"experiment": {"scenario": {"name": "recording", "path": "x"}, "renderer": {"name": "proxy"},
+      "trajectory": {"name": "image-scan"}, "duration_s": 0.1}, "measures": ["mean_steps"],
+      "axes": [{"parameter": "scenario.path", "values": [")" +
+          sound + R"(", ")" + missing + R"("]}, {"parameter": "seed", "values": [1, 2]}]})",
+      "recordings");
+  SweepResult result = sweep.plan();
+  do_pending_runs(sweep, result, {});
+  for (std::size_t run = 0; run < 4; ++run) {
+    const bool fails = run >= 2;
+    EXPECT_EQ(result.state[run], fails ? RunState::failed : RunState::done) << result.error[run];
+    EXPECT_EQ(std::isnan(result.measure("mean_steps")[run]), fails);
+    EXPECT_EQ(result.error[run].empty(), !fails);
+    EXPECT_EQ(contains(result.error[run], "missing.pcd"), fails);
+  }
+  const SweepResult all = run_sweep(sweep, {});
+  ASSERT_FALSE(all.runs_in(RunState::failed).empty());
+  EXPECT_HAS(all.error[all.runs_in(RunState::failed).front()], "missing.pcd");
+}
+
+TEST(Refinement, KeepsItsBudgetAndNumbersItsRounds) {
+  const SweepResult result = run_sweep(refined(), {});
+  EXPECT_EQ(result.runs_in(RunState::done).size(), 70u);
+  std::int32_t last = 0;
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    EXPECT_EQ(result.round[run] >= 0, result.state[run] == RunState::done);
+    last = std::max(last, result.round[run]);
+    // The first round: every fourth value, two replicates.
+    const auto place = result.place(result.cell_of(run));
+    const bool is_first = place[0] % 4 == 0 && place[1] % 4 == 0 && result.replicate_of(run) < 2;
+    EXPECT_EQ(result.round[run] == 0, is_first);
+  }
+  EXPECT_GE(last, 2);
+  SweepResult plain = run_sweep(quick(), {});
+  EXPECT_FALSE(add_round(quick(), plain));
+}
+
+// A round depends on results alone: a sweep that is ended after every third run asks for the same ones.
+TEST(Refinement, EndedAndGoneOnWithIsTheSame) {
+  omp_set_num_threads(2);
+  const Sweep sweep = refined();
+  SweepResult result = sweep.plan();
+  int ends = 0;
+  do {
+    while (!result.runs_in(RunState::pending).empty()) {
+      int told = 0;
+      SweepRunOptions options;
+      options.finished = [&](std::size_t) {
+        if (++told == 3) throw std::out_of_range("enough");
+      };
+      try {
+        do_pending_runs(sweep, result, options);
+      } catch (const std::out_of_range&) {
+        ++ends;
+      }
+    }
+  } while (add_round(sweep, result));
+  EXPECT_GT(ends, 5);
+  expect_same(result, run_sweep(sweep, {}));
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,67 @@
+#include "runners/trajectories/random_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/synthetic/flat_grid.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+RandomWalk walk(const RandomWalk::Settings& settings) {
+  return RandomWalk(settings, FlatGrid({}, NoiseKey{}, scenes::kernels()));
+}
+
+TEST(RandomWalk, StaysInItsBoxAndBelowItsSpeed) {
+  RandomWalk::Settings s;
+  s.centre_m = {1, 2, 3}, s.extent_m = {0.02, 0.05, 0.01}, s.turn_deg = 40, s.duration_s = 200;
+  const RandomWalk device = walk(s);
+  Vec3 widest = Vec3::Zero();
+  double fastest = 0, most_turned = 0;
+  for (double t = 0; t < s.duration_s; t += 0.01) {
+    const DeviceState now = device.at(t), next = device.at(t + 0.001);
+    widest = widest.cwiseMax((now.position_W - s.centre_m).cwiseAbs());
+    fastest = std::max(fastest, (next.position_W - now.position_W).norm() / 0.001);
+    most_turned = std::max(most_turned, now.orientation_W.angularDistance(Eigen::Quaterniond::Identity()));
+    ASSERT_NEAR(now.orientation_W.norm(), 1, 4e-16);
+    ASSERT_LT(now.orientation_W.angularDistance(next.orientation_W), 0.01) << "smooth";
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(widest[axis], s.extent_m[axis]);
+    EXPECT_GT(widest[axis], 0.8 * s.extent_m[axis]);
+  }
+  EXPECT_LE(fastest, s.speed_m_per_s * (1 + 1e-9));
+  EXPECT_GT(fastest, 0.5 * s.speed_m_per_s);
+  const double degree = std::acos(-1.0) / 180;
+  EXPECT_LE(most_turned, s.turn_deg * degree * (1 + 1e-9));
+  EXPECT_GT(most_turned, 0.5 * s.turn_deg * degree);
+}
+
+TEST(RandomWalk, EverySeedIsAnotherWalk) {
+  RandomWalk::Settings s;
+  const RandomWalk one = walk(s), same = walk(s);
+  s.seed = 2;
+  const RandomWalk other = walk(s);
+  for (const double t : {3.0, 0.0, 7.7}) {
+    EXPECT_EQ(one.at(t).position_W, same.at(t).position_W);
+    EXPECT_GT((one.at(t).position_W - other.at(t).position_W).norm(), 1e-3);
+    EXPECT_GT(one.at(t).orientation_W.angularDistance(other.at(t).orientation_W), 1e-2);
+  }
+  EXPECT_EQ(one.at(10).position_W, one.at(1e9).position_W);
+  EXPECT_EQ(one.duration_s(), 10);
+}
+
+TEST(RandomWalk, RefusesAPlaceWithoutRoom) {
+  RandomWalk::Settings s;
+  EXPECT_EQ(conflict(s), "");
+  s.extent_m = {1e-7, 0, 0};
+  EXPECT_NE(conflict(s), "");
+  s.extent_m.setZero();
+  EXPECT_NE(conflict(s), "");
+}
+
+}  // namespace
+}  // namespace remote_touch

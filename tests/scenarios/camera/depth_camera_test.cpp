@@ -1,0 +1,168 @@
+#include "scenarios/camera/depth_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr std::uint32_t kTable = 0x204060, kBlock = 0xC03020;
+constexpr double kBlockTop_m = 0.1;
+
+DepthCameraSettings small() {
+  return {.width = 64,
+          .height = 48,
+          .focal_px = 60,
+          .camera_m = {0, 0.5, 0},
+          .noise_per_m = 0,
+          .quantisation_per_m = 0};
+}
+DepthCamera made(const DepthCameraSettings& settings, std::uint64_t seed = 1) {
+  return DepthCamera(settings, NoiseKey{seed}, scenes::kernels());
+}
+std::size_t pixel(int u, int v) {
+  return static_cast<std::size_t>(v) * 64 + static_cast<std::size_t>(u);
+}
+
+RayHit table(const Vec3& origin, const Vec3& ray) {
+  return ray.y() < 0 ? RayHit{-origin.y() / ray.y(), kTable} : RayHit{};
+}
+// On the table a block fills the half-space x > 0 below its top.
+RayHit table_and_block(const Vec3& origin, const Vec3& ray) {
+  const RayHit top = {(kBlockTop_m - origin.y()) / ray.y(), kBlock};
+  return origin.x() + top.t * ray.x() > 0 ? top : table(origin, ray);
+}
+
+TEST(LookAt, AxesAreRightHandedAndTheWorldsUpIsUpInTheImage) {
+  const PointCloud at = scenes::random_cloud(100, 1, 1);
+  for (std::size_t i = 0; i + 1 < at.size(); ++i) {
+    const RigidTransform X_WC = look_at(at.point(i), at.point(i + 1));
+    EXPECT_LT((X_WC.linear().transpose() * X_WC.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_NEAR(X_WC.linear().determinant(), 1, 1e-14);
+    EXPECT_EQ(X_WC.translation(), at.point(i));
+    const Vec3 target_C = X_WC.inverse() * at.point(i + 1);
+    EXPECT_LT(target_C.head<2>().norm(), 1e-14);
+    EXPECT_GT(target_C.z(), 0);
+    EXPECT_NEAR(X_WC.linear()(1, 0), 0, 1e-16) << "image rows are level";
+    EXPECT_LT(X_WC.linear()(1, 1), 0) << "image down goes down";
+  }
+}
+
+TEST(LookAt, StraightDownAndUpTheImagesRightIsX) {
+  const RigidTransform down = look_at({0.1, 0.5, 0.2}, {0.1, 0, 0.2}), up = look_at({0, 0, 0}, {0, 2, 0});
+  EXPECT_EQ(down.linear().col(0), Vec3(1, 0, 0));
+  EXPECT_EQ(down.linear().col(1), Vec3(0, 0, 1)) << "the image's up is -z";
+  EXPECT_EQ(down.linear().col(2), Vec3(0, -1, 0));
+  EXPECT_EQ(up.linear().col(0), Vec3(1, 0, 0));
+  EXPECT_EQ(up.linear().col(1), Vec3(0, 0, -1));
+  // A camera that has moved a little towards +z sees nearly the same image.
+  EXPECT_LT((look_at({0.1, 0.5, 0.2 + 1e-6}, {0.1, 0, 0.2}).linear() - down.linear()).norm(), 1e-5);
+}
+
+TEST(DepthCamera, RefusesToLookAtItself) {
+  DepthCameraSettings s = small();
+  EXPECT_EQ(conflict(s), "");
+  s.target_m = s.camera_m;
+  EXPECT_NE(conflict(s), "");
+}
+
+TEST(DepthCamera, APlaneIsSeenAtItsDepth) {
+  DepthCameraSettings s = small();
+  const IdealView from_above = made(s).view(table, false);
+  for (const double z : from_above.depth.z_m) EXPECT_NEAR(z, 0.5, 1e-15);
+  EXPECT_TRUE(from_above.colour.empty());
+
+  s.camera_m = {0.4, 0.3, 0}, s.hole_px = 0;  // looks down by 3 in 5 parts
+  const DepthCamera slanting = made(s);
+  const IdealView view = slanting.view(table, false);
+  const PointCloud cloud = slanting.measured(view, 0);
+  for (const int v : {0, 20, 47}) {
+    const double down = (v - 23.5) / 60;
+    EXPECT_NEAR(view.depth.z_m[pixel(5, v)], 0.3 / (0.6 + 0.8 * down), 1e-14) << v;
+    EXPECT_NEAR(cloud.y[pixel(5, v)], 0, 1e-15);
+  }
+}
+
+TEST(DepthCamera, StraightDownColumnsGoAlongXAndRowsAlongZ) {
+  const DepthCamera camera = made(small());
+  const PointCloud cloud = camera.measured(camera.view(table, false), 0);
+  ASSERT_TRUE(cloud.image.has_value());
+  for (const int v : {0, 17, 47})
+    for (const int u : {0, 31, 63}) {
+      const Vec3 expected((u - 31.5) / 60 * 0.5, 0, (v - 23.5) / 60 * 0.5);
+      EXPECT_LT((cloud.point(pixel(u, v)) - expected).norm(), 1e-15) << u << " " << v;
+    }
+}
+
+TEST(DepthCamera, NothingBeyondThreeMetres) {
+  DepthCameraSettings s = small();
+  s.camera_m = {0, 0.5, 0}, s.target_m = {1, 0.5, 0};
+  const IdealView view = made(s).view(table, true);
+  for (int v = 0; v < 48; ++v) {
+    const double depth = 0.5 * 60 / (v - 23.5);
+    EXPECT_EQ(std::isnan(view.depth.z_m[pixel(9, v)]), !(v > 23 && depth <= 3)) << v;
+    EXPECT_EQ(view.colour[pixel(9, v)], v > 23 ? kTable : 0) << "the colour camera sees the far table too";
+  }
+}
+
+TEST(DepthCamera, HolesNearEdgesOnlyAndTheyKeepTheirColour) {
+  for (const int reach : {0, 1, 3}) {
+    DepthCameraSettings s = small();
+    s.hole_px = reach;
+    const DepthCamera camera = made(s);
+    const IdealView view = camera.view(table_and_block, true);
+    const PointCloud cloud = camera.measured(view, 0);
+    // The block's edge runs along the optical axis: between the middle columns.
+    for (int v = 0; v < 48; ++v)
+      for (int u = 0; u < 64; ++u) {
+        const std::size_t i = pixel(u, v);
+        EXPECT_EQ(view.hole[i] != 0, u >= 32 - reach && u < 32 + reach) << reach << ": " << u;
+        EXPECT_EQ(std::isnan(cloud.x[i]), view.hole[i] != 0);
+        EXPECT_EQ(cloud.colour[i], u < 32 ? kTable : kBlock);
+      }
+  }
+  DepthCameraSettings blind = small();
+  blind.edge_jump_m = kBlockTop_m + 1e-9;
+  for (const char hole : made(blind).view(table_and_block, false).hole) EXPECT_EQ(hole, 0);
+}
+
+TEST(DepthCamera, DepthsAreWholeDisparities) {
+  DepthCameraSettings s = small();
+  s.camera_m = {0.4, 0.3, 0}, s.quantisation_per_m = 0.01;
+  const DepthCamera camera = made(s);
+  const IdealView view = camera.view(table, false);
+  const PointCloud cloud = camera.measured(view, 0);
+  const RigidTransform X_CW = camera.pose().inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (std::isnan(cloud.x[i])) continue;
+    const double z = (X_CW * cloud.point(i)).z(), level = 100 / z;
+    EXPECT_NEAR(level, std::round(level), 1e-9);
+    EXPECT_LE(std::abs(level - 100 / view.depth.z_m[i]), 0.5 + 1e-9) << "the nearest one";
+  }
+}
+
+TEST(DepthCamera, NoiseHasTheDeviationAskedForAndBelongsToItsFrame) {
+  DepthCameraSettings s = small();
+  s.noise_per_m = 0.01;
+  const DepthCamera camera = made(s), other = made(s, 2);
+  const IdealView view = camera.view(table, false);
+  double sum = 0, squares = 0, count = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    for (const double y : camera.measured(view, frame).y) sum += y, squares += y * y, ++count;
+  }
+  const double sigma = 0.01 * 0.5 * 0.5;
+  EXPECT_NEAR(sum / count, 0, 5 * sigma / std::sqrt(count));
+  EXPECT_NEAR(std::sqrt(squares / count), sigma, 5 * sigma / std::sqrt(2 * count));
+
+  EXPECT_EQ(camera.measured(view, 7).y, camera.measured(view, 7).y);
+  EXPECT_NE(camera.measured(view, 7).y, camera.measured(view, 8).y);
+  EXPECT_NE(camera.measured(view, 7).y, other.measured(view, 7).y);
+}
+
+}  // namespace
+}  // namespace remote_touch

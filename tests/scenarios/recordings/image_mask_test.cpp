@@ -1,0 +1,115 @@
+// Masks: which points an image marks, and what the rule refuses.
+#include "scenarios/recordings/image_mask.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+using Shares = std::vector<double>;
+
+PointCloud image(int width, int height) {
+  PointCloud cloud;
+  cloud.image = ImageLayout{{width, height, 10, 10, 0, 0}, RigidTransform::Identity(), 0};
+  for (int i = 0; i < width * height; ++i) cloud.append({0.1 * i, 0, 1});
+  return cloud;
+}
+
+ImageMask::Settings settings(const fs::path& file) {
+  ImageMask::Settings settings;
+  settings.path = file.string();
+  return settings;
+}
+
+class ImageMasks : public testing::Test {
+ protected:
+  Shares shares(const fs::path& file, const PointCloud& cloud) const {
+    return ImageMask(settings(file)).shares(cloud);
+  }
+  fs::path grey(const std::vector<std::uint8_t>& samples, int width) const {
+    const int height = static_cast<int>(samples.size()) / width;
+    return folder_.write_png("grey.png", width, height, PNG_FORMAT_GRAY, samples.data());
+  }
+
+  const TestFolder folder_{"image_mask_test"};
+};
+
+TEST_F(ImageMasks, PickWhatIsNotBlackRowByRow) {
+  EXPECT_EQ(shares(grey({0, 255, 0, 1, 0, 128}, 3), image(3, 2)), (Shares{0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(shares(grey({0, 255, 0, 1, 0, 128}, 2), image(2, 3)), (Shares{0, 1, 0, 1, 0, 1}));
+}
+
+TEST_F(ImageMasks, MayHaveColours) {
+  const std::uint8_t rgb[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  EXPECT_EQ(shares(folder_.write_png("rgb.png", 2, 2, PNG_FORMAT_RGB, rgb), image(2, 2)),
+            (Shares{0, 1, 1, 1}));
+}
+
+// What can be seen through is as black, or not, as without.
+TEST_F(ImageMasks, AlphaDoesNotCount) {
+  const std::uint8_t rgba[8] = {0, 0, 0, 255, 9, 0, 0, 0};
+  EXPECT_EQ(shares(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), image(2, 1)), (Shares{0, 1}));
+}
+
+// The colour of the palette counts, not the index.
+TEST_F(ImageMasks, MayHaveAPalette) {
+  const std::uint8_t index[4] = {0, 1, 2, 1}, palette[9] = {0, 0, 7, 0, 0, 0, 255, 255, 255};
+  const fs::path file = folder_.write_png("palette.png", 2, 2, PNG_FORMAT_RGB_COLORMAP, index, palette, 3);
+  EXPECT_EQ(shares(file, image(2, 2)), (Shares{1, 0, 1, 0}));
+}
+
+TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
+  PointCloud cloud = image(2, 1);
+  cloud.x[0] = cloud.y[0] = cloud.z[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(shares(grey({255, 255}, 2), cloud), (Shares{0, 1}));
+}
+
+TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
+  const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
+  for (const auto& [width, height] : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
+    const std::string why = refusal([&] { shares(file, image(width, height)); });
+    EXPECT_EQ(why, file.string() + ": 3 x 2 pixels; allowed as many as the frames: " + std::to_string(width) +
+                       " x " + std::to_string(height));
+  }
+  PointCloud no_image = image(3, 2);
+  no_image.image.reset();
+  EXPECT_HAS(refusal([&] { shares(file, no_image); }), "image-mask: the frame is no image");
+}
+
+TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
+  const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
+  const fs::path missing = folder_ / "missing.png";
+  EXPECT_HAS(why(missing), missing.string() + ": no such recording");
+  EXPECT_THROW(ImageMask mask(settings(missing)), MissingRecording);
+  const fs::path text = folder_.write("text.png", "no image at all");
+  EXPECT_HAS(why(text), text.string() + ": ");
+  const std::string whole = bytes_of(grey({0, 1, 2, 3}, 2));
+  const fs::path cut = folder_.write("cut.png", whole.substr(0, whole.size() / 2));
+  EXPECT_HAS(why(cut), cut.string() + ": ");
+  EXPECT_HAS(why(folder_.path()), folder_.path().string());
+  const std::uint16_t deep[2] = {0, 1};
+  const fs::path depth = folder_.write_png("depth.png", 2, 1, PNG_FORMAT_LINEAR_Y, deep);
+  EXPECT_HAS(why(depth), depth.string() + ": ");
+}
+
+TEST_F(ImageMasks, AreInputs) {
+  ImageMask::Settings settings;
+  EXPECT_HAS(conflict(settings), "path = \"\": allowed a PNG file");
+  settings.path = grey({1}, 1).string();
+  EXPECT_EQ(conflict(settings), "");
+  EXPECT_EQ(input_files(settings), RecordingPart{settings.path});
+  const auto files = files_of(input_files(settings));
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_EQ(files[0].name, "grey.png");
+  EXPECT_EQ(files[0].file, settings.path);
+}
+
+}  // namespace
+}  // namespace remote_touch

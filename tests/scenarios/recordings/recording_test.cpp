@@ -1,0 +1,260 @@
+#include "scenarios/recordings/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+const std::string kCamera =
+    R"({"width": 3, "height": 2, "fx": 10, "fy": 20.5, "cx": 1, "cy": 0.5, "depth_scale_m": 0.001,)"
+    R"( "frame_rate_hz": 20, "colour_registered": true})";
+
+class Recording : public ::testing::Test {
+ protected:
+  // Four pixels at x = -x, x and y = -1, 1, all at z = 2.
+  void write_pcd(const std::string& name, const std::string& x) {
+    const std::string rows = "-" + x + " -1 2\n" + x + " -1 2\n-" + x + " 1 2\n" + x + " 1 2\n";
+    folder_.write(name, pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows);
+  }
+
+  // A recording folder of two frames.
+  void write_recording() {
+    folder_.write("camera.json", kCamera);
+    folder_.write_depth("depth/0000.png", 1000), folder_.write_depth("depth/0001.png", 2000);
+    folder_.write_colour("rgb/0000.png", 0x11), folder_.write_colour("rgb/0001.png", 0x22);
+  }
+
+  // The refusal is about this file below the folder (with ":line" where one is expected).
+  void expect_error(const std::string& subject, const std::string& part) {
+    const std::string text = refusal([&] {
+      const RecordingIndex index = index_recording(folder_.path());
+      for (std::size_t j = 0; j < index.frames.size(); ++j) read_frame(index, j, kNoLimit);
+    });
+    EXPECT_EQ(text.rfind((folder_ / subject).string() + ": ", 0), 0u) << text << "\nis not about " << subject;
+    EXPECT_HAS(text, part);
+  }
+
+  void expect_camera_error(const std::string& part, const std::string& replacement,
+                           const std::string& message) {
+    std::string json = kCamera;
+    json.replace(json.find(part), part.size(), replacement);
+    folder_.write("camera.json", json);
+    expect_error("camera.json", message);
+  }
+
+  const TestFolder folder_{"recording_test"};
+};
+
+TEST_F(Recording, IndexesAndReadsAFolder) {
+  write_recording();
+  const RecordingIndex index = index_recording(folder_ / "");
+  EXPECT_EQ(index.kind, RecordingIndex::Kind::depth_png);
+  EXPECT_EQ(index.camera.width, 3);
+  EXPECT_EQ(index.camera.height, 2);
+  EXPECT_EQ(index.camera.fy, 20.5);
+  EXPECT_EQ(index.metres_per_unit, 0.001);
+  EXPECT_EQ(index.frame_rate_hz, 20);
+  ASSERT_EQ(index.frames.size(), 2u);
+  EXPECT_EQ(index.frames[0].captured_s, 0);
+  EXPECT_EQ(index.frames[1].captured_s, 1 / 20.0);
+  EXPECT_EQ(index.description,
+            folder_.path().filename().string() + ": 2 frame(s) from depth PNG at 20 Hz, 3 x 2 pixels");
+
+  const PointCloud cloud = read_frame(index, 1, 2.0045);
+  ASSERT_EQ(cloud.size(), 6u);
+  EXPECT_TRUE(cloud.point(1).isApprox(Vec3(0, -0.5 * 2.001 / 20.5, 2.001), 1e-15));
+  EXPECT_TRUE(cloud.point(3).isApprox(Vec3(-0.2003, 0.5 * 2.003 / 20.5, 2.003), 1e-15));
+  EXPECT_TRUE(cloud.point(5).array().isNaN().all());  // beyond the limit
+  ASSERT_TRUE(cloud.image);
+  EXPECT_EQ(cloud.image->camera.fx, 10);
+  EXPECT_TRUE(cloud.image->X_WC.matrix().isIdentity(0));
+  EXPECT_EQ(cloud.colour, std::vector<std::uint32_t>(6, 0x222222));
+}
+
+TEST_F(Recording, ReadsColourOnlyWhereItIsRegistered) {
+  write_recording();
+  fs::remove(folder_ / "rgb/0000.png");
+  const RecordingIndex index = index_recording(folder_.path());
+  EXPECT_TRUE(index.frames[0].colour.empty());
+  EXPECT_TRUE(read_frame(index, 0, kNoLimit).colour.empty());
+  EXPECT_EQ(index.frames[1].colour, folder_ / "rgb/0001.png");
+  std::string json = kCamera;
+  folder_.write("camera.json", json.replace(json.find("true"), 4, "false"));
+  EXPECT_TRUE(index_recording(folder_.path()).frames[1].colour.empty());
+}
+
+TEST_F(Recording, OrdersNumbersAsNumbersAndOtherNamesAsText) {
+  folder_.write("camera.json", kCamera);
+  for (const std::string name : {"10", "9", "0100"}) folder_.write_depth("depth/" + name + ".png", 1000);
+  RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.frames[0].depth.filename(), "9.png");
+  EXPECT_EQ(index.frames[1].depth.filename(), "10.png");
+  EXPECT_EQ(index.frames[2].depth.filename(), "0100.png");
+  folder_.write_depth("depth/1b.png", 1000);
+  index = index_recording(folder_.path());
+  EXPECT_EQ(index.frames[0].depth.filename(), "0100.png");
+  EXPECT_EQ(index.frames[1].depth.filename(), "10.png");
+  EXPECT_EQ(index.frames[2].depth.filename(), "1b.png");
+  EXPECT_EQ(index.frames[3].depth.filename(), "9.png");
+}
+
+TEST_F(Recording, RefusesIncompleteFolders) {
+  const auto error = [](const fs::path& path) { return refusal([&] { index_recording(path); }); };
+  EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: allowed");
+  EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
+  const std::string allowed = "allowed a folder that holds depth.txt (TUM), depth/*.png or *.pcd";
+  const std::string no_recording = folder_.path().string() + ": is no recording: " + allowed;
+  EXPECT_EQ(error(folder_.path()), no_recording);
+  folder_.write("camera.json", kCamera);
+  EXPECT_EQ(error(folder_.path()), no_recording);
+  fs::create_directories(folder_ / "depth");
+  expect_error("depth", "holds no .png file");
+  folder_.write_depth("depth/0000.png", 1000);
+  fs::remove(folder_ / "camera.json");
+  expect_error("camera.json", "is missing: depth images need {width, height, fx");
+}
+
+TEST_F(Recording, RefusesBadCameraFiles) {
+  write_recording();
+  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 0)",
+                      "frame_rate_hz = 0: allowed a number above 0");
+  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": -3.5)", "frame_rate_hz = -3.5");
+  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": null)", "frame_rate_hz = null");
+  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 1e999)", "1e999");
+  expect_camera_error(R"("frame_rate_hz": 20, )", "", "has no key 'frame_rate_hz'");
+  expect_camera_error(R"("fx": 10)", R"("fx": -10)", "fx = -10: allowed a number above 0");
+  expect_camera_error(R"("fy": 20.5)", R"("fy": "20")", "fy = \"20\": allowed a number above 0");
+  expect_camera_error(R"("cx": 1)", R"("cx": [])", "cx = []: allowed a number");
+  expect_camera_error(R"("width": 3)", R"("width": 3.5)",
+                      "width = 3.5: allowed a whole number from 1 to 65535");
+  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: allowed a whole");
+  expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: allowed");
+  expect_camera_error("true", "1", "colour_registered = 1: allowed true, false");
+  expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": allowed");
+  expect_camera_error("{", "", "is not JSON");
+  folder_.write("camera.json", "[1]");
+  expect_error("camera.json", "is of type array: allowed object");
+  folder_.write("camera.json", "");
+  expect_error("camera.json", "is not JSON");
+}
+
+TEST_F(Recording, RefusesImagesOfAnotherSize) {
+  write_recording();
+  folder_.write_colour("rgb/0001.png", 1, 5);
+  expect_error("rgb/0001.png", "has 5 x 2 pixels: allowed 3 x 2");
+  folder_.write_depth("depth/0001.png", 1000, 4);
+  expect_error("depth/0001.png", "has 4 x 2 pixels: allowed 3 x 2");
+  folder_.write("depth/0000.png", "not an image");
+  expect_error("depth/0000.png", "is not a whole PNG file");
+}
+
+TEST_F(Recording, RefusesTruncatedImages) {
+  for (const std::string name : {"rgb/0001.png", "depth/0001.png"}) {
+    write_recording();
+    const std::string bytes = bytes_of(folder_ / name);
+    for (const std::size_t length : {bytes.size() - 1, bytes.size() / 2, std::size_t{8}, std::size_t{0}}) {
+      folder_.write(name, bytes.substr(0, length));
+      expect_error(name, "is not a whole PNG file");
+    }
+  }
+}
+
+TEST_F(Recording, AssociatesTumStamps) {
+  for (const std::string name : {"a", "b", "c"}) folder_.write_depth("depth/" + name + ".png", 5000);
+  for (const std::string name : {"p", "q", "r"}) folder_.write_colour("rgb/" + name + ".png", 7);
+  folder_.write("depth.txt",
+                "# depth maps\n# timestamp filename\n1305031102.160407 depth/c.png\n"
+                "1305031102.194330 depth/a.png\r\n\n1305031102.260407 depth/b.png\n");
+  folder_.write("rgb.txt",
+                "#\n1305031102.175304 rgb/p.png\n1305031102.190000 rgb/q.png\n1305031102.281407 rgb/r.png\n");
+  const RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.camera.width, 640);
+  EXPECT_EQ(index.camera.fx, 525);
+  EXPECT_EQ(index.camera.cy, 239.5);
+  EXPECT_EQ(index.metres_per_unit, 1.0 / 5000);
+  EXPECT_NEAR(index.frame_rate_hz, 2 / 0.1, 1e-4);
+  ASSERT_EQ(index.frames.size(), 3u);
+  EXPECT_EQ(index.frames[0].captured_s, 0);
+  EXPECT_NEAR(index.frames[1].captured_s, 0.033923, 1e-6);
+  EXPECT_EQ(index.frames[0].depth, folder_ / "depth/c.png");  // the order of the list, not of the names
+  EXPECT_EQ(index.frames[0].colour, folder_ / "rgb/p.png");   // 0.0149 s
+  EXPECT_EQ(index.frames[1].colour, folder_ / "rgb/q.png");   // 0.0043 s, not 0.0190 s
+  EXPECT_TRUE(index.frames[2].colour.empty());                // 0.0210 s
+}
+
+TEST_F(Recording, ReadsTumWithItsOwnCamera) {
+  folder_.write("camera.json", kCamera);
+  folder_.write_depth("depth/a.png", 1000);
+  folder_.write_colour("rgb/p.png", 0x33);
+  folder_.write("depth.txt", "12.5 depth/a.png\n");
+  folder_.write("rgb.txt", "12.51 rgb/p.png\n");
+  const RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.frame_rate_hz, 30);  // one frame has no rate of its own
+  const PointCloud cloud = read_frame(index, 0, kNoLimit);
+  for (int i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(cloud.z.at(i), 1.0 + 0.001 * i) << i;
+  EXPECT_EQ(cloud.colour.at(0), 0x333333u);
+  fs::remove(folder_ / "camera.json");
+  expect_error("depth/a.png", "has 3 x 2 pixels: allowed 640 x 480");
+}
+
+TEST_F(Recording, RefusesBadTumLists) {
+  folder_.write_depth("depth/a.png", 1000);
+  folder_.write("depth.txt", "# nothing\n\n");
+  expect_error("depth.txt", "lists no file");
+  folder_.write("depth.txt", "# header\n1.0 depth/a.png\nnoon depth/a.png\n");
+  expect_error("depth.txt:3", "timestamp 'noon': allowed a number of seconds");
+  folder_.write("depth.txt", "nan depth/a.png\n");
+  expect_error("depth.txt:1", "timestamp 'nan'");
+  folder_.write("depth.txt", "1.0\r\n");
+  expect_error("depth.txt:1", "'1.0': allowed one timestamp and one file name");
+  folder_.write("depth.txt", "1.0 depth/a.png rgb/a.png\n");
+  expect_error("depth.txt:1", "'1.0 depth/a.png rgb/a.png': allowed");
+  folder_.write("depth.txt", "1.0 depth/a.png\n1.0 depth/a.png\n");
+  expect_error("depth.txt:2", "timestamp 1.0: allowed above");
+  folder_.write("depth.txt", "1.0 depth/a.png\n2.0 depth/b.png\n");
+  expect_error("depth.txt:2", "no file " + (folder_ / "depth/b.png").string());
+  folder_.write("depth.txt", "1.0 depth/a.png\n");
+  folder_.write("rgb.txt", "2.0 depth/a.png\n1.5 depth/a.png\n");
+  expect_error("rgb.txt:2", "timestamp 1.5: allowed above");
+}
+
+TEST_F(Recording, StreamsPcdFiles) {
+  write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
+  RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.kind, RecordingIndex::Kind::pcd);
+  EXPECT_EQ(index.frame_rate_hz, 30);
+  ASSERT_EQ(index.frames.size(), 2u);
+  EXPECT_EQ(index.frames[1].captured_s, 1 / 30.0);
+  EXPECT_EQ(index.frames[1].depth, folder_ / "frame_2.pcd");
+  // u = fx x/z + cx with u = 0, 1 at x/z = -1/2, 1/2 in the first file.
+  EXPECT_NEAR(index.camera.fx, 1, 1e-12);
+  EXPECT_NEAR(index.camera.cx, 0.5, 1e-12);
+  const PointCloud second = read_frame(index, 1, 2);
+  ASSERT_TRUE(second.image);
+  EXPECT_NEAR(second.image->camera.fx, 0.5, 1e-12);  // each file has its own fit
+  EXPECT_EQ(second.point(3), Vec3(2, 1, 2));
+  EXPECT_TRUE(read_frame(index, 1, 1.9).point(3).array().isNaN().all());
+
+  folder_.write("camera.json", R"({"frame_rate_hz": 3.79})");
+  EXPECT_EQ(index_recording(folder_.path()).frame_rate_hz, 3.79);
+  EXPECT_EQ(index_recording(folder_ / "frame_1.pcd").frames.size(), 1u);
+  folder_.write("camera.json", "{}");
+  expect_error("camera.json", "has no key 'frame_rate_hz'");
+  fs::remove(folder_ / "camera.json");
+  folder_.write("frame_2.pcd", "VERSION 0.7\n");
+  expect_error("frame_2.pcd", "the PCD header has no FIELDS entry");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,211 @@
+// The scenes of chapter 6 that are made of panels, and the slab that lifts.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/open_box.h"
+#include "scenarios/synthetic/sheet.h"
+#include "scenarios/synthetic/slot.h"
+#include "scenarios/synthetic/wedge.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+namespace {
+
+const double kPi = std::acos(-1.0);
+
+template <class Made>
+Made made(const typename Made::Settings& settings = {}) {
+  return Made(settings, NoiseKey{3}, scenes::kernels());
+}
+
+// Every point lies on the surface, and a step along its normal leads to the free side.
+void expect_on_surface(const Scenario& scene, int frame) {
+  const PointCloud cloud = scene.cloud(frame);
+  const double time_s = scene.captured_s(frame);
+  ASSERT_GT(cloud.size(), 100u);
+  ASSERT_TRUE(cloud.has_normals());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-15);
+    ASSERT_LT(std::abs(scene.signed_distance(cloud.point(i), time_s)), 1e-15);
+    ASSERT_GT(scene.signed_distance(cloud.point(i) + 1e-6 * cloud.normal(i), time_s), -1e-15);
+  }
+}
+
+TEST(OpenBox, HasItsSizeAndSpacing) {
+  const OpenBox box = made<OpenBox>();
+  expect_on_surface(box, 0);
+  // Columns at whole multiples of 3 mm around the middle of each side: -45 .. 45, -18 .. 18, -54 .. 54.
+  EXPECT_EQ(box.cloud(0).size(), 2u * (31 * 13) + 2u * (37 * 13) + 37u * 31u);
+  EXPECT_EQ(box.frame_count(), 1);
+  EXPECT_NEAR(box.signed_distance({0, 0, 0}, 0), 0.020, 1e-15);
+  EXPECT_NEAR(box.signed_distance({0.045, 0, 0}, 0), 0.010, 1e-15);
+  EXPECT_NEAR(box.signed_distance({0, 0.010, -0.040}, 0), 0.005, 1e-15);
+  EXPECT_NEAR(box.signed_distance({0.058, 0, 0}, 0), -0.003, 1e-15);
+  EXPECT_NEAR(box.signed_distance({0.01, -0.025, 0.01}, 0), -0.005, 1e-15);
+  // Above the opening: the nearest place is a rim.
+  EXPECT_NEAR(box.signed_distance({0.015, 0.05, 0}, 0), 0.05, 1e-15);
+  EXPECT_GT(box.signed_distance({0, 1, 0}, 0), 0.9);
+}
+
+TEST(OpenBox, TheFloorCanBeLeftOut) {
+  OpenBox::Settings s;
+  s.floor = false;
+  const OpenBox walls = made<OpenBox>(s);
+  EXPECT_EQ(walls.panels(0).size(), 4u);
+  const PointCloud cloud = walls.cloud(0);
+  EXPECT_EQ(cloud.size(), 2u * (31 * 13) + 2u * (37 * 13));
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(cloud.ny[i], 0);
+  EXPECT_NEAR(walls.signed_distance({0, -0.020, 0}, 0), 0.045, 1e-15);
+  s.size_m.y() = 0;
+  EXPECT_NE(conflict(s), "");
+}
+
+// The corner of a bar of 80 x 10 mm that touches both walls of 40 mm: 40 sin + 5 cos = 20, at 22.62 degrees.
+TEST(Slot, CornersOfTheBarMeetTheWallsHalfWayBetweenColumns) {
+  const double angle = std::asin(5.0 / 13);
+  EXPECT_NEAR(angle * 180 / kPi, 22.62, 0.001);
+  EXPECT_NEAR(0.040 * std::sin(angle) + 0.005 * std::cos(angle), 0.020, 1e-15);
+  EXPECT_NEAR(0.040 * std::cos(angle) - 0.005 * std::sin(angle), 0.035, 1e-15);
+  for (const auto& [spacing, phase] : {std::pair(0.002, 0.0), {0.001, 0.0005}, {0.005, 0.0025}}) {
+    Slot::Settings s;
+    s.spacing_m = spacing, s.phase_m = phase;
+    const Slot slot = made<Slot>(s);
+    expect_on_surface(slot, 0);
+    const PointCloud cloud = slot.cloud(0);
+    for (const double corner : {-0.035, 0.035}) {
+      double nearest = 1;
+      for (const double x : cloud.x) nearest = std::min(nearest, std::abs(x - corner));
+      EXPECT_NEAR(nearest, 0.5 * spacing, 1e-15) << spacing;
+    }
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      EXPECT_NEAR(std::abs(cloud.z[i]), 0.020, 1e-15);
+      EXPECT_EQ(cloud.nz[i], cloud.z[i] > 0 ? -1 : 1);
+    }
+  }
+  const Slot slot = made<Slot>();
+  EXPECT_NEAR(slot.signed_distance({0.01, 0.01, 0.015}, 0), 0.005, 1e-15);
+  EXPECT_NEAR(slot.signed_distance({0.01, 0.01, -0.026}, 0), -0.006, 1e-15);
+}
+
+TEST(Wedge, ClosesAndOpensEvenly) {
+  const Wedge wedge = made<Wedge>();
+  EXPECT_EQ(wedge.gap_m(0), 0.05);
+  EXPECT_EQ(wedge.gap_m(1), 0.05);
+  EXPECT_NEAR(wedge.gap_m(1.25), 0.0375, 1e-16);
+  EXPECT_EQ(wedge.gap_m(2), 0);
+  EXPECT_EQ(wedge.gap_m(2.9), 0);
+  EXPECT_NEAR(wedge.gap_m(3.5), 0.025, 1e-16);
+  EXPECT_EQ(wedge.gap_m(4), 0.05);
+  EXPECT_EQ(wedge.gap_m(100), 0.05);
+  EXPECT_EQ(wedge.frame_count(), 121);
+  for (const int frame : {0, 35, 101, 120}) expect_on_surface(wedge, frame);
+  // A wall meets its lower edge at 30 degrees from the vertical; between frames it moves on.
+  const Vec3 p(0, 0.03, 0);
+  for (const double t : {0.0, 1.3, 1.31, 2.5, 3.7})
+    EXPECT_NEAR(wedge.signed_distance(p, t), 0.03 * 0.5 + 0.5 * wedge.gap_m(t) * std::sqrt(0.75), 1e-15) << t;
+  EXPECT_LT(wedge.signed_distance({0, 0, 0.03}, 0), 0);
+}
+
+TEST(Wedge, CanStandAsideAskewAndParallel) {
+  Wedge::Settings s;
+  s.offset_m = 0.01, s.tilt_deg = 20, s.angle_deg = 0, s.closed_gap_m = 0.02;
+  const Wedge plates = made<Wedge>(s);
+  expect_on_surface(plates, 0), expect_on_surface(plates, 70);
+  const Vec3 up(0, std::cos(kPi / 9), std::sin(kPi / 9)), across(0, -std::sin(kPi / 9), std::cos(kPi / 9));
+  const Vec3 middle = Vec3(0, 0, 0.01) + 0.06 * up;
+  EXPECT_NEAR(plates.signed_distance(middle, 0), 0.025, 1e-15);
+  EXPECT_NEAR(plates.signed_distance(middle + 0.006 * across, 2.5), 0.004, 1e-15);
+  EXPECT_NEAR(plates.signed_distance(middle - 0.012 * across, 2.5), -0.002, 1e-15);
+  EXPECT_EQ(conflict(s), "");
+  s.reopening_at_s = 1.5;
+  EXPECT_NE(conflict(s), "");
+}
+
+TEST(Wedge, JumpsWhereTheScheduleDoes) {
+  Wedge::Settings s;
+  s.closed_at_s = s.closing_at_s = 1, s.reopening_at_s = s.open_at_s = 2;
+  const Wedge wedge = made<Wedge>(s);
+  EXPECT_EQ(wedge.gap_m(0.999), 0.05);
+  EXPECT_EQ(wedge.gap_m(1), 0);
+  EXPECT_EQ(wedge.gap_m(1.999), 0);
+  EXPECT_EQ(wedge.gap_m(2), 0.05);
+}
+
+TEST(Sheet, FacesItsNormal) {
+  Sheet::Settings s;
+  s.centre_m = {0.1, 0.2, 0.3};
+  for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(-0.5, 0.25, 1)}) {
+    s.normal = normal;
+    const Sheet sheet = made<Sheet>(s);
+    expect_on_surface(sheet, 0);
+    const Vec3 n = normal.normalized();
+    EXPECT_NEAR(sheet.signed_distance(s.centre_m + 0.02 * n, 0), 0.02, 1e-15);
+    EXPECT_NEAR(sheet.signed_distance(s.centre_m - 0.02 * n, 0), -0.02, 1e-15);
+    EXPECT_EQ(sheet.cloud(0).size(), 75u * 75u);
+    const FlatPanel panel = sheet.panels(0)[0];
+    EXPECT_NEAR(panel.u.dot(n), 0, 1e-16);
+    EXPECT_NEAR(panel.u.norm(), 1, 1e-15);
+  }
+  s.normal.setZero();
+  EXPECT_NE(conflict(s), "");
+}
+
+TEST(MovingPlane, WaitsRisesAndRests) {
+  MovingPlane::Settings s;
+  s.acceleration_m_per_s2 = 0.6;
+  const MovingPlane plane = made<MovingPlane>(s);
+  const auto height = [&](double t) { return plane.surface_height(0, 0, t); };
+  EXPECT_EQ(height(0), -0.06);
+  EXPECT_EQ(height(1), -0.06);
+  EXPECT_NEAR(height(1.1), -0.06 + 0.01 + 0.003, 1e-15);
+  // 0.1 t + 0.3 t^2 = 0.1
+  const double end = (-0.1 + std::sqrt(0.01 + 0.12)) / 0.6;
+  EXPECT_NEAR(height(1 + end - 1e-9), 0.04, 1e-9);
+  EXPECT_EQ(height(1 + end + 1e-12), -0.06 + 0.1);
+  EXPECT_EQ(plane.frame_count(), 1 + static_cast<int>(std::ceil((1 + end) * 30)));
+  EXPECT_NEAR(plane.signed_distance({1, -0.05, 2}, 1.1), -0.05 + 0.047, 1e-15);
+  for (const int frame : {0, 31, 40, plane.frame_count() - 1}) {
+    expect_on_surface(plane, frame);
+    EXPECT_EQ(plane.cloud(frame).ny[7], 1);
+  }
+  s.speed_m_per_s = s.acceleration_m_per_s2 = 0;
+  EXPECT_NE(conflict(s), "");
+  s.rise_m = 0;
+  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(made<MovingPlane>(s).frame_count(), 1);
+}
+
+TEST(MovingPlane, NoiseBelongsToPointAndFrame) {
+  MovingPlane::Settings s;
+  s.noise_sigma_m = 0.001;
+  const MovingPlane plane = made<MovingPlane>(s), again = made<MovingPlane>(s);
+  const PointCloud cloud = plane.cloud(3);
+  EXPECT_EQ(cloud.y, again.cloud(3).y);
+  EXPECT_NE(cloud.y, plane.cloud(4).y);
+  EXPECT_EQ(std::set<double>(cloud.y.begin(), cloud.y.end()).size(), cloud.size());
+  double squares = 0;
+  for (const double y : cloud.y) squares += (y + 0.06) * (y + 0.06);
+  EXPECT_NEAR(std::sqrt(squares / 1e4), 0.001, 5 * 0.001 / std::sqrt(2e4));
+}
+
+// Asked again, in another order and of another object, a frame has the same bits.
+TEST(PanelScenes, FramesArePure) {
+  const Wedge one = made<Wedge>(), other = made<Wedge>();
+  std::vector<PointCloud> clouds;
+  for (const int frame : {0, 40, 70, 110}) clouds.push_back(one.cloud(frame));
+  int i = 3;
+  for (const int frame : {110, 70, 40, 0}) {
+    const PointCloud cloud = other.cloud(frame), &before = clouds[static_cast<std::size_t>(i--)];
+    EXPECT_TRUE(cloud.x == before.x && cloud.y == before.y && cloud.z == before.z) << frame;
+    EXPECT_TRUE(cloud.nx == before.nx && cloud.ny == before.ny && cloud.nz == before.nz) << frame;
+  }
+  EXPECT_NE(clouds[0].z, clouds[1].z);
+}
+
+}  // namespace
+}  // namespace remote_touch

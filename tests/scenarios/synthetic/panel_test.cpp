@@ -1,0 +1,68 @@
+#include "scenarios/synthetic/panel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace remote_touch {
+namespace {
+
+// A panel that lies askew.
+FlatPanel askew() {
+  const Vec3 normal = Vec3(1, 2, 2) / 3, u = Vec3(2, 1, -2) / 3;
+  return {{0.1, 0.2, -0.3}, normal, u, 0.0301, 0.02};
+}
+
+TEST(FlatPanel, PointsAreAGridOnItWithItsNormal) {
+  const FlatPanel panel = askew();
+  PointCloud cloud;
+  append(cloud, panel, {0.01, 0.002, 0});
+  // -0.028, -0.018, ... 0.022 along u, and -0.02 .. 0.02 along v, the border included.
+  ASSERT_EQ(cloud.size(), 6u * 5u);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 from_centre = cloud.point(i) - panel.centre;
+    EXPECT_NEAR(from_centre.dot(panel.normal), 0, 1e-16);
+    EXPECT_NEAR(from_centre.dot(panel.u), -0.028 + 0.01 * static_cast<double>(i % 6), 1e-15);
+    EXPECT_NEAR(from_centre.dot(panel.v()), -0.02 + 0.01 * static_cast<double>(i / 6), 1e-15);
+    EXPECT_EQ(cloud.normal(i), panel.normal);
+  }
+}
+
+TEST(FlatPanel, DistanceIsToTheNearestOfManySamples) {
+  const FlatPanel panel = askew();
+  PointCloud dense;
+  append(dense, panel, {0.0005});
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-0.06, 0.06);
+  int behind = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = panel.centre + Vec3(place(random), place(random), place(random));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < dense.size(); ++j) nearest = std::min(nearest, (dense.point(j) - p).norm());
+    const double got = signed_distance({&panel, 1}, p);
+    EXPECT_EQ(got < 0, panel.normal.dot(p - panel.centre) < 0);
+    behind += got < 0;
+    EXPECT_LE(std::abs(got), nearest + 1e-15);
+    EXPECT_GE(std::abs(got), nearest - 0.0005);  // half a diagonal of the samples, and the border beyond them
+  }
+  EXPECT_GT(behind, 100);
+}
+
+// Two walls of a corner: its inside is free. An edge belongs to both.
+TEST(FlatPanel, CornersHaveOneInside) {
+  const std::vector<FlatPanel> corner = {{{1, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), 1, 1},
+                                         {{0, 1, 0}, Vec3::UnitX(), Vec3::UnitY(), 1, 1}};
+  EXPECT_DOUBLE_EQ(signed_distance(corner, {0.3, 0.2, 0}), 0.2);
+  EXPECT_DOUBLE_EQ(signed_distance(corner, {0.2, 0.3, 0}), 0.2);
+  EXPECT_DOUBLE_EQ(signed_distance(corner, {-0.3, -0.4, 0}), -0.5);
+  EXPECT_DOUBLE_EQ(signed_distance(corner, {-0.3, 0.4, 0}), -0.3);
+  // Below one wall, beyond the edge, a hair on the free side of the other.
+  EXPECT_DOUBLE_EQ(signed_distance(corner, {1e-12, -0.4, 0}), -0.4);
+  EXPECT_EQ(signed_distance({}, {0, 0, 0}), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace remote_touch

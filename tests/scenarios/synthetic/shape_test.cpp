@@ -1,0 +1,190 @@
+// The shapes of moving-shape against brute force over dense samples of their surfaces.
+#include "scenarios/synthetic/shape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "scenarios/synthetic/grid.h"
+
+namespace remote_touch {
+namespace {
+
+using Kind = Shape::Kind;
+
+constexpr double kPi = 3.14159265358979323846;
+const Grid kGrid{41, 21, 0.002, 0, 0};  // 80 mm by 40 mm
+
+Shape::Settings settings_of(Kind kind) {
+  Shape::Settings s;
+  s.kind = kind, s.slope_deg = 35, s.radius_m = 0.015, s.amplitude_m = 0.004, s.period_m = 0.02;
+  return s;
+}
+
+// Height by its own formula.
+double expected_height(const Shape::Settings& s, double x, double z) {
+  const double flank = std::tan(s.slope_deg * kPi / 180) * std::abs(x);
+  switch (s.kind) {
+    case Kind::ridge:
+      return -flank;
+    case Kind::valley:
+      return flank;
+    case Kind::sphere:
+      return std::sqrt(s.radius_m * s.radius_m - x * x - z * z) - s.radius_m;
+    case Kind::ripple:
+      return s.amplitude_m * std::sin(2 * kPi * x / s.period_m);
+    default:
+      return 0;
+  }
+}
+
+struct Samples {
+  std::vector<Vec3> points;
+  double largest_gap_m;  // no place of the surface is farther from a sample than half of it
+};
+
+// Even in x and z; the dome in its polar angles, for its rim is upright.
+Samples dense_samples(const Shape::Settings& s) {
+  Samples samples{{}, 0};
+  if (s.kind == Kind::sphere) {
+    constexpr int kAround = 720, kDown = 180;
+    for (int j = 0; j <= kDown; ++j)
+      for (int i = 0; i < kAround; ++i) {
+        const double down = 0.5 * kPi * j / kDown, around = 2 * kPi * i / kAround;
+        samples.points.push_back(s.radius_m * Vec3(std::sin(down) * std::cos(around), std::cos(down) - 1,
+                                                   std::sin(down) * std::sin(around)));
+      }
+    samples.largest_gap_m = s.radius_m * std::sqrt(2.0) * 2 * kPi / kAround;
+    return samples;
+  }
+  constexpr double kStep_m = 0.0001;
+  const double steepest = std::tan(steepest_deg(s) * kPi / 180);
+  for (int i = -400; i <= 400; ++i)
+    for (int j = -200; j <= 200; ++j)
+      samples.points.emplace_back(i * kStep_m, expected_height(s, i * kStep_m, j * kStep_m), j * kStep_m);
+  samples.largest_gap_m = kStep_m * std::sqrt(2 + steepest * steepest);
+  return samples;
+}
+
+double nearest_sample_m(const Samples& samples, const Vec3& p) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const Vec3& q : samples.points) squared = std::min(squared, (p - q).squaredNorm());
+  return std::sqrt(squared);
+}
+
+const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple};
+
+TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
+  std::mt19937 random(1);
+  const auto even = [&] { return random() / 2147483648.0 - 1; };
+  for (const Kind kind : kKinds) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    const Shape::Settings s = settings_of(kind);
+    const Shape shape(s, kGrid);
+    const Samples samples = dense_samples(s);
+    int beyond = 0, below = 0;
+    for (int k = 0; k < 150; ++k) {
+      const Vec3 p(0.06 * even(), 0.035 * even(), 0.03 * even());
+      const double brute = nearest_sample_m(samples, p), got = std::abs(shape.signed_distance(p));
+      // The nearest place of the surface lies within half a gap of a sample.
+      EXPECT_LE(got, brute + 1e-12) << p.transpose();
+      EXPECT_GE(std::sqrt(got * got + 0.25 * samples.largest_gap_m * samples.largest_gap_m) +
+                    0.25 * samples.largest_gap_m * samples.largest_gap_m / 0.005,  // of a curved one
+                brute)
+          << p.transpose();
+      beyond += std::abs(p.x()) > 0.04 || std::abs(p.z()) > 0.02, below += shape.signed_distance(p) < 0;
+    }
+    EXPECT_GT(beyond, 20);
+    EXPECT_GT(below, 20);
+  }
+}
+
+TEST(Shape, TheSignIsThatOfTheSide) {
+  std::mt19937 random(2);
+  const auto even = [&] { return random() / 2147483648.0 - 1; };
+  for (const Kind kind : kKinds) {
+    const Shape::Settings s = settings_of(kind);
+    const Shape shape(s, kGrid);
+    const double half_x = kind == Kind::sphere ? 0.0105 : 0.04, half_z = kind == Kind::sphere ? 0.0105 : 0.02;
+    for (int k = 0; k < 300; ++k) {
+      const double x = half_x * even(), z = half_z * even(), off = 0.03 * even();
+      const double y = expected_height(s, x, z) + off;
+      EXPECT_EQ(shape.signed_distance({x, y, z}) > 0, off > 0)
+          << static_cast<int>(kind) << " " << x << " " << y;
+    }
+  }
+}
+
+// Of the plane that ends at the border: a ridge's flank of 35 degrees goes on.
+TEST(Shape, BeyondTheBorderThePlaneThatEndsThereTellsTheSide) {
+  const Shape flat(settings_of(Kind::flat), kGrid), ridge(settings_of(Kind::ridge), kGrid),
+      sphere(settings_of(Kind::sphere), kGrid);
+  EXPECT_NEAR(flat.signed_distance({0.043, 0.004, 0}), 0.005, 1e-15);
+  EXPECT_NEAR(flat.signed_distance({0.043, -0.004, 0}), -0.005, 1e-15);
+  EXPECT_NEAR(flat.signed_distance({0.042, 0.003, -0.026}), 0.007, 1e-15);
+  const double drop = std::tan(35 * kPi / 180);
+  EXPECT_GT(ridge.signed_distance({0.05, -drop * 0.05 + 0.001, 0}), 0.01);
+  EXPECT_LT(ridge.signed_distance({0.05, -drop * 0.05 - 0.001, 0}), -0.01);
+  EXPECT_GT(sphere.signed_distance({0.02, -0.0149, 0}), 0.005);
+  EXPECT_NEAR(sphere.signed_distance({0.02, -0.0151, 0}), -std::hypot(0.005, 0.0001), 1e-15);
+}
+
+TEST(Shape, PointsLieOnTheSurface) {
+  for (const Kind kind : kKinds) {
+    const Shape::Settings s = settings_of(kind);
+    const Shape shape(s, kGrid);
+    int missing = 0;
+    for (int row = 0; row < kGrid.rows; ++row)
+      for (int column = 0; column < kGrid.columns; ++column) {
+        const double x = kGrid.x(column), z = kGrid.z(row);
+        const Vec3 p = shape.point(x, z);
+        if (kind == Kind::sphere && std::hypot(x, z) > s.radius_m) {
+          EXPECT_TRUE(std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z()));
+          EXPECT_EQ(shape.height(x, z), -s.radius_m);  // the plane that a hand presses beside it
+          ++missing;
+          continue;
+        }
+        EXPECT_EQ(p, Vec3(x, shape.height(x, z), z));
+        EXPECT_NEAR(p.y(), expected_height(s, x, z), 1e-16);
+        EXPECT_NEAR(shape.signed_distance(p), 0, 1e-12);
+      }
+    EXPECT_EQ(missing > 0, kind == Kind::sphere);
+    EXPECT_EQ(shape.height(0, 0), 0);
+  }
+}
+
+// The search along x finds the closest of several valleys, in closed form over crests and far away.
+TEST(Shape, RippleFromAfarAndOverItsCrests) {
+  Shape::Settings s = settings_of(Kind::ripple);
+  const Shape shape(s, kGrid);
+  const double crest = 0.25 * s.period_m;
+  EXPECT_NEAR(shape.signed_distance({crest, 0.1, 0}), 0.1 - s.amplitude_m, 1e-12);
+  EXPECT_NEAR(shape.signed_distance({-crest, -0.1, 0.01}), -(0.1 - s.amplitude_m), 1e-12);
+  EXPECT_NEAR(shape.signed_distance({crest, s.amplitude_m + 0.0003, 0.024}), std::hypot(0.0003, 0.004),
+              1e-12);
+  // Over the middle between two crests, from high above, both are nearest: by a fine scan.
+  const Vec3 p(-crest, 0.05, 0);
+  double nearest = 1;
+  for (int i = 0; i <= 4000000; ++i) {
+    const double x = -0.03 + 0.04 * i / 4e6;
+    nearest = std::min(nearest, std::hypot(x - p.x(), expected_height(s, x, 0) - p.y()));
+  }
+  EXPECT_NEAR(shape.signed_distance(p), nearest, 1e-12);
+}
+
+TEST(Shape, AGridOfOnePointOrBesideTheRidgeIsAPatchToo) {
+  const Shape dot(settings_of(Kind::ridge), Grid{1, 1, 0.002, 0, 0});
+  EXPECT_NEAR(dot.signed_distance({0.003, 0.004, 0}), 0.005, 1e-15);
+  const Shape one_flank(settings_of(Kind::valley), Grid{5, 5, 0.002, 1, 0});  // x from -2 to 6 mm
+  EXPECT_NEAR(one_flank.signed_distance(one_flank.point(0.005, 0)), 0, 1e-15);
+  Grid beside{2, 2, 0.002, 1, 0};  // x from 1 to 3 mm
+  const Shape right(settings_of(Kind::valley), beside);
+  EXPECT_NEAR(right.signed_distance(right.point(0.001, 0) - Vec3(0.5, 0, 0)), 0.5, 0.05);
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,25 @@
+// What the tests of result files share: a trace and a provenance that are hard to store, and looks into what
+// was read back.
+#pragma once
+
+#include <string>
+
+#include "analysis/figures/result_file.h"
+
+namespace remote_touch {
+
+extern const TextAttributes kProvenance;
+
+// A trace of numbers that a careless writer would change.
+Trace awkward_trace(int ticks);
+
+// Also of the sign of zero and of NaN; names and units are not compared.
+bool same_bits(const Column& a, const Column& b);
+
+// Null where there is no such dataset.
+const Column* find(const Hdf5Content& content, const std::string& path);
+
+// "no attribute ..." where there is none.
+std::string attribute(const Hdf5Content& content, const std::string& wanted);
+
+}  // namespace remote_touch

@@ -1,0 +1,60 @@
+// Scenes for tests of a sensor's faults: a plane that rises and a camera's view, without faults and with
+// them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "scenarios/camera/camera_scene.h"
+#include "scenarios/faults/sensor_faults.h"
+#include "scenarios/synthetic/moving_shape.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch {
+
+inline const NoiseKey kKey{5, 2, 3};
+
+// 60 x 50 points that rise by 0.3 m/s for 40 frames.
+inline MovingShape::Settings rising_plane() {
+  MovingShape::Settings s;
+  s.grid = {60, 50, 0.002, 0, 0};
+  s.motion.start_velocity_m_per_s = 0.3, s.motion.rise_frames = 40;
+  s.truth = MovingShape::Truth::moving;
+  return s;
+}
+
+inline std::unique_ptr<Scenario> bare(const MovingShape::Settings& settings = rising_plane()) {
+  return std::make_unique<MovingShape>(settings, kKey, scenes::kernels());
+}
+inline std::unique_ptr<Scenario> camera() {
+  return std::make_unique<CameraScene>(CameraScene::Settings{}, kKey, scenes::kernels());
+}
+inline FaultySensor faulty(const SensorFaults& faults, std::unique_ptr<Scenario> scenario = bare(),
+                           const NoiseKey& key = kKey) {
+  return FaultySensor(std::move(scenario), faults, key, scenes::kernels());
+}
+
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+inline bool same_bits(const PointCloud& a, const PointCloud& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
+inline std::size_t measured(const PointCloud& cloud) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) count += cloud.is_measured(i) ? 1 : 0;
+  return count;
+}
+
+// A share of so many draws, within five standard deviations.
+inline void expect_share(double count, double of, double share) {
+  EXPECT_NEAR(count / of, share, 5 * std::sqrt(share * (1 - share) / of));
+}
+
+}  // namespace remote_touch
