@@ -1,5 +1,6 @@
 # Included by tests/CMakeLists.txt: the paths are from there, and the programs beside the tests.
 find_package(benchmark REQUIRED)
+find_package(NLopt QUIET)
 add_executable(proxy_benchmark
   benchmarks/assignment_benchmark.cpp benchmarks/checked_benchmark.cpp benchmarks/fixture_benchmark.cpp
   benchmarks/fixture_scene.cpp benchmarks/naive_proxy.cpp benchmarks/naive_regions.cpp
@@ -27,7 +28,7 @@ add_executable(tracked_sheet_benchmark benchmarks/checked_benchmark.cpp benchmar
 target_link_libraries(tracked_sheet_benchmark PRIVATE scenarios benchmark::benchmark)
 
 add_executable(depth_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp reference_depth_pipeline.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
 
 # Benchmarks beside others' libraries are built only when asked for, and say so where those are not installed.

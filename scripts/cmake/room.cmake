@@ -1,0 +1,39 @@
+# A folder of the project is a room: one library of all its .cpp files, one place for its tests (the same path below
+# tests/), and a list of the rooms that it may include. tests/system/check_layers holds every #include against that list.
+
+set_property(GLOBAL PROPERTY ROOMS "")
+
+# The name of the library of a room: core/tool/mesh is core_tool_mesh.
+function(room_target path result)
+  string(REPLACE "/" "_" name ${path})
+  set(${result} ${name} PARENT_SCOPE)
+endfunction()
+
+# room(USES core/cloud core/geometry ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...])
+#   USES     the rooms whose headers this folder includes
+#   LINKS    libraries from outside; they stay private, since no public header includes one
+#   SOURCES  files beyond the .cpp files of the folder
+function(room)
+  cmake_parse_arguments(ROOM "" "" "USES;LINKS;SOURCES" ${ARGN})
+  file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  room_target(${path} name)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  add_library(${name} STATIC ${sources} ${ROOM_SOURCES})
+  precompile_headers_as(room_headers ${name})
+  target_link_libraries(${name} PUBLIC build_settings PRIVATE ${ROOM_LINKS})
+  foreach(used ${ROOM_USES})
+    room_target(${used} target)
+    target_link_libraries(${name} PUBLIC ${target})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY ROOMS ${path})
+endfunction()
+
+# rooms(core geometry kernels ... tool/mesh): the rooms below this folder, and `core`, which links them all.
+function(rooms name)
+  add_library(${name} INTERFACE)
+  foreach(path ${ARGN})
+    add_subdirectory(${path})
+    room_target(${name}/${path} target)
+    target_link_libraries(${name} INTERFACE ${target})
+  endforeach()
+endfunction()
