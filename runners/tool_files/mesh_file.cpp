@@ -8,14 +8,36 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <map>
+#include <stdexcept>
 
 #include "core/parameters/input_error.h"
+#include "runners/tool_files/cache_file.h"
+#include "runners/tool_files/child_process.h"
+#include "runners/tool_files/ply_header.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostTriangles = 5'000'000;
+constexpr std::size_t kMaxTriangles = 5'000'000;
+// What reading may take: so much for any file, and for each byte of it, more than the costliest kind needs.
+constexpr std::size_t kMinMemory = 512u << 20, kMemoryPerByte = 64;
+constexpr unsigned kMinTime_s = 10;  // and 1 s for each MiB
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+// As Unpacking takes it.
+template <class Value>
+std::string packed(const std::vector<Value>& values) {
+  const std::size_t count = values.size();
+  std::string bytes(reinterpret_cast<const char*>(&count), sizeof count);
+  return bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(Value));
+}
 
 std::string one_line(std::string text) {
   for (char& c : text)
@@ -58,28 +80,57 @@ void add_mesh(const aiMesh& from, Welded& welded, TriangleMesh& mesh) {
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = ending_of(file);
   return ending == ".obj" || ending == ".ply" || ending == ".stl";
 }
+
+namespace {
+
+// As the library reads it. In a child, for the library believes what a file says: damaged ones make it take
+// all memory or go on for ever.
+TriangleMesh mesh_by_assimp(const std::filesystem::path& file) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
+  TriangleMesh mesh;
+  Welded welded(mesh);
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    add_mesh(*scene->mMeshes[m], welded, mesh);
+    if (mesh.triangles.size() > kMaxTriangles)
+      throw std::runtime_error("it has more than 5 million triangles");
+  }
+  return mesh;
+}
+
+TriangleMesh mesh_in_child(const std::filesystem::path& file) {
+  const std::size_t size = std::filesystem::file_size(file);
+  const ChildLimits limits{kMinMemory + kMemoryPerByte * size,
+                           kMinTime_s + static_cast<unsigned>(size >> 20)};
+  const std::string bytes = in_child(limits, [&file] {
+    const TriangleMesh mesh = mesh_by_assimp(file);
+    return packed(mesh.vertices) + packed(mesh.triangles);
+  });
+  TriangleMesh mesh;
+  Unpacking unpack(bytes.data(), bytes.data() + bytes.size());
+  unpack.list(mesh.vertices), unpack.list(mesh.triangles);
+  if (!unpack.done()) throw std::runtime_error("its reader gave half an answer");
+  return mesh;
+}
+
+}  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const char* allowed = "allowed an OBJ, PLY or STL file";
   if (!is_mesh_file(file)) throw InputError(file.string(), std::string("not a mesh; ") + allowed);
   if (!std::filesystem::is_regular_file(file))
     throw InputError(file.string(), std::string("no such file; ") + allowed);
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
-  if (scene == nullptr)
-    throw InputError(file.string(),
-                     "cannot be read (" + one_line(importer.GetErrorString()) + "); " + allowed);
   TriangleMesh mesh;
-  Welded welded(mesh);
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    add_mesh(*scene->mMeshes[m], welded, mesh);
-    if (mesh.triangles.size() > kMostTriangles)
-      throw InputError(file.string(), "has more than 5 million triangles; allowed fewer");
+  try {
+    if (ending_of(file) == ".ply")
+      if (const std::string problem = ply_problem(file); !problem.empty()) throw std::runtime_error(problem);
+    mesh = mesh_in_child(file);
+  } catch (const std::runtime_error& error) {
+    throw InputError(file.string(), "cannot be read (" + one_line(error.what()) + "); " + allowed);
   }
   if (mesh.triangles.empty()) throw InputError(file.string(), std::string("holds no faces; ") + allowed);
   return mesh;

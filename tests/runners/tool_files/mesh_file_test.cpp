@@ -84,6 +84,33 @@ TEST_F(MeshFileTest, RefusalsNameTheFile) {
   EXPECT_HAS(refusal([&] { read_mesh(folder_.write("cut.stl", std::string(84, '\1'))); }), "cut.stl: ");
 }
 
+std::string ply(const std::string& format, const std::string& vertices, const std::string& faces) {
+  return "ply\nformat " + format + " 1.0\nelement vertex " + vertices +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+         "\nproperty list uint int vertex_indices\nend_header\n";
+}
+
+// Each made the library take gigabytes or go on for ever.
+TEST_F(MeshFileTest, FilesThatClaimMoreThanTheyHoldAreRefused) {
+  const std::string points(9 * 4, '\0');
+  const auto refused = [&](const std::string& name, const std::string& bytes) {
+    const fs::path file = folder_.write(name, bytes);
+    return refusal([&] { read_mesh(file); });
+  };
+  EXPECT_HAS(refused("cut.ply", "ply\nformat ascii 1.0\n"),
+             "cut.ply: cannot be read (its header has no end)");
+  EXPECT_HAS(refused("many.ply", ply("ascii", "300000000", "1") + "0 0 0\n"),
+             "many.ply: cannot be read (its header claims");
+  EXPECT_HAS(refused("faces.ply", ply("binary_little_endian", "3", "4000000000") + points),
+             "faces.ply: cannot be read (its header claims");
+  EXPECT_HAS(refused("list.ply", ply("binary_little_endian", "3", "1") + points + raw(1u << 30) + points),
+             "list.ply: cannot be read (");
+  EXPECT_HAS(refused("list.ply", ply("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n4294967295 0 1 2\n"),
+             "list.ply: cannot be read (");
+  EXPECT_HAS(refused("many.stl", std::string(80, ' ') + raw(4'000'000'000u) + std::string(50, '\0')),
+             "many.stl: cannot be read (");
+}
+
 TEST_F(MeshFileTest, CornersThatAreNoVerticesAreRefusedOrCounted) {
   const fs::path file = folder_.write("far.obj", kVertices + "f 1 2 99\nf 1 2 3\n");
   const std::string message = refusal([&] {

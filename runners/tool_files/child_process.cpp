@@ -1,0 +1,112 @@
+#include "runners/tool_files/child_process.h"
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <stdexcept>
+
+namespace remote_touch {
+
+namespace {
+
+// The first byte that a child sends.
+constexpr char kAnswer = 'a', kFailure = 'f', kNoMemory = 'm';
+
+void write_all(int to, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(to, data, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) ::_exit(1);
+    data += written, size -= static_cast<std::size_t>(written);
+  }
+}
+
+std::string read_all(int from) {
+  std::string all;
+  std::array<char, 65536> piece;
+  for (;;) {
+    const ssize_t size = ::read(from, piece.data(), piece.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return all;
+    all.append(piece.data(), static_cast<std::size_t>(size));
+  }
+}
+
+rlim_t address_space() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void limit(int resource, rlim_t wanted) {
+  rlimit now{};
+  ::getrlimit(static_cast<__rlimit_resource>(resource), &now);
+  now.rlim_cur = std::min(wanted, now.rlim_max);
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
+}
+
+// In the child. Signals end it, also the end of the program that waits for it.
+[[noreturn]] void answer(int to, const ChildLimits& limits, const std::function<std::string()>& work) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) std::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.processor_s);
+  limit(RLIMIT_AS, address_space() + limits.memory_bytes);
+  const auto send = [to](char kind, const std::string& text) {
+    write_all(to, &kind, 1);
+    write_all(to, text.data(), text.size());
+  };
+  try {
+    send(kAnswer, work());
+  } catch (const std::bad_alloc&) {
+    send(kNoMemory, {});
+  } catch (const std::exception& error) {
+    send(kFailure, error.what());
+  }
+  ::_exit(0);
+}
+
+std::string end_of(pid_t child, const ChildLimits& limits) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status)) return {};
+  if (WTERMSIG(status) == SIGXCPU) return "it takes more than " + std::to_string(limits.processor_s) + " s";
+  return "its reader ended with signal " + std::to_string(WTERMSIG(status));
+}
+
+}  // namespace
+
+std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw std::runtime_error(std::strerror(errno));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::close(ends[0]);
+    answer(ends[1], limits, work);
+  }
+  const int error = errno;
+  ::close(ends[1]);
+  std::string answered = child < 0 ? "" : read_all(ends[0]);
+  ::close(ends[0]);
+  if (child < 0) throw std::runtime_error(std::strerror(error));
+  if (const std::string end = end_of(child, limits); !end.empty()) throw std::runtime_error(end);
+  if (answered.empty()) throw std::runtime_error("its reader gave no answer");
+  const char kind = answered.front();
+  answered.erase(0, 1);
+  if (kind == kNoMemory)
+    throw std::runtime_error("it needs more than " + std::to_string(limits.memory_bytes >> 20) +
+                             " MiB of memory");
+  if (kind == kFailure) throw std::runtime_error(answered);
+  return answered;
+}
+
+}  // namespace remote_touch
