@@ -2,6 +2,8 @@
 
 #include <png.h>
 
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,6 +16,13 @@
 
 namespace remote_touch {
 namespace {
+
+// What a damaged file has for a name.
+std::string printable(std::string name) {
+  for (char& c : name)
+    if (!std::isalpha(static_cast<unsigned char>(c))) c = '?';
+  return name;
+}
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -47,6 +56,7 @@ class PngFile {
 
   void guarded(Step step);
   const std::vector<png_byte>& decode(Step prepare);
+  void check_chunks();
   void check_claimed_size() const;
 
   void read_header();
@@ -70,6 +80,7 @@ PngFile::PngFile(const std::filesystem::path& path) : name_(path.string()) {
   if (no_size) throw InputError(name_, "cannot be read (" + no_size.message() + "): allowed a PNG file");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw InputError(name_, std::string("cannot be opened: ") + std::strerror(errno));
+  check_chunks();
   png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
   if (!png_) throw std::bad_alloc();
   info_ = png_create_info_struct(png_);
@@ -80,6 +91,25 @@ PngFile::PngFile(const std::filesystem::path& path) : name_(path.string()) {
     png_destroy_read_struct(&png_, &info_, nullptr);
     throw;
   }
+}
+
+// libpng takes memory for what a chunk claims before it reads it.
+void PngFile::check_chunks() {
+  constexpr std::uintmax_t kSignature = 8, kAroundData = 12;  // length, type and CRC
+  std::array<unsigned char, 8> start{};                       // length and type
+  for (std::uintmax_t at = kSignature; at + kAroundData <= file_bytes_;) {
+    if (std::fseek(file_.get(), static_cast<long>(at), SEEK_SET) != 0 ||
+        std::fread(start.data(), 1, start.size(), file_.get()) != start.size())
+      break;  // libpng says why
+    const std::uintmax_t length = png_get_uint_32(start.data());
+    const std::string type(reinterpret_cast<const char*>(start.data()) + 4, 4);
+    if (length > file_bytes_ - at - kAroundData)
+      throw InputError(name_, "is not a whole PNG file: " + printable(type) + " claims " +
+                                  std::to_string(length) + " bytes");
+    if (type == "IEND") break;
+    at += kAroundData + length;
+  }
+  std::rewind(file_.get());
 }
 
 void PngFile::on_error(png_structp png, png_const_charp message) {
@@ -96,6 +126,7 @@ void PngFile::guarded(Step step) {
 }
 
 void PngFile::read_header() {
+  png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // texts and profiles: no memory
   png_init_io(png_, file_.get());
   png_read_info(png_, info_);
 }
@@ -118,11 +149,14 @@ void PngFile::read_pixels() {
   png_read_end(png_, nullptr);  // finds a file that was cut short behind the pixels
 }
 
-// A damaged header may claim an image that would not fit in memory. Deflate expands at most 1032 times.
+// A header may claim an image that would not fit in memory. Deflate expands at most 1032 times.
 void PngFile::check_claimed_size() const {
-  constexpr std::uintmax_t kMostExpansion = 1032;
+  constexpr std::uintmax_t kMaxExpansion = 1032, kMaxPixels = 1u << 26;  // 8192 x 8192: 0.7 GB as depths
+  if (static_cast<std::uintmax_t>(width()) * static_cast<std::uintmax_t>(height()) > kMaxPixels)
+    throw InputError(name_, "claims " + std::to_string(width()) + " x " + std::to_string(height()) +
+                                " pixels; allowed up to " + std::to_string(kMaxPixels) + " in all");
   const std::uintmax_t claimed = static_cast<std::uintmax_t>(height()) * png_get_rowbytes(png_, info_);
-  if (claimed / kMostExpansion > file_bytes_) {
+  if (claimed / kMaxExpansion > file_bytes_) {
     throw InputError(name_, "claims " + std::to_string(width()) + " x " + std::to_string(height()) +
                                 " pixels: more than its " + std::to_string(file_bytes_) + " bytes can hold");
   }

@@ -76,22 +76,68 @@ TEST_F(DepthPng, RefusesDamagedPixels) {
              "not a whole PNG");
 }
 
-TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
-  const std::uint16_t samples[1] = {5};
-  std::string bytes = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
-  // IHDR: 4 bytes type, then width and height, big-endian; the CRC over type and data follows the 13 data
-  // bytes.
-  const std::size_t type = bytes.find("IHDR");
-  bytes.replace(type + 4, 8, std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));  // 1000000 x 1000000
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+  return bytes;
+}
+
+// Length, type, data and the CRC over type and data.
+std::string chunk(const std::string& type, const std::string& data) {
   std::uint32_t crc = 0xFFFFFFFFu;
-  for (std::size_t i = type; i < type + 17; ++i) {
-    crc ^= static_cast<unsigned char>(bytes[i]);
+  for (const char c : type + data) {
+    crc ^= static_cast<unsigned char>(c);
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
   }
-  for (int k = 0; k < 4; ++k) bytes[type + 17 + k] = static_cast<char>(~crc >> (24 - 8 * k));
-  const fs::path file = folder_.write("d.png", bytes);
+  return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(~crc);
+}
+
+// 16-bit grey; what follows the header is up to the caller.
+std::string png_header(std::uint32_t width, std::uint32_t height) {
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", big_endian(width) + big_endian(height) + std::string("\x10\0\0\0\0", 5));
+}
+
+TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
+  const std::string rest = chunk("IDAT", "x") + chunk("IEND", "");
+  const fs::path file = folder_.write("d.png", png_header(8000, 8000) + rest);
   const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
-  EXPECT_HAS(text, file.string() + ": claims 1000000 x 1000000 pixels");
+  EXPECT_HAS(text, file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
+}
+
+// 0.8 MB could hold as many zeros; that would take 4 GB in memory.
+TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
+  const std::string rest = chunk("IDAT", std::string(800'000, 'x')) + chunk("IEND", "");
+  for (const auto& [width, height] :
+       {std::pair(20000u, 20000u), std::pair(100000u, 1000u), std::pair(1000u, 100000u)}) {
+    const fs::path file = folder_.write("d.png", png_header(width, height) + rest);
+    const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+    EXPECT_HAS(text, file.string() + ": ");
+    EXPECT_HAS(text, "allowed up to");
+  }
+}
+
+TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
+  const std::uint16_t samples[1] = {5};
+  const std::string whole = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
+  const std::size_t after_header = 33, end = whole.size() - 12;
+  for (const char* type : {"tEXt", "zTXt", "iTXt", "iCCP", "sPLT", "eXIf", "PLTE", "IDAT", "abCd"})
+    for (const std::size_t place : {after_header, end})
+      for (const std::uint32_t length : {0x7FFFFFFFu, 0xFFFFFFFFu, 1000u}) {
+        const fs::path file =
+            folder_.write("d.png", whole.substr(0, place) + big_endian(length) + type + whole.substr(place));
+        const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
+        EXPECT_HAS(text, std::string("is not a whole PNG file: ") + type + " claims " +
+                             std::to_string(length) + " bytes");
+      }
+}
+
+// What is said beside the pixels changes nothing.
+TEST_F(DepthPng, LeavesOutTexts) {
+  const std::uint16_t samples[1] = {5};
+  std::string bytes = bytes_of(folder_.write_png("d.png", 1, 1, PNG_FORMAT_LINEAR_Y, samples));
+  bytes.insert(33, chunk("tEXt", std::string("Title\0a heart", 13)) + chunk("abCd", "private"));
+  EXPECT_EQ(read_depth_png(folder_.write("d.png", bytes), 0.001, kNoLimit).z_m, std::vector<double>{0.005});
 }
 
 TEST_F(DepthPng, RefusesMissingFilesAndFolders) {
