@@ -37,12 +37,12 @@ double length(std::size_t width, Component&& component) {
   double squares = 0;
   for (std::size_t k = 0; k < width; ++k) squares += component(k) * component(k);
   if ((squares > 1e-280 && squares < 1e280) || std::isnan(squares)) return std::sqrt(squares);
-  double largest = 0;
-  for (std::size_t k = 0; k < width; ++k) largest = std::max(largest, std::abs(component(k)));
-  if (largest == 0 || std::isinf(largest)) return largest;
+  double max = 0;
+  for (std::size_t k = 0; k < width; ++k) max = std::max(max, std::abs(component(k)));
+  if (max == 0 || std::isinf(max)) return max;
   squares = 0;
-  for (std::size_t k = 0; k < width; ++k) squares += (component(k) / largest) * (component(k) / largest);
-  return largest * std::sqrt(squares);
+  for (std::size_t k = 0; k < width; ++k) squares += (component(k) / max) * (component(k) / max);
+  return max * std::sqrt(squares);
 }
 
 template <class Number>
@@ -115,7 +115,7 @@ ColumnComparison compare_columns(const Column& baseline, const Column& candidate
     if (std::isnan(deviation))
       ++result.not_numbers;
     else if (measured)
-      result.largest = std::max(result.largest, deviation), squares += deviation * deviation;
+      result.max = std::max(result.max, deviation), squares += deviation * deviation;
     if (inside) return;
     ++result.outside;
     if (!result.first_outside) result.first_outside = row;

@@ -24,7 +24,7 @@ struct ColumnComparison {
   std::size_t rows = 0;         // compared
   std::size_t outside = 0;      // of them
   std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity
-  double largest = 0, rms = 0;  // of the finite deviations, in units; 0 for what is equal or not
+  double max = 0, rms = 0;      // of the finite deviations, in units; 0 for what is equal or not
   std::optional<std::size_t> first_difference = {}, first_outside = {};
 
   bool is_same() const { return problem.empty() && rows > 0 && outside == 0; }

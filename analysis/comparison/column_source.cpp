@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/figures/result_file.h"
 
 namespace remote_touch {

@@ -8,24 +8,24 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostPieces = 2000, kMostPanels = 8;
+constexpr std::size_t kMaxPieces = 2000, kMaxPanels = 8;
 
 // Logarithm of the largest of each piece. What is equal or not counts as 1, NaN against a number as none.
 Table pieces(const std::string& column, const std::vector<double>& time,
              const std::vector<double>& deviation) {
-  std::vector<double> when, largest;
+  std::vector<double> when, max;
   const std::size_t rows = std::min(time.size(), deviation.size());
-  const std::size_t length = (rows + kMostPieces - 1) / kMostPieces;
+  const std::size_t length = (rows + kMaxPieces - 1) / kMaxPieces;
   for (std::size_t first = 0; first < rows; first += length) {
-    double most = 0;
+    double max_per_piece = 0;
     for (std::size_t i = first; i < std::min(rows, first + length); ++i)
-      most = std::max(most, std::isnan(deviation[i]) ? 0 : deviation[i]);
+      max_per_piece = std::max(max_per_piece, std::isnan(deviation[i]) ? 0 : deviation[i]);
     when.push_back(time[first]);
-    largest.push_back(most > 0 ? std::log10(most) : std::numeric_limits<double>::quiet_NaN());
+    max.push_back(max_per_piece > 0 ? std::log10(max_per_piece) : std::numeric_limits<double>::quiet_NaN());
   }
   Table table{column, "Deviation of " + column};
   table.add("time", "s", "simulated time, beginning of the piece", std::move(when));
-  table.add("deviation", "1", "log10 of the largest deviation in the column's units", std::move(largest));
+  table.add("deviation", "1", "log10 of the largest deviation in the column's units", std::move(max));
   return table;
 }
 
@@ -39,7 +39,7 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
   if (!std::holds_alternative<std::vector<double>>(time.values)) return figure;
   const auto& time_s = std::get<std::vector<double>>(time.values);
   for (const ColumnComparison& column : comparison.columns) {
-    if (!column.first_difference || figure.panels.size() == kMostPanels) continue;
+    if (!column.first_difference || figure.panels.size() == kMaxPanels) continue;
     const Column ours = baseline.column(column.name);
     figure.tables.push_back(pieces(column.name, time_s, deviations(ours, candidate.column(column.name))));
     Table first{column.name + "_first", "First row outside"};
@@ -61,7 +61,7 @@ Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candid
   if (comparison.divergence)
     figure.caption = "First divergent tick " + std::to_string(comparison.divergence->tick) + ", " +
                      comparison.divergence->quantity + ": " + name_of(comparison.divergence->cause) + ", " +
-                     comparison.divergence->because + ".";
+                     comparison.divergence->explanation + ".";
   return figure;
 }
 

@@ -124,7 +124,7 @@ MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
     if (pairs.equal(run)) continue;
     if (result.outside++ == 0) result.first_outside = run;
   }
-  for (const double d : deviations) result.largest_deviation = std::max(result.largest_deviation, d);
+  for (const double d : deviations) result.max_deviation = std::max(result.max_deviation, d);
   result.rms_deviation = root_mean_square(deviations);
   return result;
 }
@@ -188,8 +188,8 @@ RegionComparison tested(const Pairs& pairs, const Runs& runs) {
   result.difference = paired_difference_interval(result.up, result.down, result.pairs);
   result.sign_p = sign_test(result.up, result.down);
   if (pairs.event) {
-    result.baseline_share = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
-    result.candidate_share = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
+    result.baseline_fraction = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
+    result.candidate_fraction = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
   } else {
     result.mean = mean_difference(all);
     result.baseline_spread = standard_deviation(before);

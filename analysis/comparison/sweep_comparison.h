@@ -27,8 +27,8 @@ struct MeasureComparison {
   // the share of 1 is a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
-  double largest_deviation = 0, rms_deviation = 0;  // |candidate - baseline| where both are finite
-  std::optional<std::size_t> first_outside = {};    // a run
+  double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
+  std::optional<std::size_t> first_outside = {};  // a run
 };
 
 // The first run, in the order of the arrays, that is done in one only or has a measure outside.
@@ -60,7 +60,7 @@ struct RegionComparison {
 
   // Events only: how often in either, with Wilson's intervals of the shares of pairs.
   int baseline_events = 0, candidate_events = 0;
-  std::pair<double, double> baseline_share = {0, 1}, candidate_share = {0, 1};
+  std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
   // Other measures only: over all pairs, in the measure's unit; and the baseline's standard deviation.
   MeanDifference mean = {};
   double baseline_spread = 0;

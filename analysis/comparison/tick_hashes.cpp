@@ -1,6 +1,6 @@
 #include "analysis/comparison/tick_hashes.h"
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/storage/hdf5_reader.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 
 namespace remote_touch {
 
@@ -129,14 +129,14 @@ double time_of(const ColumnSource& trace, std::size_t tick) {
 std::optional<Divergence> find_divergence(const ColumnSource& baseline, const ColumnSource& candidate,
                                           const std::vector<ColumnComparison>& columns,
                                           const std::vector<std::string>& configuration) {
-  std::optional<std::size_t> outside, parted;
+  std::optional<std::size_t> outside, first_difference;
   for (const ColumnComparison& column : columns) {
     outside = earlier(outside, column.first_outside);
-    parted = earlier(parted, column.first_difference);
+    first_difference = earlier(first_difference, column.first_difference);
   }
   if (!outside) return {};
   Divergence found;
-  found.tick = *outside, found.parted = *parted;
+  found.tick = *outside, found.first_difference = *first_difference;
   for (const ColumnComparison& column : columns) {
     if (column.first_outside != outside) continue;
     found.quantity = column.name;
@@ -144,15 +144,15 @@ std::optional<Divergence> find_divergence(const ColumnSource& baseline, const Co
     break;
   }
   found.time_s = time_of(baseline, found.tick);
-  const PartingPlace place(baseline, candidate, columns, found.parted);
-  std::tie(found.situation, found.seen) = place.situation();
+  const PartingPlace place(baseline, candidate, columns, found.first_difference);
+  std::tie(found.situation, found.observation) = place.situation();
   found.cause = configuration.empty() ? found.situation : Cause::configuration;
-  found.because = configuration.empty() ? found.seen : joined(configuration);
+  found.explanation = configuration.empty() ? found.observation : joined(configuration);
   found.frame = place.frame_text();
-  found.first_row = found.parted > 0 ? found.parted - 1 : 0;
+  found.first_row = found.first_difference > 0 ? found.first_difference - 1 : 0;
   for (const ColumnComparison& column : columns) {
-    if (column.rows <= found.parted) continue;
-    const std::size_t count = found.parted - found.first_row + 1;
+    if (column.rows <= found.first_difference) continue;
+    const std::size_t count = found.first_difference - found.first_row + 1;
     found.baseline.push_back(baseline.rows(column.name, found.first_row, count));
     found.candidate.push_back(candidate.rows(column.name, found.first_row, count));
   }

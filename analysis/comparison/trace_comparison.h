@@ -27,11 +27,11 @@ struct Divergence {
   double time_s = 0;                        // of the baseline; 0 where it has none
   std::string quantity;                     // the column, the first in the trace's order
   double deviation = 0;                     // there, in its units; NaN against a number: NaN
-  std::size_t parted = 0;                   // the first tick with any difference, inside or not; at most tick
+  std::size_t first_difference = 0;         // the first tick with any difference, inside or not; at most tick
   Cause cause = Cause::drift;               // configuration, where the experiments differ; else the situation
-  std::string because;                      // one line
+  std::string explanation;                  // one line
   Cause situation = Cause::drift;           // at the tick where they parted
-  std::string seen;                         // one line: what was seen there
+  std::string observation;                  // one line: what was seen there
   std::string frame;                        // one line: the frames before and after
   std::size_t first_row = 0;                // of the rows below: parted - 1, or 0
   std::vector<Column> baseline, candidate;  // rows first_row .. parted of every column that both have

@@ -19,7 +19,7 @@ template <class Value>
 double mean_in_contact(const Trace& trace, Value&& value) {
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double height = trace.signed_distance_m[i] - trace.nearest_m[i];
+    const double height = trace.signed_distance_m[i] - trace.nearest_distance_m[i];
     if (trace.state[i] != static_cast<std::int32_t>(ContactState::contact) || !std::isfinite(height))
       continue;
     sum += value(height), ++count;
@@ -75,7 +75,7 @@ double end_distance_m(const Trace& trace) {
   return trace.length() == 0 ? kNone : trace.signed_distance_m.back();
 }
 
-double force_share(const Trace& trace) {
+double force_fraction(const Trace& trace) {
   double count = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) count += has_force(trace, i) ? 1 : 0;
   return trace.length() == 0 ? 0 : count / static_cast<double>(trace.length());

@@ -20,7 +20,7 @@ double distance_sd_m(const Trace& trace);
 // known.
 double end_distance_m(const Trace& trace);
 // Share of the ticks with a force.
-double force_share(const Trace& trace);
+double force_fraction(const Trace& trace);
 // Time of the last tick with a force, s; NaN without any.
 double last_force_time_s(const Trace& trace);
 // Root mean square change of the force from one tick to the next while there is force on both sides, N: over

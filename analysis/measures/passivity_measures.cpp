@@ -33,13 +33,13 @@ std::vector<double> work_between_updates_J(const Trace& trace) {
 
 }  // namespace
 
-double largest_energy_given_J(const Trace& trace) {
-  double given = 0, largest = 0;
+double max_energy_injected_J(const Trace& trace) {
+  double given = 0, max = 0;
   for (std::size_t i = 0; i + 1 < trace.length(); ++i) {
     given += work_J(trace, i);
-    largest = std::max(largest, given);
+    max = std::max(max, given);
   }
-  return largest;
+  return max;
 }
 
 double mean_energy_per_update_J(const Trace& trace) {
@@ -49,7 +49,7 @@ double mean_energy_per_update_J(const Trace& trace) {
   return pieces.empty() ? kNone : sum / static_cast<double>(pieces.size());
 }
 
-double largest_energy_per_update_J(const Trace& trace) {
+double max_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
   return pieces.empty() ? kNone : *std::max_element(pieces.begin(), pieces.end());
 }

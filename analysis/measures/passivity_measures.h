@@ -9,11 +9,11 @@ namespace remote_touch {
 // The most work that the hand had got by any time since the beginning, J; 0 when it never had more than it
 // gave. A passive renderer without stored energy at the beginning cannot exceed 0: the observer of B.
 // Hannaford and J.-H. Ryu, IEEE Trans. Robotics and Automation 18 (2002), read from the other side.
-double largest_energy_given_J(const Trace& trace);
+double max_energy_injected_J(const Trace& trace);
 
 // Work done on the hand from one frame update to the next, over the whole pieces between updates in which
 // there was force: their mean and the largest, J. NaN without any.
 double mean_energy_per_update_J(const Trace& trace);
-double largest_energy_per_update_J(const Trace& trace);
+double max_energy_per_update_J(const Trace& trace);
 
 }  // namespace remote_touch

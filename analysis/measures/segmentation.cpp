@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-double share(int events, int of) {
+double fraction(int events, int of) {
   return of > 0 ? static_cast<double>(events) / of : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -22,13 +22,13 @@ SegmentationScore& SegmentationScore::operator+=(const SegmentationScore& other)
 }
 
 double SegmentationScore::recall() const {
-  return share(right, right + missed);
+  return fraction(right, right + missed);
 }
 double SegmentationScore::precision() const {
-  return share(right, picked());
+  return fraction(right, picked());
 }
-double SegmentationScore::depth_share() const {
-  return share(right + missed, right + missed + of_class_without_depth);
+double SegmentationScore::depth_fraction() const {
+  return fraction(right + missed, right + missed + of_class_without_depth);
 }
 std::pair<double, double> SegmentationScore::recall_interval() const {
   return wilson_interval(right, right + missed);

@@ -18,9 +18,9 @@ struct SegmentationScore {
 
   int picked() const { return right + wrong; }
   // Shares; NaN where there is nothing to share: no pixel of the class, nothing picked.
-  double recall() const;       // of the pixels of the class with depth: picked
-  double precision() const;    // of the pixels picked: of the class
-  double depth_share() const;  // of all pixels of the class: with depth
+  double recall() const;          // of the pixels of the class with depth: picked
+  double precision() const;       // of the pixels picked: of the class
+  double depth_fraction() const;  // of all pixels of the class: with depth
   // Wilson's 95 % intervals of the first two, as if each pixel were decided by itself. They tell how many
   // pixels were counted; a hue at the edge of a range errs for a whole surface at once, and the same pixel in
   // several frames is not several pixels.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-Share share_of(int events, int runs) {
+Proportion fraction_of(int events, int runs) {
   const auto [low, high] = wilson_interval(events, runs);
   return {events, runs, runs > 0 ? static_cast<double>(events) / runs : kNone, low, high};
 }
@@ -46,19 +46,19 @@ Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m)
   return repeats;
 }
 
-std::vector<Share> shares(const PairedValues& success) {
-  std::vector<Share> list;
+std::vector<Proportion> fractions(const PairedValues& success) {
+  std::vector<Proportion> list;
   for (const auto& level : success) {
     const auto events = std::count(level.begin(), level.end(), 1.0);
-    list.push_back(share_of(static_cast<int>(events), static_cast<int>(level.size())));
+    list.push_back(fraction_of(static_cast<int>(events), static_cast<int>(level.size())));
   }
   return list;
 }
 
-Share sum_of(const std::vector<Share>& levels) {
+Proportion sum_of(const std::vector<Proportion>& levels) {
   int events = 0, runs = 0;
-  for (const Share& level : levels) events += level.events, runs += level.runs;
-  return share_of(events, runs);
+  for (const Proportion& level : levels) events += level.events, runs += level.runs;
+  return fraction_of(events, runs);
 }
 
 std::string units_of(const SweepResult& sweep, const std::string& measure) {
@@ -84,7 +84,7 @@ JudgedMeasure judged(const std::string& name, Better better, const std::vector<S
     for (const auto& level : distinct(values.back(), repeats[c]))
       measure.at_level.back().push_back(bootstrap_mean({level}, key));
   }
-  measure.standing = standing(values, better, false, key, repeats);
+  measure.ranking = ranking(values, better, false, key, repeats);
   return measure;
 }
 
@@ -100,10 +100,10 @@ SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps
     const std::vector<bool> success = successes(sweep, rules.success);
     won.push_back(by_level(sweep, [&](std::size_t run) { return success[run] ? 1.0 : 0.0; }));
     repeats.push_back(repeats_of(sweep, scene.noise_m));
-    scene.success.push_back(shares(distinct(won.back(), repeats.back())));
+    scene.success.push_back(fractions(distinct(won.back(), repeats.back())));
     scene.success_overall.push_back(sum_of(scene.success.back()));
   }
-  scene.standing = standing(won, Better::larger, true, key, repeats);
+  scene.ranking = ranking(won, Better::larger, true, key, repeats);
   for (const auto& [name, better] : rules.measures)
     scene.measures.push_back(judged(name, better, sweeps, won, repeats, key));
   return scene;
@@ -119,39 +119,39 @@ Column counts(const char* name, const char* meaning, std::vector<std::int32_t> v
 }
 
 Table success_table(const Scorecard& card) {
-  std::vector<std::string> scene, contender;
-  std::vector<double> noise, low, high, share;
+  std::vector<std::string> scene, method;
+  std::vector<double> noise, low, high, fraction;
   std::vector<std::int32_t> events, runs;
   for (const SceneScore& s : card.scenes)
-    for (std::size_t c = 0; c < card.contenders.size(); ++c)
+    for (std::size_t c = 0; c < card.methods.size(); ++c)
       for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
-        const Share& one = s.success[c][i];
-        scene.push_back(s.name), contender.push_back(card.contenders[c]), noise.push_back(s.noise_m[i]);
+        const Proportion& one = s.success[c][i];
+        scene.push_back(s.name), method.push_back(card.methods[c]), noise.push_back(s.noise_m[i]);
         events.push_back(one.events), runs.push_back(one.runs);
-        share.push_back(one.share), low.push_back(one.low), high.push_back(one.high);
+        fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
       }
   Table table{"success", "share of successful runs with Wilson's 95 % interval"};
-  table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender)};
+  table.columns = {texts("scene", "scene", scene), texts("method", "method", method)};
   table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
   table.columns.push_back(counts("successes", "successful runs", events));
   table.columns.push_back(
       counts("runs", "runs; those that are one and the same run, as without noise, count once", runs));
-  table.add("share", "1", "share of successful runs", share);
+  table.add("fraction", "1", "share of successful runs", fraction);
   table.add("low", "1", "lower end of the interval", low);
   table.add("high", "1", "upper end of the interval", high);
   return table;
 }
 
 Table measure_table(const Scorecard& card) {
-  std::vector<std::string> scene, contender, measure, units;
+  std::vector<std::string> scene, method, measure, units;
   std::vector<double> noise, mean, low, high;
   std::vector<std::int32_t> runs;
   for (const SceneScore& s : card.scenes)
     for (const JudgedMeasure& m : s.measures)
-      for (std::size_t c = 0; c < card.contenders.size(); ++c)
+      for (std::size_t c = 0; c < card.methods.size(); ++c)
         for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
           const MeanDifference& one = m.at_level[c][i];
-          scene.push_back(s.name), contender.push_back(card.contenders[c]);
+          scene.push_back(s.name), method.push_back(card.methods[c]);
           measure.push_back(m.name), units.push_back(m.units), noise.push_back(s.noise_m[i]);
           runs.push_back(static_cast<std::int32_t>(one.pairs));
           mean.push_back(one.mean), low.push_back(one.low), high.push_back(one.high);
@@ -160,7 +160,7 @@ Table measure_table(const Scorecard& card) {
       "measures",
       "means with 95 % intervals of the bootstrap: of a measure that is judged over the successful runs, "
       "of one that is reported over all"};
-  table.columns = {texts("scene", "scene", scene), texts("contender", "contender", contender),
+  table.columns = {texts("scene", "scene", scene), texts("method", "method", method),
                    texts("measure", "measure", measure), texts("units", "unit of the measure", units)};
   table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
   table.columns.push_back(counts("runs", "runs that have a number", runs));
@@ -171,32 +171,30 @@ Table measure_table(const Scorecard& card) {
 }
 
 // 1, 2, ... in the order of each standing, and who stands out: 1 best, -1 worst of all, 0 neither.
-Table standing_table(const Scorecard& card) {
-  std::vector<std::string> scene, contender, measure;
+Table ranking_table(const Scorecard& card) {
+  std::vector<std::string> scene, method, measure;
   std::vector<std::int32_t> place, mark, top;
-  const auto add = [&](const SceneScore& s, const std::string& name, const Standing& standing) {
-    for (std::size_t i = 0; i < standing.order.size(); ++i) {
-      const std::size_t c = standing.order[i];
-      scene.push_back(s.name), measure.push_back(name), contender.push_back(card.contenders[c]);
+  const auto add = [&](const SceneScore& s, const std::string& name, const Ranking& ranking) {
+    for (std::size_t i = 0; i < ranking.order.size(); ++i) {
+      const std::size_t c = ranking.order[i];
+      scene.push_back(s.name), measure.push_back(name), method.push_back(card.methods[c]);
       place.push_back(static_cast<std::int32_t>(i + 1));
-      mark.push_back(i == 0 && standing.has_best                      ? 1
-                     : i + 1 == standing.placed && standing.has_worst ? -1
-                                                                      : 0);
-      top.push_back(std::count(standing.at_the_top.begin(), standing.at_the_top.end(), c) > 0);
+      mark.push_back(i == 0 && ranking.has_best ? 1 : i + 1 == ranking.ranked && ranking.has_worst ? -1 : 0);
+      top.push_back(std::count(ranking.top_group.begin(), ranking.top_group.end(), c) > 0);
     }
   };
   for (const SceneScore& s : card.scenes) {
-    add(s, "success", s.standing);
+    add(s, "success", s.ranking);
     for (const JudgedMeasure& m : s.measures)
-      if (m.better != Better::reported) add(s, m.name, m.standing);
+      if (m.better != Better::reported) add(s, m.name, m.ranking);
   }
-  Table table{"standings", "contenders in order over all noise levels"};
+  Table table{"standings", "methods in order over all noise levels"};
   table.columns = {texts("scene", "scene", scene),
                    texts("measure", "success or measure", measure),
                    counts("place", "place in the order, 1 the best", place),
-                   texts("contender", "contender", contender),
+                   texts("method", "method", method),
                    counts("mark", "1: best, -1: worst, told apart from all others", mark),
-                   counts("at_the_top", "1: the first, and whom it is not shown to be better than", top)};
+                   counts("top_group", "1: the first, and whom it is not shown to be better than", top)};
   return table;
 }
 
@@ -211,12 +209,12 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
   panel.y_range = std::pair(-0.05, 1.05);
   constexpr std::size_t kAcross = 5;
   panel.place = std::pair(static_cast<double>(number / kAcross), static_cast<double>(number % kAcross));
-  for (std::size_t c = 0; c < card.contenders.size(); ++c) {
-    const std::string& name = card.contenders[c];
-    std::vector<double> share, low, high;
-    for (const Share& one : s.success[c])
-      share.push_back(one.share), low.push_back(one.low), high.push_back(one.high);
-    table.add(name, "1", "share of successful runs", share);
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    const std::string& name = card.methods[c];
+    std::vector<double> fraction, low, high;
+    for (const Proportion& one : s.success[c])
+      fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
+    table.add(name, "1", "share of successful runs", fraction);
     table.add(name + "_low", "1", "lower end of its interval", low);
     table.add(name + "_high", "1", "upper end of its interval", high);
     panel.curves.push_back({table.name, "noise", name, CurveStyle::line, number == 0 ? name : ""});
@@ -230,8 +228,8 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
 Figure scorecard_figure(const Scorecard& card) {
   Figure figure{kScorecardFigure,
                 "Scorecard of 3-DOF renderers",
-                "Share of successful runs over noise, scene by scene. Every contender met the same noise.",
-                {success_table(card), measure_table(card), standing_table(card)}};
+                "Share of successful runs over noise, scene by scene. Every method met the same noise.",
+                {success_table(card), measure_table(card), ranking_table(card)}};
   for (std::size_t i = 0; i < card.scenes.size(); ++i) add_panel(card, i, figure);
   return figure;
 }

@@ -1,4 +1,4 @@
-// A scorecard: what each contender made of each scene, at each noise level, with intervals, and who stands
+// A scorecard: what each method made of each scene, at each noise level, with intervals, and who stands
 // out.
 #pragma once
 
@@ -7,39 +7,39 @@
 #include <vector>
 
 #include "analysis/figures/figure.h"
-#include "analysis/scorecard/standing.h"
+#include "analysis/scorecard/ranking.h"
 #include "analysis/scorecard/success_rule.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
 
 // A share of runs with Wilson's interval; runs that are one and the same (Repeats) count once.
-struct Share {
+struct Proportion {
   int events = 0, runs = 0;
-  double share = 0, low = 0, high = 1;
+  double fraction = 0, low = 0, high = 1;
 };
 
 struct JudgedMeasure {
   std::string name, units;
   Better better = Better::reported;
   // Over all noise levels; the means have their bootstrap intervals. Judged measures are those of successful
-  // runs, and two contenders are compared where both succeeded. Reported ones are those of all runs.
-  Standing standing = {};
-  // Of each contender at each noise level.
+  // runs, and two methods are compared where both succeeded. Reported ones are those of all runs.
+  Ranking ranking = {};
+  // Of each method at each noise level.
   std::vector<std::vector<MeanDifference>> at_level = {};
 };
 
 struct SceneScore {
-  std::string name, title, meaning;         // of success
-  std::vector<double> noise_m;              // one per level; a single NaN: the scene's own
-  std::vector<std::vector<Share>> success;  // of each contender at each level
-  std::vector<Share> success_overall;       // of each contender
-  Standing standing;                        // by success, over all levels
+  std::string name, title, meaning;              // of success
+  std::vector<double> noise_m;                   // one per level; a single NaN: the scene's own
+  std::vector<std::vector<Proportion>> success;  // of each method at each level
+  std::vector<Proportion> success_overall;       // of each method
+  Ranking ranking;                               // by success, over all levels
   std::vector<JudgedMeasure> measures;
 };
 
 struct Scorecard {
-  std::vector<std::string> contenders, contender_titles;
+  std::vector<std::string> methods, method_titles;
   std::vector<SceneScore> scenes;
 };
 
@@ -49,7 +49,7 @@ struct SceneRules {
   std::vector<std::pair<std::string, Better>> measures;
 };
 
-// From the finished sweeps of all contenders in a scene, which have one axis, the noise. key: of the
+// From the finished sweeps of all methods in a scene, which have one axis, the noise. key: of the
 // bootstrap; the same for the same scene, whichever others are there. Throws std::out_of_range for an unknown
 // measure.
 SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
@@ -57,7 +57,7 @@ SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps
 
 inline constexpr const char* kScorecardFigure = "scorecard";  // the name of this:
 
-// The tables of a result file: success, measures and standings, one row for each scene, contender, and level
+// The tables of a result file: success, measures and standings, one row for each scene, method, and level
 // or measure; and the curves of every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 

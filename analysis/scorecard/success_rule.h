@@ -11,10 +11,10 @@ namespace remote_touch {
 
 struct Bound {
   std::string measure;
-  double at_least = -std::numeric_limits<double>::infinity();
-  double at_most = std::numeric_limits<double>::infinity();
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
 
-  bool holds(double value) const { return value >= at_least && value <= at_most; }  // never for NaN
+  bool holds(double value) const { return value >= min && value <= max; }  // never for NaN
 };
 
 // For each run: did it keep all bounds? Runs that failed did not. Throws std::out_of_range for a measure that

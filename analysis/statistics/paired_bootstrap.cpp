@@ -20,8 +20,8 @@ class Choices {
                 {0xFFFFFFFFu, static_cast<std::uint32_t>(draw), 0}} {}
   std::size_t below(std::size_t count) {
     if (next_ == words_.size()) words_ = uniforms(stream_, point_++), next_ = 0;
-    const double share = words_[next_++];  // in (0, 1)
-    return std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
+    const double fraction = words_[next_++];  // in (0, 1)
+    return std::min(count - 1, static_cast<std::size_t>(fraction * static_cast<double>(count)));
   }
 
  private:
@@ -32,8 +32,8 @@ class Choices {
 };
 
 // Of sorted values, the one that so large a share lies below, between neighbours in proportion.
-double quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
+double quantile(const std::vector<double>& sorted, double fraction) {
+  const double place = fraction * static_cast<double>(sorted.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(place), sorted.size() - 1);
   const double above = sorted[std::min(i + 1, sorted.size() - 1)];
   return sorted[i] + (place - static_cast<double>(i)) * (above - sorted[i]);

@@ -10,20 +10,20 @@ namespace remote_touch {
 
 namespace {
 
-double largest_magnitude(const std::vector<double>& values) {
-  double largest = 0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  return largest;
+double max_magnitude(const std::vector<double>& values) {
+  double max = 0;
+  for (const double value : values) max = std::max(max, std::abs(value));
+  return max;
 }
 
 }  // namespace
 
 double root_mean_square(const std::vector<double>& values) {
-  const double largest = largest_magnitude(values);
-  if (largest == 0 || std::isinf(largest)) return largest;
+  const double max = max_magnitude(values);
+  if (max == 0 || std::isinf(max)) return max;
   double squares = 0;
-  for (const double value : values) squares += (value / largest) * (value / largest);
-  return largest * std::sqrt(squares / static_cast<double>(values.size()));
+  for (const double value : values) squares += (value / max) * (value / max);
+  return max * std::sqrt(squares / static_cast<double>(values.size()));
 }
 
 // Binomial weights downwards from the middle, where they are largest, in units of the largest: each follows
@@ -43,10 +43,10 @@ double sign_test(std::int64_t plus, std::int64_t minus) {
 }
 
 double symmetry_test(const std::vector<double>& differences) {
-  const double largest = largest_magnitude(differences);
-  if (largest == 0) return 1;
+  const double max = max_magnitude(differences);
+  if (max == 0) return 1;
   double sum = 0, squares = 0;  // in units of the largest: no square overflows or vanishes
-  for (const double d : differences) sum += d / largest, squares += (d / largest) * (d / largest);
+  for (const double d : differences) sum += d / max, squares += (d / max) * (d / max);
   return std::min(1.0, 2 * std::exp(-sum * sum / (2 * squares)));
 }
 
@@ -80,10 +80,10 @@ std::vector<double> holm_adjusted(const std::vector<double>& p) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
   std::vector<double> adjusted(p.size());
-  double largest = 0;
+  double max = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - i) * p[order[i]]));
-    adjusted[order[i]] = largest;
+    max = std::max(max, std::min(1.0, static_cast<double>(order.size() - i) * p[order[i]]));
+    adjusted[order[i]] = max;
   }
   return adjusted;
 }

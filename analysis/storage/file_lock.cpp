@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_handle.h"
-#include "analysis/storage/hdf5_seal.h"
-#include "analysis/storage/whole_file.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -52,7 +52,7 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   guarded([&] {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    check(H5Pset_userblock(creation, kSealSize));
+    check(H5Pset_userblock(creation, kDigestBlockSize));
     check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
     file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
     check(file_ < 0 ? -1 : 0);
@@ -80,9 +80,9 @@ void Hdf5Appender::group(const std::string& path) {
 
 void Hdf5Appender::dataset(const Dataset& made) {
   guarded([&] {
-    std::vector<hsize_t> now{0}, most{H5S_UNLIMITED}, chunk{made.rows_a_chunk};
-    for (const auto extent : made.row) now.push_back(extent), most.push_back(extent), chunk.push_back(extent);
-    const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
+    std::vector<hsize_t> now{0}, max{H5S_UNLIMITED}, chunk{made.rows_a_chunk};
+    for (const auto extent : made.row) now.push_back(extent), max.push_back(extent), chunk.push_back(extent);
+    const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), max.data()), H5Sclose);
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_obj_track_times(creation, false));
     check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
@@ -122,7 +122,7 @@ void Hdf5Appender::attributes(const std::string& object, const TextAttributes& l
 void Hdf5Appender::finish() {
   guarded([&] { check(H5Fflush(file_, H5F_SCOPE_GLOBAL)); });
   close();
-  seal_file(temporary_);
+  write_file_digest(temporary_);
   move_into_place(temporary_, target_);
   finished_ = true;
 }

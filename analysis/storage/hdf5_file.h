@@ -19,7 +19,7 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 // part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.
 class Hdf5Writer {
  public:
-  // A finished file is sealed (hdf5_seal.h); one that is to be written in place later cannot be.
+  // A finished file is sealed (file_digest.h); one that is to be written in place later cannot be.
   enum class Finished { yes, no };
   explicit Hdf5Writer(Finished finished = Finished::yes);
   ~Hdf5Writer();

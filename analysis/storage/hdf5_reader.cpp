@@ -5,8 +5,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_handle.h"
-#include "analysis/storage/hdf5_seal.h"
 #include "analysis/storage/hdf5_values.h"
 #include "core/parameters/input_error.h"
 
@@ -49,14 +49,14 @@ bool require_readable(const std::filesystem::path& file) {
     throw InputError(file.string(), "a folder; allowed an HDF5 result");
   if (std::filesystem::file_size(file, unreachable) == 0)
     throw InputError(file.string(), "empty; allowed an HDF5 result");
-  const Seal found = seal_of(file);
-  if (found == Seal::broken)
+  const FileDigest found = file_digest_of(file);
+  if (found == FileDigest::broken)
     throw InputError(
         file.string(),
         "damaged (not as it was written: its SHA-256 is another); allowed a result of this program");
   if (H5Fis_hdf5(file.c_str()) <= 0)
     throw InputError(file.string(), "not a readable HDF5 file; allowed a result of this program");
-  return found == Seal::intact;
+  return found == FileDigest::valid;
 }
 
 Handle open_dataset(const std::shared_ptr<void>& file, const std::string& dataset) {
@@ -94,7 +94,7 @@ void Hdf5Reader::require_schema(const std::string& schema, const std::string& al
                               schema + ", " + allowed);
 }
 
-void Hdf5Reader::require_seal() const {
+void Hdf5Reader::require_file_digest() const {
   if (!sealed_) damaged("its seal is missing: it was changed, or written before there were seals");
 }
 
@@ -107,7 +107,7 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string())
   });
   // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
   if (attribute(attributes_, "schema").starts_with("remote-touch-") && !has("/sweep/checksum"))
-    require_seal();
+    require_file_digest();
 }
 
 std::vector<std::string> Hdf5Reader::datasets() const {

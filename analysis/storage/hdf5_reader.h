@@ -42,7 +42,7 @@ class Hdf5Reader {
   [[noreturn]] void damaged(const std::string& how) const;
 
  private:
-  void require_seal() const;
+  void require_file_digest() const;
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;

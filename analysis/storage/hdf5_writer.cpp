@@ -7,9 +7,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_handle.h"
-#include "analysis/storage/hdf5_seal.h"
-#include "analysis/storage/whole_file.h"
 
 namespace remote_touch {
 
@@ -17,7 +17,7 @@ namespace {
 
 // Columns longer than that are compressed, in chunks of so many rows; an array has chunks of at most so many
 // values.
-constexpr hsize_t kLongestInOnePiece = 256, kChunk = 4096, kLargestChunk = 32768;
+constexpr hsize_t kMaxContiguous = 256, kChunk = 4096, kMaxChunk = 32768;
 
 // Object time stamps off, so that equal contents are equal bytes.
 Handle creation_list(hid_t kind) {
@@ -26,7 +26,7 @@ Handle creation_list(hid_t kind) {
   return list;
 }
 
-std::size_t longest(const std::vector<std::string>& texts) {
+std::size_t max_length(const std::vector<std::string>& texts) {
   std::size_t length = 0;
   for (const std::string& text : texts) length = std::max(length, text.size());
   return length;
@@ -36,7 +36,7 @@ Handle stored_type(const Column& column) {
   if (std::holds_alternative<std::vector<double>>(column.values))
     return Handle(H5Tcopy(H5T_IEEE_F64LE), H5Tclose);
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values))
-    return text_type(longest(*texts));
+    return text_type(max_length(*texts));
   if (std::holds_alternative<std::vector<std::uint64_t>>(column.values))
     return Handle(H5Tcopy(H5T_STD_U64LE), H5Tclose);
   if (column.value_names.empty()) return Handle(H5Tcopy(H5T_STD_I32LE), H5Tclose);
@@ -101,7 +101,7 @@ std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
   if (extent.size() == 1) return {std::min(kChunk, extent.front())};
   for (hsize_t& along : extent) {
     const auto product = std::accumulate(extent.begin(), extent.end(), hsize_t{1}, std::multiplies<>());
-    if (product > kLargestChunk) along = std::max<hsize_t>(1, kLargestChunk * along / product);
+    if (product > kMaxChunk) along = std::max<hsize_t>(1, kMaxChunk * along / product);
   }
   return extent;
 }
@@ -131,7 +131,7 @@ void Hdf5Writer::dataset(const std::string& path, const Column& column, const st
   const Handle type = stored_type(column);
   if (storage == Storage::in_place) {
     check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
-  } else if (column.length() > kLongestInOnePiece) {
+  } else if (column.length() > kMaxContiguous) {
     check(H5Pset_chunk(creation, rank, chunk_of(extent).data()));
     check(H5Pset_shuffle(creation));
     check(H5Pset_deflate(creation, 1));
@@ -194,8 +194,8 @@ void Hdf5Writer::save(const std::filesystem::path& target) {
   std::vector<char> image(size());
   if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
     throw std::runtime_error("the HDF5 library gave no file image");
-  if (sealed_) image = seal(image);
-  write_whole_file(target, image.data(), image.size());
+  if (sealed_) image = with_file_digest(image);
+  write_file_atomically(target, image.data(), image.size());
 }
 
 }  // namespace remote_touch

@@ -16,7 +16,7 @@ struct Belief {
 };
 
 Belief belief(const SweepResult& result, const RefinementRule& rule, std::size_t cell) {
-  const Tally t = tally(result, result.measure(rule.measure), cell, rule.above);
+  const Tally t = tally(result, result.measure(rule.measure), cell, rule.threshold);
   const auto [low, high] = wilson_interval(t.events, t.runs);
   return {t.runs > 0, low < 0.5 && high > 0.5, 2 * t.events > t.runs};
 }

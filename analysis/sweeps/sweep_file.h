@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kSweepSchema = "remote-touch-sweep/1";
+inline constexpr const char* kSweepSchema = "remote-touch-sweep/2";
 
 // Of axes, measures, states and errors.
 std::string digest(const SweepResult& result);

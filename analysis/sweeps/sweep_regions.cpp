@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostParts = 36;
+constexpr std::size_t kMaxParts = 36;
 
 std::string text_of(const Column& axis, std::size_t place) {
   if (const auto* texts = std::get_if<std::vector<std::string>>(&axis.values)) return (*texts)[place];
@@ -39,7 +39,7 @@ std::vector<Region> regions_of(const std::vector<Column>& axes) {
         !axis.value_names.empty() || std::holds_alternative<std::vector<std::string>>(axis.values);
     whole.places.emplace_back(0, length);
     std::size_t count = length <= 4 ? length : length >= 6 && !named ? 3 : 1;
-    if (parts.size() * count > kMostParts) count = 1;
+    if (parts.size() * count > kMaxParts) count = 1;
     std::vector<Region> finer;
     for (const Region& part : parts)
       for (std::size_t i = 0; i < count; ++i) {

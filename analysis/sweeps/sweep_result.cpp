@@ -33,10 +33,10 @@ std::size_t SweepResult::cell_at(const std::vector<std::size_t>& place) const {
   return cell;
 }
 
-std::vector<std::size_t> SweepResult::runs_in(RunState wanted) const {
+std::vector<std::size_t> SweepResult::runs_in(RunState requested) const {
   std::vector<std::size_t> runs;
   for (std::size_t run = 0; run < state.size(); ++run)
-    if (state[run] == wanted) runs.push_back(run);
+    if (state[run] == requested) runs.push_back(run);
   return runs;
 }
 

@@ -43,7 +43,7 @@ struct SweepResult {
   std::vector<std::size_t> place(std::size_t cell) const;
   std::size_t cell_at(const std::vector<std::size_t>& place) const;
 
-  std::vector<std::size_t> runs_in(RunState wanted) const;            // rising
+  std::vector<std::size_t> runs_in(RunState requested) const;         // rising
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
 

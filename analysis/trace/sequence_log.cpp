@@ -7,7 +7,7 @@ namespace {
 void end(SequenceEntry& entry, const Trace& t, std::size_t tick, bool missed) {
   entry.ended_s = t.time_s[tick];
   entry.missed = missed;
-  entry.distance_m = t.ended_m[tick], entry.angle_rad = t.ended_rad[tick];
+  entry.distance_m = t.sequence_distance_m[tick], entry.angle_rad = t.sequence_angle_rad[tick];
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 
 namespace remote_touch {
 
@@ -16,9 +16,12 @@ void push(std::vector<double>& column, const Eigen::Quaterniond& q) {
 }  // namespace
 
 void Trace::reserve(std::size_t ticks) {
-  for (auto* column : {&time_s, &surface_velocity_m_per_s, &nearest_m, &signed_distance_m, &slave_distance_m})
+  for (auto* column :
+       {&time_s, &surface_velocity_m_per_s, &nearest_distance_m, &signed_distance_m, &slave_distance_m})
     column->reserve(ticks);
-  for (auto* column : {&hip_m, &proxy_m, &force_N, &normal, &carried_m, &slave_m}) column->reserve(3 * ticks);
+  for (auto* column :
+       {&hip_position_m, &proxy_position_m, &force_N, &normal, &frame_correction_m, &slave_command_m})
+    column->reserve(3 * ticks);
   for (auto* column : {&state, &proxy_steps, &converged, &contact_count, &frame_index, &status})
     column->reserve(ticks);
   frame_hash.reserve(ticks);
@@ -27,8 +30,9 @@ void Trace::reserve(std::size_t ticks) {
 void Trace::append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
                    const std::optional<HandState>& hand) {
   time_s.push_back(time);
-  push(hip_m, device.position_W), push(proxy_m, out.proxy_W), push(force_N, out.force_N),
-      push(normal, out.normal_W), push(carried_m, out.carried_m), push(slave_m, out.slave_W);
+  push(hip_position_m, device.position_W), push(proxy_position_m, out.proxy_W), push(force_N, out.force_N),
+      push(normal, out.normal_W), push(frame_correction_m, out.frame_correction_m),
+      push(slave_command_m, out.slave_W);
   state.push_back(static_cast<std::int32_t>(out.state));
   proxy_steps.push_back(out.steps);
   converged.push_back(out.converged ? 1 : 0);
@@ -36,7 +40,7 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   frame_index.push_back(out.frame_index);
   status.push_back(static_cast<std::int32_t>(out.status));
   surface_velocity_m_per_s.push_back(out.surface_velocity_m_per_s);
-  nearest_m.push_back(out.nearest_m);
+  nearest_distance_m.push_back(out.nearest_distance_m);
   signed_distance_m.push_back(truth.proxy_distance_m);
   slave_distance_m.push_back(truth.slave_distance_m);
   frame_hash.push_back(truth.frame_hash);
@@ -46,17 +50,18 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
 }
 
 void Trace::append_guidance(const GuidanceOutput& guidance) {
-  guidance_pulls.push_back(guidance.pulls ? 1 : 0);
+  guidance_active.push_back(guidance.active ? 1 : 0);
   push(guidance_force_N, guidance.force_N), push(guidance_torque_Nm, guidance.torque_Nm);
-  push(goal_m, guidance.goal_W), push(goal_orientation, guidance.goal_orientation_W);
+  push(guidance_goal_m, guidance.goal_W), push(guidance_orientation, guidance.goal_orientation_W);
   sequence_step.push_back(guidance.sequence_step);
   sequence_running.push_back(guidance.sequence_running ? 1 : 0);
   sequence_missed.push_back(guidance.sequence_missed);
-  ended_m.push_back(guidance.ended_m), ended_rad.push_back(guidance.ended_rad);
+  sequence_distance_m.push_back(guidance.sequence_distance_m),
+      sequence_angle_rad.push_back(guidance.sequence_angle_rad);
 }
 
 void Trace::append_hand(const DeviceState& device, const HandState& hand) {
-  push(intended_m, hand.intended_W), push(intended_orientation, hand.intended_orientation_W);
+  push(intended_position_m, hand.intended_W), push(intended_orientation, hand.intended_orientation_W);
   push(device_force_N, hand.force_N), push(device_torque_Nm, hand.torque_Nm);
   buttons.push_back(static_cast<std::int32_t>(device.buttons));
 }
@@ -64,7 +69,7 @@ void Trace::append_hand(const DeviceState& device, const HandState& hand) {
 void Trace::append_tool(const DeviceState& device, const ToolOutput& tool) {
   push(hip_orientation, device.orientation_W), push(tool_orientation, tool.orientation_W);
   push(torque_Nm, tool.torque_Nm);
-  penetration_m.push_back(tool.penetration_m);
+  tool_penetration_m.push_back(tool.tool_penetration_m);
   active_constraints.push_back(tool.active_constraints);
   contact_clusters.push_back(tool.contact_clusters);
   detections.push_back(tool.detections);
@@ -75,11 +80,11 @@ void Trace::append_tool(const DeviceState& device, const ToolOutput& tool) {
 std::vector<Column> Trace::columns() const {
   std::vector<Column> list = {
       {"time", "s", "simulated time", time_s, 1, {}},
-      {"hip_position", "m", "haptic interface point, world frame", hip_m, 3, {}},
+      {"hip_position", "m", "haptic interface point, world frame", hip_position_m, 3, {}},
       {"proxy_position",
        "m",
        has_tool() ? "centre of mass of the tool, world frame" : "centre of the proxy, world frame",
-       proxy_m,
+       proxy_position_m,
        3,
        {}},
       {"force", "N", "force on the hand, world frame", force_N, 3, {}},
@@ -94,13 +99,18 @@ std::vector<Column> Trace::columns() const {
       {"frame_correction",
        "m",
        "what frame updates moved the proxy by before the tick, (4.3)",
-       carried_m,
+       frame_correction_m,
        3,
        {}},
       {"proxy_steps", "1", "proxy steps made in the tick", proxy_steps, 1, {}},
       {"converged", "1", "the proxy converged in the tick", converged, 1, {"no", "yes"}},
       {"contact_count", "1", "points within r2 of the proxy", contact_count, 1, {}},
-      {"nearest_distance", "m", "distance of the proxy's centre to the nearest region", nearest_m, 1, {}},
+      {"nearest_distance",
+       "m",
+       "distance of the proxy's centre to the nearest region",
+       nearest_distance_m,
+       1,
+       {}},
       {"frame_index", "1", "newest frame in use, -1 before the first", frame_index, 1, {}},
       {"signed_distance",
        "m",
@@ -108,7 +118,7 @@ std::vector<Column> Trace::columns() const {
        signed_distance_m,
        1,
        {}},
-      {"slave_command", "m", "where the slave robot is sent, world frame", slave_m, 3, {}},
+      {"slave_command", "m", "where the slave robot is sent, world frame", slave_command_m, 3, {}},
       {"slave_distance", "m", "distance of the slave's command to the true surface", slave_distance_m, 1, {}},
       {"status",
        "1",
@@ -141,7 +151,12 @@ std::vector<Column> Trace::tool_columns() const {
       {"torque", "N m", "torque on the hand about the HIP, world frame", torque_Nm, 3, {}},
       {"active_constraints", "1", "rows of (6.5) that hold the tool", active_constraints, 1, {}},
       {"contact_clusters", "1", "groups of touching points, 10 mm cells", contact_clusters, 1, {}},
-      {"penetration", "m", "of the deepest point of the newest frame into the tool", penetration_m, 1, {}},
+      {"tool_penetration",
+       "m",
+       "of the deepest point of the newest frame into the tool",
+       tool_penetration_m,
+       1,
+       {}},
       {"detections", "1", "collision detections made in the tick", detections, 1, {}},
       {"budget_exhausted",
        "1",
@@ -155,32 +170,47 @@ std::vector<Column> Trace::tool_columns() const {
 
 std::vector<Column> Trace::guidance_columns() const {
   return {
-      {"guidance_pulls",
+      {"guidance_active",
        "1",
        "a guidance fixture is active and its target is seen",
-       guidance_pulls,
+       guidance_active,
        1,
        {"no", "yes"}},
       {"guidance_force", "N", "force of guidance on the hand, part of force", guidance_force_N, 3, {}},
       {"guidance_torque", "N m", "torque of guidance on the hand, part of torque", guidance_torque_Nm, 3, {}},
-      {"guidance_goal", "m", "where guidance pulls the tool to, world frame", goal_m, 3, {}},
-      {"guidance_orientation", "1", "orientation of the goal, quaternion w x y z", goal_orientation, 4, {}},
+      {"guidance_goal", "m", "where guidance pulls the tool to, world frame", guidance_goal_m, 3, {}},
+      {"guidance_orientation",
+       "1",
+       "orientation of the goal, quaternion w x y z",
+       guidance_orientation,
+       4,
+       {}},
       {"sequence_step", "1", "current step of the task, from 0", sequence_step, 1, {}},
       {"sequence_running", "1", "the step has begun", sequence_running, 1, {"no", "yes"}},
       {"sequence_missed", "1", "steps that ended by their deadline so far", sequence_missed, 1, {}},
       {"sequence_distance",
        "m",
        "from the tool to the goal of the step that ended, else NaN",
-       ended_m,
+       sequence_distance_m,
        1,
        {}},
-      {"sequence_angle", "rad", "between the tool and the goal of the step that ended", ended_rad, 1, {}},
+      {"sequence_angle",
+       "rad",
+       "between the tool and the goal of the step that ended",
+       sequence_angle_rad,
+       1,
+       {}},
   };
 }
 
 std::vector<Column> Trace::hand_columns() const {
   return {
-      {"intended_position", "m", "where the operator wants the device, world frame", intended_m, 3, {}},
+      {"intended_position",
+       "m",
+       "where the operator wants the device, world frame",
+       intended_position_m,
+       3,
+       {}},
       {"intended_orientation",
        "1",
        "orientation that the operator wants, quaternion w x y z",

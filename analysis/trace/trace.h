@@ -19,19 +19,21 @@ struct HandState {
 
 struct Trace {
   std::vector<double> time_s;
-  std::vector<double> hip_m, proxy_m, force_N, normal, carried_m, slave_m;  // three numbers a row
+  std::vector<double> hip_position_m, proxy_position_m, force_N, normal, frame_correction_m,
+      slave_command_m;  // three numbers a row
   std::vector<std::int32_t> state, proxy_steps, converged, contact_count, frame_index, status;
-  std::vector<double> surface_velocity_m_per_s, nearest_m, signed_distance_m, slave_distance_m;
+  std::vector<double> surface_velocity_m_per_s, nearest_distance_m, signed_distance_m, slave_distance_m;
   std::vector<std::uint64_t> frame_hash;
   // Of a 6-DOF tool; empty for a 3-DOF renderer. Orientations are w, x, y, z.
-  std::vector<double> hip_orientation, tool_orientation, torque_Nm, penetration_m;
+  std::vector<double> hip_orientation, tool_orientation, torque_Nm, tool_penetration_m;
   std::vector<std::int32_t> active_constraints, contact_clusters, detections, budget_exhausted,
       disabled_points;
   // With guidance or a sequence; else empty.
-  std::vector<double> guidance_force_N, guidance_torque_Nm, goal_m, goal_orientation, ended_m, ended_rad;
-  std::vector<std::int32_t> guidance_pulls, sequence_step, sequence_running, sequence_missed;
+  std::vector<double> guidance_force_N, guidance_torque_Nm, guidance_goal_m, guidance_orientation,
+      sequence_distance_m, sequence_angle_rad;
+  std::vector<std::int32_t> guidance_active, sequence_step, sequence_running, sequence_missed;
   // With a simulated operator or device; else empty.
-  std::vector<double> intended_m, intended_orientation, device_force_N, device_torque_Nm;
+  std::vector<double> intended_position_m, intended_orientation, device_force_N, device_torque_Nm;
   std::vector<std::int32_t> buttons;
 
   std::size_t length() const { return time_s.size(); }
@@ -45,20 +47,20 @@ struct Trace {
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});
 
-  Vec3 hip(std::size_t i) const { return row(hip_m, i); }
-  Vec3 proxy(std::size_t i) const { return row(proxy_m, i); }
+  Vec3 hip(std::size_t i) const { return row(hip_position_m, i); }
+  Vec3 proxy(std::size_t i) const { return row(proxy_position_m, i); }
   Vec3 force(std::size_t i) const { return row(force_N, i); }
   Vec3 normal_at(std::size_t i) const { return row(normal, i); }
-  Vec3 carried(std::size_t i) const { return row(carried_m, i); }
-  Vec3 slave(std::size_t i) const { return row(slave_m, i); }
+  Vec3 frame_correction(std::size_t i) const { return row(frame_correction_m, i); }
+  Vec3 slave(std::size_t i) const { return row(slave_command_m, i); }
   bool has_tool() const { return !tool_orientation.empty(); }
-  bool has_guidance() const { return !goal_m.empty(); }
-  bool has_hand() const { return !intended_m.empty(); }
+  bool has_guidance() const { return !guidance_goal_m.empty(); }
+  bool has_hand() const { return !intended_position_m.empty(); }
   Vec3 guidance_force(std::size_t i) const { return row(guidance_force_N, i); }
   Vec3 guidance_torque(std::size_t i) const { return row(guidance_torque_Nm, i); }
-  Vec3 goal(std::size_t i) const { return row(goal_m, i); }
-  Eigen::Quaterniond goal_orientation_at(std::size_t i) const { return quaternion(goal_orientation, i); }
-  Vec3 intended(std::size_t i) const { return row(intended_m, i); }
+  Vec3 goal(std::size_t i) const { return row(guidance_goal_m, i); }
+  Eigen::Quaterniond goal_orientation_at(std::size_t i) const { return quaternion(guidance_orientation, i); }
+  Vec3 intended(std::size_t i) const { return row(intended_position_m, i); }
   Vec3 device_force(std::size_t i) const { return row(device_force_N, i); }
   Vec3 device_torque(std::size_t i) const { return row(device_torque_Nm, i); }
   Eigen::Quaterniond hip_orientation_at(std::size_t i) const { return quaternion(hip_orientation, i); }

@@ -9,9 +9,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kLargestHalf = 7;            // of a window
-constexpr int kBorder = 3 * kLargestHalf;  // what the kernels touch around the pixels asked for
-constexpr int kRightBorder = kBorder + 2 * kWidestLanes;
+constexpr int kMaxHalf = 7;            // of a window
+constexpr int kBorder = 3 * kMaxHalf;  // what the kernels touch around the pixels asked for
+constexpr int kRightBorder = kBorder + 2 * kMaxLanes;
 // Rows that one thread takes at a time. Weights of the window above are computed anew for each band; so few
 // as 60 cost 3 %.
 constexpr int kBandRows = 60;
@@ -27,17 +27,17 @@ std::string wrong_window(const char* name, int window) {
 }
 
 // A band's room for weights: as few as there are threads are in use, and these stay in the cache.
-class Rooms {
+class ScratchPool {
  public:
-  Rooms(float* first, std::size_t size, int count) : first_(first), size_(size), free_(all(count)) {}
+  ScratchPool(float* first, std::size_t size, int count) : first_(first), size_(size), free_(all(count)) {}
   float* take() {
     std::uint64_t free = free_.load();
     while (!free_.compare_exchange_weak(free, free & (free - 1))) {
     }
     return first_ + size_ * static_cast<std::size_t>(__builtin_ctzll(free));
   }
-  void give_back(const float* room) {
-    free_.fetch_or(std::uint64_t{1} << static_cast<std::size_t>(room - first_) / size_);
+  void give_back(const float* scratch) {
+    free_.fetch_or(std::uint64_t{1} << static_cast<std::size_t>(scratch - first_) / size_);
   }
 
  private:
@@ -67,7 +67,7 @@ Parameters parameters(DepthPipelineSettings& s) {
   };
 }
 
-std::string conflict(const DepthPipelineSettings& s) {
+std::string validate(const DepthPipelineSettings& s) {
   const std::string filter = wrong_window("filter_window", s.filter_window);
   return filter.empty() ? wrong_window("normal_window", s.normal_window) : filter;
 }
@@ -95,7 +95,7 @@ struct DepthPipeline::Frame {
 
 DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
     : settings_(settings), kernels_(kernels) {
-  const std::string wrong = conflict(settings);
+  const std::string wrong = validate(settings);
   if (!wrong.empty()) throw std::invalid_argument("DepthPipeline: " + wrong);
 }
 
@@ -172,16 +172,17 @@ PointPlanes DepthPipeline::planes(std::vector<float>& values, int column) const 
 
 void DepthPipeline::prepare(const Frame& frame) {
   const PixelRectangle& at = frame.at;
-  stride_ = (at.width + kBorder + kRightBorder + kWidestLanes - 1) / kWidestLanes * kWidestLanes;
+  stride_ = (at.width + kBorder + kRightBorder + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
   plane_size_ = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(at.height + 2 * kBorder);
   const auto grow = [](auto& values, std::size_t size) {
     if (values.size() < size) values.resize(size);
   };
   for (std::vector<float>* each : {&raw_, &smooth_, &normals_}) grow(*each, 3 * plane_size_);
   grow(change_, plane_size_);
-  const int rooms = band_count(at.height + 2 * frame.normal_half);
-  grow(rooms_, static_cast<std::size_t>(rooms) * weight_room(at.width + 2 * frame.normal_half,
-                                                             std::max(frame.normal_half, frame.filter_half)));
+  const int pool = band_count(at.height + 2 * frame.normal_half);
+  grow(scratch_,
+       static_cast<std::size_t>(pool) * weight_buffer_size(at.width + 2 * frame.normal_half,
+                                                           std::max(frame.normal_half, frame.filter_half)));
   valid_.resize(static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height));
   const auto rays = [&](std::vector<double>& wide, std::vector<float>& narrow, std::size_t count, int first,
                         double centre, double focal) {
@@ -229,20 +230,20 @@ PixelRow DepthPipeline::pixels(const Frame& frame, int row, int first, int last,
           1 / frame.filter_scale};
 }
 
-void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* room) {
+void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* scratch) {
   const int wider = frame.normal_half, width = frame.at.width + 2 * wider;
   float* const change = change_.data() + kBorder * stride_ + kBorder - wider;
-  kernels_.filter_depth({first, last, width, frame.filter_half, room}, planes(raw_, -wider), change);
+  kernels_.filter_depth({first, last, width, frame.filter_half, scratch}, planes(raw_, -wider), change);
   const PointPlanes smooth = planes(smooth_, 0);
   for (int row = first; row < last; ++row) write_points(frame, row, wider, frame.normal_scale, true, smooth);
 }
 
-void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* room, PointCloud& cloud) {
+void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* scratch, PointCloud& cloud) {
   const int width = frame.at.width;
   const PixelRays rays{rays_x_.data() + kBorder, rays_y_.data() + kBorder};
   const float step[2] = {static_cast<float>(1 / frame.camera.fx), static_cast<float>(1 / frame.camera.fy)};
   const PointPlanes points = planes(smooth_, 0), normals = planes(normals_, 0);
-  kernels_.plane_normals({first, last, width, frame.normal_half, room}, points, rays, step, normals);
+  kernels_.plane_normals({first, last, width, frame.normal_half, scratch}, points, rays, step, normals);
   for (int row = first; row < last; ++row) {
     const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     const std::ptrdiff_t at = row * stride_;
@@ -268,13 +269,13 @@ void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
   // Rows first .. last - 1 in bands. Each writes rows of its own only.
   const auto in_bands = [&](int first, int last, int half_window, const auto& work) {
     const int bands = band_count(last - first);
-    const std::size_t size = weight_room(frame.at.width + 2 * wider, half_window);
-    Rooms rooms(rooms_.data(), size, bands);
+    const std::size_t size = weight_buffer_size(frame.at.width + 2 * wider, half_window);
+    ScratchPool pool(scratch_.data(), size, bands);
 #pragma omp parallel for schedule(static)
     for (int band = 0; band < bands; ++band) {
-      float* const room = rooms.take();
-      work(first + (last - first) * band / bands, first + (last - first) * (band + 1) / bands, room);
-      rooms.give_back(room);
+      float* const scratch = pool.take();
+      work(first + (last - first) * band / bands, first + (last - first) * (band + 1) / bands, scratch);
+      pool.give_back(scratch);
     }
   };
   if (settings_.filter) {
@@ -283,10 +284,10 @@ void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
       if (row < frame.first_row(wider) || row >= frame.last_row(wider))
         write_points(frame, row, wider, 0, false, smooth);
     in_bands(frame.first_row(wider), frame.last_row(wider), frame.filter_half,
-             [&](int first, int last, float* room) { filter_band(frame, first, last, room); });
+             [&](int first, int last, float* scratch) { filter_band(frame, first, last, scratch); });
   }
   in_bands(0, height, frame.normal_half,
-           [&](int first, int last, float* room) { normals_band(frame, first, last, room, cloud); });
+           [&](int first, int last, float* scratch) { normals_band(frame, first, last, scratch, cloud); });
 }
 
 }  // namespace remote_touch

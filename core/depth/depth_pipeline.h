@@ -31,7 +31,7 @@ struct DepthPipelineSettings {
 };
 
 Parameters parameters(DepthPipelineSettings& s);
-std::string conflict(const DepthPipelineSettings& s);
+std::string validate(const DepthPipelineSettings& s);
 
 struct PixelRectangle {
   int left = 0, top = 0;
@@ -39,7 +39,8 @@ struct PixelRectangle {
 };
 
 // Keeps its memory: after the first frame of a size, and with a cloud that is handed back, nothing is
-// allocated. Throws std::invalid_argument where sizes do not fit together, and for settings with a conflict.
+// allocated. Throws std::invalid_argument where sizes do not fit together, and for settings that validate()
+// refuses.
 class DepthPipeline {
  public:
   DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
@@ -70,8 +71,8 @@ class DepthPipeline {
   void write_points(const Frame& frame, int row, int reach, double scale, bool changed,
                     const PointPlanes& to);
   PixelRow pixels(const Frame& frame, int row, int first, int last, bool changed) const;
-  void filter_band(const Frame& frame, int first, int last, float* room);
-  void normals_band(const Frame& frame, int first, int last, float* room, PointCloud& cloud);
+  void filter_band(const Frame& frame, int first, int last, float* scratch);
+  void normals_band(const Frame& frame, int first, int last, float* scratch, PointCloud& cloud);
   PointPlanes planes(std::vector<float>& values, int column) const;
 
   const DepthPipelineSettings settings_;
@@ -79,7 +80,7 @@ class DepthPipeline {
   std::ptrdiff_t stride_ = 0;
   std::size_t plane_size_ = 0;
   // Planes with a border: points in units of the filter, points in units of the normals, normals.
-  std::vector<float> raw_, smooth_, normals_, change_, rays_x_, rays_y_, rooms_;
+  std::vector<float> raw_, smooth_, normals_, change_, rays_x_, rays_y_, scratch_;
   std::vector<double> wide_rays_x_, wide_rays_y_, depth_m_;
   std::vector<std::uint8_t> valid_;
 };

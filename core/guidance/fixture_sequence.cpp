@@ -15,7 +15,7 @@ Parameters parameters(SequenceStep& s) {
       {"start", choice(s.start, {"previous", "button"}), 0, 0,
        "when the step before has ended, or after that when a button is pressed"},
       {"not_before_s", &s.not_before_s, 0, 86400, "but not before this time"},
-      {"done", choice(s.done, {"at-once", "reached", "button"}), 0, 0,
+      {"done", choice(s.done, {"immediately", "reached", "button"}), 0, 0,
        "the step ends at once, when the tool is within the fixture's radius_m of its goal, or with a press"},
       {"button", &s.button, 0, 31, "of the device"},
       {"deadline_s", &s.deadline_s, 0, 86400,
@@ -24,21 +24,21 @@ Parameters parameters(SequenceStep& s) {
   };
 }
 
-std::string conflict(const SequenceStep& s) {
+std::string validate(const SequenceStep& s) {
   const bool needs_fixture = s.action != FixtureAction::wait || s.done == StepEnd::reached;
   if (needs_fixture && s.fixture.empty()) return "fixture = \"\": allowed the label of a fixture";
   if (!needs_fixture && !s.fixture.empty())
     return "fixture = \"" + s.fixture + "\": allowed none for wait, unless done = reached";
   if (s.action != FixtureAction::activate && !s.offset_m.isZero(0))
     return "offset_m: allowed other than 0 for action = activate only";
-  if (s.done == StepEnd::at_once && s.deadline_s > 0)
-    return "deadline_s = " + std::to_string(s.deadline_s) + ": allowed 0 for done = at-once";
+  if (s.done == StepEnd::immediately && s.deadline_s > 0)
+    return "deadline_s = " + std::to_string(s.deadline_s) + ": allowed 0 for done = immediately";
   const bool guided = s.action == FixtureAction::activate || s.action == FixtureAction::wait;
   if (s.done == StepEnd::reached && !guided) return "done = reached: allowed for activate and wait";
   return {};
 }
 
-void FixtureSequence::look_at(std::uint32_t buttons) {
+void FixtureSequence::set_buttons(std::uint32_t buttons) {
   pressed_ = buttons & ~down_;
   down_ = buttons;
 }
@@ -61,7 +61,7 @@ bool FixtureSequence::begins(double time_s) {
 bool FixtureSequence::ends(double time_s, bool reached) {
   if (!running_) return false;
   const SequenceStep& s = step();
-  const bool done = s.done == StepEnd::at_once || (s.done == StepEnd::reached && reached) ||
+  const bool done = s.done == StepEnd::immediately || (s.done == StepEnd::reached && reached) ||
                     (s.done == StepEnd::button && takes_press(s.button));
   const bool missed = !done && s.deadline_s > 0 && time_s - began_s_ >= s.deadline_s - kRounding_s;
   if (!done && !missed) return false;

@@ -14,7 +14,7 @@ namespace remote_touch {
 // lock: a forbidden region counts; activate: a guidance fixture pulls, and any other lets go.
 enum class FixtureAction { lock, unlock, activate, release, wait };
 enum class StepStart { previous, button };
-enum class StepEnd { at_once, reached, button };
+enum class StepEnd { immediately, reached, button };
 
 // A step begins when the one before has ended, no earlier than not_before_s, and then where it asks for it
 // with the next press of a button. It does its action, and ends at once, when the tool has reached the
@@ -24,21 +24,21 @@ struct SequenceStep {
   std::string fixture;  // its label; none for wait, unless its goal is to be reached
   StepStart start = StepStart::previous;
   double not_before_s = 0;
-  StepEnd done = StepEnd::at_once;
+  StepEnd done = StepEnd::immediately;
   int button = 0;
   double deadline_s = 0;  // after the beginning; 0: none
   Vec3 offset_m{0, 0, 0};
 };
 
 Parameters parameters(SequenceStep& s);
-std::string conflict(const SequenceStep& s);
+std::string validate(const SequenceStep& s);
 
 class FixtureSequence {
  public:
   explicit FixtureSequence(std::vector<SequenceStep> steps) : steps_(std::move(steps)) {}
 
   // The buttons that are down in this tick, one bit each. Once a tick, before the others.
-  void look_at(std::uint32_t buttons);
+  void set_buttons(std::uint32_t buttons);
   // Whether the current step begins now.
   bool begins(double time_s);
   // Whether it ends now, done or missed; the next is then the current one. reached: the tool is at its goal.

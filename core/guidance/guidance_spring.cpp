@@ -5,16 +5,16 @@ namespace remote_touch {
 namespace {
 
 // Turns one unit vector into another by the shortest way; between opposite ones any half-turn is as short.
-Eigen::Quaterniond shortest_turn(const Vec3& from, const Vec3& to) {
+Eigen::Quaterniond shortest_rotation(const Vec3& from, const Vec3& to) {
   constexpr double kOpposite = 1e-9;
   const double w = 1 + from.dot(to);
   if (w > kOpposite) {
     const Vec3 v = from.cross(to);
     return Eigen::Quaterniond(w, v.x(), v.y(), v.z()).normalized();
   }
-  int least = 0;
-  from.cwiseAbs().minCoeff(&least);
-  const Vec3 axis = from.cross(Vec3::Unit(least)).normalized();
+  int min = 0;
+  from.cwiseAbs().minCoeff(&min);
+  const Vec3 axis = from.cross(Vec3::Unit(min)).normalized();
   return {0, axis.x(), axis.y(), axis.z()};
 }
 
@@ -23,39 +23,39 @@ Eigen::Quaterniond shortest_turn(const Vec3& from, const Vec3& to) {
 Parameters parameters(GuidanceSettings& s) {
   return {
       {"orientation", choice(s.orientation, {"fixed", "plane"}), 0, 0,
-       "of the goal: turn_deg in the base frame, or against the plane of the target's points where they lie in "
+       "of the goal: rotation_deg in the base frame, or against the plane of the target's points where they lie in "
        "one"},
-      {"turn_deg", &s.turn_deg, -360, 360,
+      {"rotation_deg", &s.rotation_deg, -360, 360,
        "rotation vector of the goal in the base frame, from the tool's axes"},
       {"approach_axis", &s.approach_axis, -1, 1, "of the tool, in its own axes: what points at the target"},
       {"standoff_m", &s.standoff_m, 0, 1,
        "the goal lies so far in front of the target, against the approach axis"},
       {"offset_m", &s.offset_m, -1, 1, "and beside it by this, base frame"},
-      {"fewest_points", &s.fewest_points, 1, 1000000, "a frame that shows fewer points shows no target"},
+      {"min_points", &s.min_points, 1, 1000000, "a frame that shows fewer points shows no target"},
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
        "of the spring to the goal, for fixtures without a stiffness of their own"},
       {"gyration_radius_m", &s.gyration_radius_m, 0, 1,
        "the rotational stiffness is stiffness times its square"},
-      {"largest_force_N", &s.largest_force_N, 0, 1000, "longer guidance forces are cut to this length"},
-      {"largest_torque_Nm", &s.largest_torque_Nm, 0, 100, "longer guidance torques are cut to this length"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "longer guidance forces are cut to this length"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "longer guidance torques are cut to this length"},
       {"reached_deg", &s.reached_deg, 0, 180,
        "a tool within the fixture's radius_m of the goal and turned from it by no more has reached it"},
   };
 }
 
-std::string conflict(const GuidanceSettings& s) {
+std::string validate(const GuidanceSettings& s) {
   if (s.approach_axis.norm() < 1e-3) return "approach_axis: allowed 0.001 or longer";
   return {};
 }
 
 std::optional<ToolPose> guidance_goal(const GuidanceSettings& s, const GuidanceTarget& target,
                                       const Vec3& more_offset_m) {
-  if (target.points < static_cast<std::size_t>(s.fewest_points)) return {};
+  if (target.points < static_cast<std::size_t>(s.min_points)) return {};
   ToolPose goal;
-  goal.q_WT = rotation(kRadiansPerDegree * s.turn_deg);
+  goal.q_WT = rotation(kRadiansPerDegree * s.rotation_deg);
   Vec3 approach_W = goal.q_WT * s.approach_axis.normalized();
   if (s.orientation == GuidedOrientation::plane && target.is_flat()) {
-    goal.q_WT = (shortest_turn(approach_W, -target.normal_W) * goal.q_WT).normalized();
+    goal.q_WT = (shortest_rotation(approach_W, -target.normal_W) * goal.q_WT).normalized();
     approach_W = -target.normal_W;
   }
   goal.p_W = target.mean_W - s.standoff_m * approach_W + s.offset_m + more_offset_m;
@@ -65,7 +65,7 @@ std::optional<ToolPose> guidance_goal(const GuidanceSettings& s, const GuidanceT
 Wrench guidance_wrench(const GuidanceSettings& s, double stiffness_N_per_m, const ToolPose& goal,
                        const ToolPose& device) {
   const WrenchSpring spring{stiffness_N_per_m >= 0 ? stiffness_N_per_m : s.stiffness_N_per_m,
-                            s.gyration_radius_m, s.largest_force_N, s.largest_torque_Nm};
+                            s.gyration_radius_m, s.max_force_N, s.max_torque_Nm};
   return coupling_wrench(spring, Eigen::Matrix3d::Identity(), goal, device);
 }
 

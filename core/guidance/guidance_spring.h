@@ -15,24 +15,25 @@ enum class GuidedOrientation { fixed, plane };
 
 struct GuidanceSettings {
   GuidedOrientation orientation = GuidedOrientation::fixed;
-  Vec3 turn_deg{0, 0, 0};
+  Vec3 rotation_deg{0, 0, 0};
   Vec3 approach_axis{1, 0, 0};
   double standoff_m = 0.1;
   Vec3 offset_m{0, 0, 0};
-  int fewest_points = 20;
+  int min_points = 20;
   double stiffness_N_per_m = 200;
   double gyration_radius_m = 0.03;
-  double largest_force_N = 4;
-  double largest_torque_Nm = 0.2;
+  double max_force_N = 4;
+  double max_torque_Nm = 0.2;
   double reached_deg = 5;
 };
 
 Parameters parameters(GuidanceSettings& s);
-std::string conflict(const GuidanceSettings& s);
+std::string validate(const GuidanceSettings& s);
 
-// Where the tool is to go: the approach axis as turn_deg turns it (fixed), or turned on by the shortest way
-// against the normal of the target's plane (plane; as fixed, where the target is not flat); standoff_m before
-// the mean against that axis, plus the offset in the base frame. None for fewer points than fewest_points.
+// Where the tool is to go: the approach axis as rotation_deg turns it (fixed), or turned on by the shortest
+// way against the normal of the target's plane (plane; as fixed, where the target is not flat); standoff_m
+// before the mean against that axis, plus the offset in the base frame. None for fewer points than
+// min_points.
 std::optional<ToolPose> guidance_goal(const GuidanceSettings& settings, const GuidanceTarget& target,
                                       const Vec3& more_offset_m = Vec3::Zero());
 

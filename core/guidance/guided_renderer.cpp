@@ -45,10 +45,10 @@ bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& 
 
 }  // namespace
 
-std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
-  if (!steps.empty() && fixtures.size() > FixtureSwitches::kMost)
+std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
+  if (!steps.empty() && fixtures.size() > FixtureSwitches::kMaxCount)
     return "fixtures: " + std::to_string(fixtures.size()) + " rules: allowed " +
-           std::to_string(FixtureSwitches::kMost) + " with a sequence";
+           std::to_string(FixtureSwitches::kMaxCount) + " with a sequence";
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
@@ -102,7 +102,7 @@ void GuidedRenderer::begin_with(const std::vector<FixtureValues>& fixtures) {
                          !first_is(fixture, FixtureAction::activate),
                          Vec3::Zero(),
                          {}});
-    else if (i < FixtureSwitches::kMost)
+    else if (i < FixtureSwitches::kMaxCount)
       switches_->set(i, !first_is(fixture, FixtureAction::lock));
   }
 }
@@ -150,12 +150,13 @@ const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) c
 }
 
 // From the tool, not from the device: it is the tool that the robot follows. A proxy has no orientation.
-std::optional<GuidedRenderer::Left> GuidedRenderer::left(const Guide& guide, const RenderOutput& out) const {
+std::optional<GuidedRenderer::Remaining> GuidedRenderer::remaining(const Guide& guide,
+                                                                   const RenderOutput& out) const {
   const std::optional<ToolPose> there = goal(guide);
   if (!there || !out.proxy_W.allFinite()) return {};
   double turn = 0;
   if (out.tool) turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate()).norm();
-  return Left{(out.proxy_W - there->p_W).norm(), turn};
+  return Remaining{(out.proxy_W - there->p_W).norm(), turn};
 }
 
 void GuidedRenderer::advance(double time_s, RenderOutput& out) {
@@ -163,12 +164,13 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
     if (sequence_.begins(time_s)) act(sequence_.step());
     if (sequence_.is_over()) return;
     const Guide* const guide = goal_of(sequence_.step());
-    const std::optional<Left> way = guide ? left(*guide, out) : std::nullopt;
-    const bool reached =
-        way && way->m <= guide->reached_m && way->rad <= settings_.reached_deg * kRadiansPerDegree;
+    const std::optional<Remaining> remaining_goal = guide ? remaining(*guide, out) : std::nullopt;
+    const bool reached = remaining_goal && remaining_goal->m <= guide->reached_m &&
+                         remaining_goal->rad <= settings_.reached_deg * kRadiansPerDegree;
     if (!sequence_.ends(time_s, reached)) return;
-    if (way && std::isnan(out.guidance->ended_m))
-      out.guidance->ended_m = way->m, out.guidance->ended_rad = way->rad;
+    if (remaining_goal && std::isnan(out.guidance->sequence_distance_m))
+      out.guidance->sequence_distance_m = remaining_goal->m,
+      out.guidance->sequence_angle_rad = remaining_goal->rad;
   }
 }
 
@@ -177,7 +179,7 @@ void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
     const std::optional<ToolPose> there = guide.active ? goal(guide) : std::nullopt;
     if (!there) continue;
     const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, *there, device);
-    out.guidance->pulls = true;
+    out.guidance->active = true;
     out.guidance->goal_W = there->p_W, out.guidance->goal_orientation_W = there->q_WT;
     out.guidance->force_N += guide.target.strength * wrench.force_N;
     if (out.tool) out.guidance->torque_Nm += guide.target.strength * wrench.torque_Nm;
@@ -189,9 +191,9 @@ void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
 RenderOutput GuidedRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out = inner_->step(device, time_s);
   out.guidance.emplace();
-  sequence_.look_at(device.buttons);
+  sequence_.set_buttons(device.buttons);
   advance(time_s, out);
-  if (const std::optional<ToolPose> held = held_by(device)) pull(*held, out);
+  if (const std::optional<ToolPose> target = device_pose(device)) pull(*target, out);
   out.guidance->sequence_step = sequence_.current();
   out.guidance->sequence_running = sequence_.is_running();
   out.guidance->sequence_missed = sequence_.missed();

@@ -18,13 +18,13 @@ namespace remote_touch {
 // What is wrong about a task with these fixtures, as one line; empty when they fit together: labels are
 // unique and known, forbidden fixtures are locked and guidance is activated; of guidance that no step names
 // there is one at most.
-std::string conflict(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
+std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
 
 class GuidedRenderer final : public Renderer {
  public:
   // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment looks at. A
   // fixture begins as the opposite of what the task does first with it; one that no step names is locked or
-  // active from the beginning. pre: conflict(fixtures, steps) is empty.
+  // active from the beginning. pre: validate(fixtures, steps) is empty.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);
@@ -45,10 +45,10 @@ class GuidedRenderer final : public Renderer {
   };
   void begin_with(const std::vector<FixtureValues>& fixtures);
   void act(const SequenceStep& step);
-  struct Left {
+  struct Remaining {
     double m, rad;
   };
-  std::optional<Left> left(const Guide& guide, const RenderOutput& out) const;
+  std::optional<Remaining> remaining(const Guide& guide, const RenderOutput& out) const;
   const Guide* goal_of(const SequenceStep& step) const;
   void advance(double time_s, RenderOutput& out);
   void pull(const ToolPose& device, RenderOutput& out) const;

@@ -7,7 +7,7 @@ namespace {
 
 // A depth in metres that is one: not NaN, not infinite, in front of the camera.
 inline bool measured(double z_m) {
-  return (z_m > 0) & (z_m < kDeepest_m);
+  return (z_m > 0) & (z_m < kMaxDepth_m);
 }
 
 template <bool kFiltered>

@@ -92,11 +92,11 @@ __attribute__((always_inline)) inline void for_each_step(int half, const Work& w
 // one.
 class PairWeights {
  public:
-  PairWeights(float* room, int width, int half, int row) : across_((width + 4 * half + 2 * 16) / 16 * 16) {
+  PairWeights(float* scratch, int width, int half, int row) : across_((width + 4 * half + 2 * 16) / 16 * 16) {
     for (int below = 1, before = 0; below <= half; before += ++below) {
       const auto at = [&](int upper_row) {
         const int slot = before + (upper_row + 64 * (below + 1)) % (below + 1);
-        return room + (slot * (2 * half + 1) + half) * across_ + 2 * half;
+        return scratch + (slot * (2 * half + 1) + half) * across_ + 2 * half;
       };
       fresh_[below] = at(row), kept_[below] = at(row - below);
     }
@@ -107,7 +107,7 @@ class PairWeights {
   const float* kept(int above, int across) const { return kept_[above] + across * across_; }
 
  private:
-  static constexpr int kWidest = 16;
+  static constexpr int kMaxWidth = 16;
   std::ptrdiff_t across_;  // weight_stride, whose one copy could be another level's
   float* fresh_[8];
   const float* kept_[8];

@@ -25,22 +25,22 @@ struct PixelRays {
 };
 
 // Rows first .. last - 1 and columns 0 .. width - 1 are asked for. The planes have half more columns and rows
-// on every side than the kernel reads for these, and kWidestLanes more columns to the right.
+// on every side than the kernel reads for these, and kMaxLanes more columns to the right.
 struct RowBand {
   int first, last;
   int width;
   int half;        // the window is 2 half + 1 pixels wide
-  float* weights;  // room for weight_room(width, half)
+  float* weights;  // room for weight_buffer_size(width, half)
 };
 
-inline constexpr int kWidestLanes = 16;
+inline constexpr int kMaxLanes = 16;
 
 // A weight is the same from either point of a pair: computed for the upper one, kept for the lower. Of the
 // pairs whose rows are j apart those of j + 1 rows are kept, each row with half more columns on either side.
 constexpr std::ptrdiff_t weight_stride(int width, int half) {
-  return (width + 4 * half + 2 * kWidestLanes) / kWidestLanes * kWidestLanes;
+  return (width + 4 * half + 2 * kMaxLanes) / kMaxLanes * kMaxLanes;
 }
-constexpr std::size_t weight_room(int width, int half) {
+constexpr std::size_t weight_buffer_size(int width, int half) {
   return static_cast<std::size_t>(half * (half + 3) / 2 * (2 * half + 1) * weight_stride(width, half));
 }
 
@@ -54,7 +54,7 @@ struct PixelRow {
   double change_unit_m;
 };
 
-inline constexpr double kDeepest_m = 1000;  // what is farther away is not a depth
+inline constexpr double kMaxDepth_m = 1000;  // what is farther away is not a depth
 
 // Where a row of a cloud goes.
 struct CloudRow {

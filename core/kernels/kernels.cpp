@@ -10,14 +10,14 @@ namespace remote_touch {
 
 namespace {
 // In the order of the struct.
-#define REMOTE_TOUCH_KERNELS(isa, level)                                                             \
-  {                                                                                                  \
-    isa, level::append_within, level::survey, level::first_hit, level::way_out, level::normals,      \
-        level::candidates, level::spheres_near, level::points_in_cells, level::disks_in_field,       \
-        level::append_near_regions, level::deepest_region, level::next_deepest_region,               \
-        level::points_of_patch, level::heights_above, level::sums_near_plane, level::height_bins,    \
-        level::sums_of_quadratic, level::depth_to_points, level::filter_depth, level::plane_normals, \
-        level::points_to_cloud, level::normals_to_cloud                                              \
+#define REMOTE_TOUCH_KERNELS(isa, level)                                                                     \
+  {                                                                                                          \
+    isa, level::append_within, level::contact_query, level::first_hit, level::exit_distance, level::normals, \
+        level::candidates, level::near_spheres, level::points_in_cells, level::disks_in_field,               \
+        level::append_near_regions, level::deepest_region, level::next_deepest_region,                       \
+        level::points_of_patch, level::heights_above, level::sums_near_plane, level::height_bins,            \
+        level::sums_of_quadratic, level::depth_to_points, level::filter_depth, level::plane_normals,         \
+        level::points_to_cloud, level::normals_to_cloud                                                      \
   }
 
 constexpr Kernels kX86_64 = REMOTE_TOUCH_KERNELS("x86-64", x86_64);

@@ -36,7 +36,7 @@ struct ProxyRegions {
 };
 
 // What one pass over the points tells about a proxy position. r_n = |P - x| - r_f, (5.5).
-struct Survey {
+struct ContactQuery {
   double nearest;        // smallest r_n; infinite without points
   double normal_sum[3];  // (4.1): sum of (P - x)/|P - x| psi(r_n), not normalised
   double weight_sum;     // sum of psi(r_n), points with a stiffness only
@@ -134,7 +134,7 @@ struct SphereRun {
   const double* radius;
   const double* low[3];
   const double* high[3];
-  const double* most_radius;
+  const double* max_radius;
   std::size_t padded_groups;
   std::uint32_t first;
 };
@@ -150,13 +150,13 @@ struct NearRegions {
 };
 
 // What is left of them in the columns, and the deepest of it: the first with the least gap, or count.
-struct LeftRegions {
+struct RemainingRegions {
   std::size_t deepest, count;
 };
 
 // Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
 inline constexpr double kRoundsToWhole = 0x1.8p52;
-// Taken away before, it makes that rounding down; what is less than a hair below a whole number counts as it.
+// Taken away before, it makes that rounding down; what is less than a hair below an integer counts as it.
 inline constexpr double kAlmostHalf = 0.5 - 0x1p-34;
 
 // What there is to know about surface disks in the tool frame; room for as many as were asked for, padded to
@@ -226,25 +226,25 @@ struct Kernels {
   // Returns the new count.
   std::size_t (*append_within)(const PointRun&, const double centre[3], double reach, const PointSink&,
                                std::size_t count);
-  Survey (*survey)(const PointsView&, const double p[3], const ProxyRegions&);
+  ContactQuery (*contact_query)(const PointsView&, const double p[3], const ProxyRegions&);
   // (4.9), (5.9): the smallest d > 0 at which a proxy that moves from p along the unit vector meets a point
   // ahead, |p + d direction - x| = reach + r_f; infinite when it meets none.
   double (*first_hit)(const PointsView&, const double p[3], const double direction[3], double reach);
   // (4.10), (5.11): the largest positive root over the points with r_n < inner; 0 without such points.
-  double (*way_out)(const PointsView&, const double p[3], const double direction[3], double reach,
-                    double inner);
+  double (*exit_distance)(const PointsView&, const double p[3], const double direction[3], double reach,
+                          double inner);
   // Three standard normals for each of the points index[0..count).
   void (*normals)(const NoiseStream&, const std::uint32_t* index, std::size_t count, double* x, double* y,
                   double* z);
   // Of the points first .. first + count - 1, in order, those whose random words allow the x normal to be
-  // what x[i] asks and the z normal what z asks (asks_of in noise.h); of points that are not returned neither
-  // is. Returns how many; index has room for count + kLanes.
+  // what x[i] asks and the z normal what z asks (word_bounds in noise.h); of points that are not returned
+  // neither is. Returns how many; index has room for count + kLanes.
   std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
                             const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
   // Of the spheres of each group, kLanes group .. kLanes group + kLanes - 1: numbers of those that hold
   // places within reach of the tool, in order, and of some others that are near. Returns how many; found has
   // room for all.
-  std::size_t (*spheres_near)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
+  std::size_t (*near_spheres)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
                               const CellTransform&, const CellTable&, const NearnessCode&,
                               std::uint32_t* found);
   // Of the points of each group, kLanes group .. kLanes group + kLanes - 1: numbers of those that lie in a
@@ -252,10 +252,10 @@ struct Kernels {
   // counts as inside it. Returns how many; found has room for all.
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
-                                 const CellTable&, int least, std::uint32_t* found);
+                                 const CellTable&, int min, std::uint32_t* found);
   // The disks around the points index[0..count), of radius share x spacing: bit for bit what sample_field()
   // and lower_bound_m() tell, but for places outside the grid, whose lower is NaN.
-  void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double share,
+  void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double fraction,
                          double cells_per_m, const PosedField&, const DiskColumns&);
   // Appends the spheres of a run with gaps of margin or less to a leaf, x, y, z and radius, 7.4.1. Returns
   // the new count. Gap: |leaf - sphere| - both radii, the leaf's first; NaN is no gap.
@@ -267,8 +267,8 @@ struct Kernels {
   // more, and no motion of the leaf of this length or less that obeys the one kept violates them - and those
   // with gaps above most. They get infinite gaps, and once they are many the others close up, in the same
   // order; their numbers stay behind. After deepest_region().
-  LeftRegions (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept, double motion,
-                                     double alike, double most);
+  RemainingRegions (*next_deepest_region)(const NearRegions&, std::size_t count, std::size_t kept,
+                                          double motion, double alike, double max);
   // The points that lie in a patch's cylinder, in order, their coordinates rounded to kRoundsToPatchGrid; NaN
   // lies in none. Returns how many; the columns have room for padded_count.
   std::size_t (*points_of_patch)(const PointsView&, const PatchAxes&, const PatchColumns&);

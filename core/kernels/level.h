@@ -9,28 +9,29 @@
   namespace remote_touch::level {                                                                            \
   std::size_t append_within(const PointRun& run, const double centre[3], double reach,                       \
                             const PointSink& sink, std::size_t count);                                       \
-  Survey survey(const PointsView& points, const double p[3], const ProxyRegions& regions);                   \
+  ContactQuery contact_query(const PointsView& points, const double p[3], const ProxyRegions& regions);      \
   double first_hit(const PointsView& points, const double p[3], const double direction[3], double reach);    \
-  double way_out(const PointsView& points, const double p[3], const double direction[3], double reach,       \
-                 double inner);                                                                              \
+  double exit_distance(const PointsView& points, const double p[3], const double direction[3], double reach, \
+                       double inner);                                                                        \
   void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x,          \
                double* y, double* z);                                                                        \
   std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,                  \
                          const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);                     \
-  std::size_t spheres_near(const SphereColumns& spheres, const std::uint32_t* groups,                        \
+  std::size_t near_spheres(const SphereColumns& spheres, const std::uint32_t* groups,                        \
                            std::size_t group_count, const CellTransform& to_cells, const CellTable& table,   \
                            const NearnessCode& code, std::uint32_t* found);                                  \
   std::size_t points_in_cells(const double* x, const double* y, const double* z,                             \
                               const std::uint32_t* groups, std::size_t group_count,                          \
-                              const CellTransform& to_cells, const CellTable& table, int least,              \
+                              const CellTransform& to_cells, const CellTable& table, int min,                \
                               std::uint32_t* found);                                                         \
   void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count,             \
-                      double share, double cells_per_m, const PosedField& field, const DiskColumns& disks);  \
+                      double fraction, double cells_per_m, const PosedField& field,                          \
+                      const DiskColumns& disks);                                                             \
   std::size_t append_near_regions(const SphereRun& run, const double leaf[4], double margin,                 \
                                   const NearRegions& near, std::size_t count);                               \
   std::size_t deepest_region(const NearRegions& near, std::size_t count);                                    \
-  LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,              \
-                                  double motion, double alike, double most);                                 \
+  RemainingRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,         \
+                                       double motion, double alike, double max);                             \
   std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, const PatchColumns& to);      \
   void heights_above(const PatchColumns& places, std::size_t count, const HeightGrid& grid, double* above);  \
   PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const double* height,             \

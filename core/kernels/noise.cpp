@@ -165,9 +165,9 @@ inline SineCosine sine_cosine(Bits k) {
 
 // The upper bit of a lane is set where the words of one normal, of its radius and of its angle, do not allow
 // what is asked. A cosine is negative for angles from a quarter to three quarters of a turn.
-inline NativeBits refused(NativeBits radius, NativeBits angle, NativeBits asks) {
+inline NativeBits refused(NativeBits radius, NativeBits angle, NativeBits bounds) {
   const NativeBits negative = (angle + 0x40000000u) << 32;
-  return ((asks & kWord) - radius) | ((negative ^ (asks << 1)) & asks);
+  return ((bounds & kWord) - radius) | ((negative ^ (bounds << 1)) & bounds);
 }
 
 // Appends first + k for the lanes k below live that are not refused. Returns how many.
@@ -208,19 +208,19 @@ void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t 
 std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,
                        const std::uint64_t* x, std::uint64_t z, std::uint32_t* index) {
   const Philox<NativeBits, Product> philox(stream);
-  const NativeBits none = {}, asks_z = none + z;
+  const NativeBits none = {}, bounds_z = none + z;
   NativeBits lane = {};
   for (std::size_t i = 0; i < kNative; ++i) lane[i] = i;
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += kNative) {
     const std::size_t live = count - i < kNative ? count - i : kNative;
-    NativeBits asks_x = {};
+    NativeBits bounds_x = {};
     if (live == kNative)
-      __builtin_memcpy(&asks_x, x + i, sizeof asks_x);
+      __builtin_memcpy(&bounds_x, x + i, sizeof bounds_x);
     else
-      for (std::size_t k = 0; k < live; ++k) asks_x[k] = x[i + k];
+      for (std::size_t k = 0; k < live; ++k) bounds_x[k] = x[i + k];
     const Words<NativeBits> words = philox(lane + (first + i));
-    found += keep(refused(words.w[0], words.w[1], asks_x) | refused(words.w[2], words.w[3], asks_z),
+    found += keep(refused(words.w[0], words.w[1], bounds_x) | refused(words.w[2], words.w[3], bounds_z),
                   first + static_cast<std::uint32_t>(i), live, index + found);
   }
   return found;

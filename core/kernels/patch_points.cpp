@@ -29,7 +29,7 @@ std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, con
   std::uint64_t in[kChunk];
   const PatchAxes a = axes;
   const PatchColumns out = to;
-  const double widest = a.radius * a.radius;
+  const double max_width = a.radius * a.radius;
   std::size_t n = 0;
   for (std::size_t done = 0; done < points.padded_count; done += kChunk) {
     const std::size_t left = points.padded_count - done, count = left < kChunk ? left : kChunk;
@@ -41,7 +41,7 @@ std::size_t points_of_patch(const PointsView& points, const PatchAxes& axes, con
       u[i] = rounded(dot(a.u, dx, dy, dz));
       v[i] = rounded(dot(a.v, dx, dy, dz));
       h[i] = rounded(dot(a.n, dx, dy, dz));
-      in[i] = (u[i] * u[i] + v[i] * v[i] < widest) & (__builtin_fabs(h[i]) <= a.half_height);
+      in[i] = (u[i] * u[i] + v[i] * v[i] < max_width) & (__builtin_fabs(h[i]) <= a.half_height);
     }
     for (std::size_t i = 0; i < count; ++i) {
       out.u[n] = u[i], out.v[n] = v[i], out.h[n] = h[i];
@@ -83,12 +83,12 @@ void heights_above(const PatchColumns& places, std::size_t total, const HeightGr
 PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const double* height,
                           const NearPlane& near) {
   const NearPlane p = near;
-  const double *us = places.u, *vs = places.v, widest = p.reach * p.reach;
+  const double *us = places.u, *vs = places.v, max_width = p.reach * p.reach;
   double n = 0, su = 0, sv = 0, sh = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0;
 #pragma omp simd reduction(+ : n, su, sv, sh, uu, uv, vv, uh, vh)
   for (std::size_t i = 0; i < count; ++i) {
     const double off = height[i] - p.height - p.slope_u * us[i] - p.slope_v * vs[i];
-    const bool in = (__builtin_fabs(off) <= p.off) & (square(us[i] - p.u) + square(vs[i] - p.v) <= widest);
+    const bool in = (__builtin_fabs(off) <= p.off) & (square(us[i] - p.u) + square(vs[i] - p.v) <= max_width);
     const double u = in ? us[i] : 0, v = in ? vs[i] : 0, h = in ? rounded(height[i]) : 0;
     n += in ? 1.0 : 0.0, su += u, sv += v, sh += h;
     uu += u * u, uv += u * v, vv += v * v, uh += u * h, vh += v * h;
@@ -98,24 +98,24 @@ PlaneSums sums_near_plane(const PatchColumns& places, std::size_t count, const d
 
 void height_bins(const PatchColumns& places, std::size_t count, const double* height, double u, double v,
                  double reach, const HeightBins& bins, std::int32_t* bin) {
-  const double *us = places.u, *vs = places.v, widest = reach * reach;
-  const double half_range = bins.half_range, width = bins.width, most = bins.number;
+  const double *us = places.u, *vs = places.v, max_width = reach * reach;
+  const double half_range = bins.half_range, width = bins.width, max = bins.number;
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i) {
     const double place = (height[i] + half_range) / width;
-    const bool in = (place >= 0) & (place < most) & (square(us[i] - u) + square(vs[i] - v) <= widest);
-    bin[i] = static_cast<std::int32_t>(in ? place : most);
+    const bool in = (place >= 0) & (place < max) & (square(us[i] - u) + square(vs[i] - v) <= max_width);
+    bin[i] = static_cast<std::int32_t>(in ? place : max);
   }
 }
 
 // Products of two are rounded, so that products with them are exact.
 QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* member, std::size_t count,
                                 double radius) {
-  const double *us = places.u, *vs = places.v, *hs = places.h, widest = radius * radius;
+  const double *us = places.u, *vs = places.v, *hs = places.h, max_width = radius * radius;
   double n = 0, u1 = 0, v1 = 0, u2 = 0, uv = 0, v2 = 0, u3 = 0, u2v = 0, uv2 = 0, v3 = 0;
 #pragma omp simd reduction(+ : n, u1, v1, u2, uv, v2, u3, u2v, uv2, v3)
   for (std::size_t i = 0; i < count; ++i) {
-    const bool in = (member[i] != 0) & (square(us[i]) + square(vs[i]) <= widest);
+    const bool in = (member[i] != 0) & (square(us[i]) + square(vs[i]) <= max_width);
     const double u = in ? us[i] : 0, v = in ? vs[i] : 0;
     const double uu = rounded(u * u), vv = rounded(v * v);
     n += in ? 1.0 : 0.0, u1 += u, v1 += v, u2 += uu, uv += rounded(u * v), v2 += vv;
@@ -124,7 +124,7 @@ QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* 
   double u4 = 0, u3v = 0, u2v2 = 0, uv3 = 0, v4 = 0, h1 = 0, uh = 0, vh = 0, u2h = 0, uvh = 0, v2h = 0;
 #pragma omp simd reduction(+ : u4, u3v, u2v2, uv3, v4, h1, uh, vh, u2h, uvh, v2h)
   for (std::size_t i = 0; i < count; ++i) {
-    const bool in = (member[i] != 0) & (square(us[i]) + square(vs[i]) <= widest);
+    const bool in = (member[i] != 0) & (square(us[i]) + square(vs[i]) <= max_width);
     const double u = in ? us[i] : 0, v = in ? vs[i] : 0, h = in ? hs[i] : 0;
     const double uu = rounded(u * u), uxv = rounded(u * v), vv = rounded(v * v);
     u4 += uu * uu, u3v += uu * uxv, u2v2 += uu * vv, uv3 += uxv * vv, v4 += vv * vv;

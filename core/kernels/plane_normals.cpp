@@ -85,9 +85,9 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
   }
   // The columns of the adjugate of m - t are the eigenvector times its components: take the longest.
   const Symmetric b = adjugate({m.xx - t, m.xy, m.xz, m.yy - t, m.yz, m.zz - t});
-  const auto x_longest = (b.xx >= b.yy) & (b.xx >= b.zz), y_longest = b.yy >= b.zz;
-  Normal n = {y_longest ? b.xy : b.xz, y_longest ? b.yy : b.yz, y_longest ? b.yz : b.zz};
-  n = {x_longest ? b.xx : n.x, x_longest ? b.xy : n.y, x_longest ? b.xz : n.z};
+  const auto x_max = (b.xx >= b.yy) & (b.xx >= b.zz), y_max = b.yy >= b.zz;
+  Normal n = {y_max ? b.xy : b.xz, y_max ? b.yy : b.yz, y_max ? b.yz : b.zz};
+  n = {x_max ? b.xx : n.x, x_max ? b.xy : n.y, x_max ? b.xz : n.z};
   const Floats length = root(n.x * n.x + n.y * n.y + n.z * n.z);
   const Floats away = n.x * ray_x + n.y * ray_y + n.z;
   const Floats factor = (away > Floats{} ? Floats{} - 1.0f : Floats{} + 1.0f) / length;

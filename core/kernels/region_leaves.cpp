@@ -55,8 +55,7 @@ inline unsigned boxes_near(const Leaf& leaf, const SphereRun& run, std::size_t g
     return _mm512_max_pd(_mm512_max_pd(below, above), _mm512_setzero_pd());
   };
   return within_reach(beyond(leaf.x, run.low[0], run.high[0]), beyond(leaf.y, run.low[1], run.high[1]),
-                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own,
-                      _mm512_loadu_pd(run.most_radius + g));
+                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own, _mm512_loadu_pd(run.max_radius + g));
 }
 
 inline std::size_t sort_group(const Leaf& leaf, const SphereRun& run, std::size_t i, const NearRegions& to,
@@ -127,7 +126,7 @@ inline unsigned boxes_near(const Leaf& leaf, const SphereRun& run, std::size_t g
     return larger(larger(load(low + g) - c, c - load(high + g)), Lanes{});
   };
   return within_reach(beyond(leaf.x, run.low[0], run.high[0]), beyond(leaf.y, run.low[1], run.high[1]),
-                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own, load(run.most_radius + g));
+                      beyond(leaf.z, run.low[2], run.high[2]), leaf.own, load(run.max_radius + g));
 }
 
 inline std::size_t sort_group(const Leaf& leaf, const SphereRun& run, std::size_t group,
@@ -180,12 +179,12 @@ void measure(double leaf_radius, const NearRegions& near, std::size_t from, std:
 
 template <bool kNumbers>
 std::size_t within_margin(const NearRegions& near, double margin, std::size_t from, std::size_t to) {
-  const __m512d most = _mm512_set1_pd(margin);
+  const __m512d max = _mm512_set1_pd(margin);
   std::size_t n = from;
   for (std::size_t i = from; i < to; i += kLanes) {
     const __m512d gap = _mm512_loadu_pd(near.gap + i);
     const auto valid = static_cast<__mmask8>(to - i < kLanes ? (1u << (to - i)) - 1 : 0xffu);
-    const __mmask8 in = _mm512_mask_cmp_pd_mask(valid, gap, most, _CMP_LE_OQ);
+    const __mmask8 in = _mm512_mask_cmp_pd_mask(valid, gap, max, _CMP_LE_OQ);
     const auto left = static_cast<std::size_t>(__builtin_popcount(in));
     if (n == i && in == valid) {
       n += left;
@@ -225,10 +224,10 @@ std::size_t within_margin(const NearRegions& near, double margin, std::size_t fr
 
 // The first of those with the least gap; pre: there is one. Whether there is must not be asked of the least
 // gap: of no numbers an OpenMP minimum may be the largest finite one, as clang++ has it, instead of infinite.
-std::size_t deepest(const double* gap, double least) {
+std::size_t deepest(const double* gap, double min) {
   std::size_t at = 0;
-  unsigned same = equal(gap, least);
-  while (same == 0) same = equal(gap += kWidth, least), at += kWidth;
+  unsigned same = equal(gap, min);
+  while (same == 0) same = equal(gap += kWidth, min), at += kWidth;
   return at + static_cast<std::size_t>(__builtin_ctz(same));
 }
 
@@ -236,19 +235,19 @@ struct Kept {
   double nx, ny, nz, gap, twice_motion_squared, alike;
 };
 struct Left {
-  double least;  // gap
+  double min;  // gap
   std::size_t count;
 };
 
 // Those that one stands for and those above most get infinite gaps.
 #if defined(__AVX512F__)
 
-Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double most) {
+Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {
   const __m512d kx = _mm512_set1_pd(by.nx), ky = _mm512_set1_pd(by.ny), kz = _mm512_set1_pd(by.nz),
                 g = _mm512_set1_pd(by.gap), twice = _mm512_set1_pd(by.twice_motion_squared),
-                alike = _mm512_set1_pd(by.alike), one = _mm512_set1_pd(1), limit = _mm512_set1_pd(most),
+                alike = _mm512_set1_pd(by.alike), one = _mm512_set1_pd(1), limit = _mm512_set1_pd(max),
                 infinite = _mm512_set1_pd(__builtin_inf());
-  __m512d least = infinite;
+  __m512d min = infinite;
   std::size_t count = 0;
   for (std::size_t i = 0; i < end; i += kLanes) {
     const __m512d gap = _mm512_loadu_pd(near.gap + i);
@@ -262,30 +261,30 @@ Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kep
     const __mmask8 stays = _mm512_mask_cmp_pd_mask(_mm512_knot(stands), gap, limit, _CMP_LE_OQ);
     const __m512d left = _mm512_mask_blend_pd(stays, infinite, gap);
     _mm512_storeu_pd(near.gap + i, left);
-    least = _mm512_min_pd(left, least);
+    min = _mm512_min_pd(left, min);
     count += static_cast<std::size_t>(__builtin_popcount(stays));
   }
-  return {_mm512_reduce_min_pd(least), count};
+  return {_mm512_reduce_min_pd(min), count};
 }
 
 #else
 
-Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double most) {
+Left drop_what_it_stands_for(const NearRegions& near, std::size_t end, const Kept& by, double max) {
   double* gap = near.gap;
   const double *nx = near.nx, *ny = near.ny, *nz = near.nz;
-  double least = __builtin_inf();
+  double min = __builtin_inf();
   std::size_t count = 0;
-#pragma omp simd reduction(min : least) reduction(+ : count)
+#pragma omp simd reduction(min : min) reduction(+ : count)
   for (std::size_t i = 0; i < end; ++i) {
     const double cosine = nx[i] * by.nx + (ny[i] * by.ny + nz[i] * by.nz);
     const double rise = gap[i] - by.gap;
     const bool goes =
-        ((rise * rise >= by.twice_motion_squared * (1 - cosine)) & (cosine >= by.alike)) | !(gap[i] <= most);
+        ((rise * rise >= by.twice_motion_squared * (1 - cosine)) & (cosine >= by.alike)) | !(gap[i] <= max);
     gap[i] = goes ? __builtin_inf() : gap[i];
-    least = gap[i] < least ? gap[i] : least;
+    min = gap[i] < min ? gap[i] : min;
     count += goes ? 0 : 1;
   }
-  return {least, count};
+  return {min, count};
 }
 
 #endif
@@ -305,22 +304,22 @@ std::size_t deepest_region(const NearRegions& near, std::size_t count) {
   const std::size_t end = in_whole_groups(count);
   for (std::size_t i = count; i < end; ++i) near.gap[i] = __builtin_inf();
   const double* gap = near.gap;
-  double least = __builtin_inf();
-#pragma omp simd reduction(min : least)
-  for (std::size_t i = 0; i < end; ++i) least = gap[i] < least ? gap[i] : least;
-  return deepest(gap, least);
+  double min = __builtin_inf();
+#pragma omp simd reduction(min : min)
+  for (std::size_t i = 0; i < end; ++i) min = gap[i] < min ? gap[i] : min;
+  return deepest(gap, min);
 }
 
-LeftRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept, double motion,
-                                double alike, double most) {
+RemainingRegions next_deepest_region(const NearRegions& near, std::size_t count, std::size_t kept,
+                                     double motion, double alike, double max) {
   const Kept by{near.nx[kept], near.ny[kept], near.nz[kept], near.gap[kept], 2 * (motion * motion), alike};
   near.gap[kept] = __builtin_inf();
-  const Left left = drop_what_it_stands_for(near, in_whole_groups(count), by, most);
+  const Left left = drop_what_it_stands_for(near, in_whole_groups(count), by, max);
   if (kCloseUp * left.count <= (kCloseUp - 1) * count) {
-    count = within_margin<false>(near, most, 0, count);
+    count = within_margin<false>(near, max, 0, count);
     for (std::size_t i = count; i < in_whole_groups(count); ++i) near.gap[i] = __builtin_inf();
   }
-  return {left.count > 0 ? deepest(near.gap, left.least) : count, count};
+  return {left.count > 0 ? deepest(near.gap, left.min) : count, count};
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -34,12 +34,12 @@ double first_hit_columns(const PointsView& points, const double p[3], const doub
 }
 
 template <bool kRadius>
-double way_out_columns(const PointsView& points, const double p[3], const double u[3], double reach,
-                       double inner) {
+double exit_distance_columns(const PointsView& points, const double p[3], const double u[3], double reach,
+                             double inner) {
   const double px = p[0], py = p[1], pz = p[2], ux = u[0], uy = u[1], uz = u[2];
-  double longest = 0.0;
+  double max_length = 0.0;
   const double *x = points.x, *y = points.y, *z = points.z, *radius = points.radius;
-#pragma omp simd reduction(max : longest)
+#pragma omp simd reduction(max : max_length)
   for (std::size_t i = 0; i < points.padded_count; ++i) {
     const double ex = x[i] - px, ey = y[i] - py, ez = z[i] - pz;
     const double along = ex * ux + ey * uy + ez * uz;
@@ -48,9 +48,9 @@ double way_out_columns(const PointsView& points, const double p[3], const double
     const double r = reach + rf, limit = inner + rf;
     const double rest = r * r - (ox * ox + oy * oy + oz * oz);
     const bool entrenching = ex * ex + ey * ey + ez * ez < limit * limit;
-    longest = larger(entrenching ? along + __builtin_sqrt(larger(rest, 0.0)) : 0.0, longest);
+    max_length = larger(entrenching ? along + __builtin_sqrt(larger(rest, 0.0)) : 0.0, max_length);
   }
-  return longest;
+  return max_length;
 }
 
 }  // namespace
@@ -60,10 +60,10 @@ double first_hit(const PointsView& points, const double p[3], const double direc
                        : first_hit_columns<false>(points, p, direction, reach);
 }
 
-double way_out(const PointsView& points, const double p[3], const double direction[3], double reach,
-               double inner) {
-  return points.radius ? way_out_columns<true>(points, p, direction, reach, inner)
-                       : way_out_columns<false>(points, p, direction, reach, inner);
+double exit_distance(const PointsView& points, const double p[3], const double direction[3], double reach,
+                     double inner) {
+  return points.radius ? exit_distance_columns<true>(points, p, direction, reach, inner)
+                       : exit_distance_columns<false>(points, p, direction, reach, inner);
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -30,8 +30,8 @@ inline std::uint64_t is_positive(double x) {
 
 }  // namespace
 
-void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count, double share,
-                    double cells_per_m, const PosedField& f, const DiskColumns& out) {
+void disks_in_field(const PointColumns& points, const std::uint32_t* index, std::size_t count,
+                    double fraction, double cells_per_m, const PosedField& f, const DiskColumns& out) {
   const double cells[3] = {double(f.cells[0]), double(f.cells[1]), double(f.cells[2])};
   const int last[3] = {f.cells[0] - 1, f.cells[1] - 1, f.cells[2] - 1};
   const int row = f.cells[0] + 1, layer = row * (f.cells[1] + 1);
@@ -47,7 +47,7 @@ void disks_in_field(const PointColumns& points, const std::uint32_t* index, std:
     const double nx = dot(R[0][0], R[0][1], R[0][2], mx, my, mz),
                  ny = dot(R[1][0], R[1][1], R[1][2], mx, my, mz),
                  nz = dot(R[2][0], R[2][1], R[2][2], mx, my, mz);
-    const double radius = share * points.spacing[i];
+    const double radius = fraction * points.spacing[i];
 
     const double u = (px - f.origin_T[0]) / f.size, v = (py - f.origin_T[1]) / f.size,
                  w = (pz - f.origin_T[2]) / f.size;

@@ -20,10 +20,10 @@ inline __m256i coordinate(const double row[4], __m512d x, __m512d y, __m512d z) 
 }
 
 std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
-                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int least,
+                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
                  std::uint32_t* found) {
   const __m256i columns = _mm256_set1_epi32(table.cells[0]), rows = _mm256_set1_epi32(table.cells[1]),
-                layers = _mm256_set1_epi32(table.cells[2]), limit = _mm256_set1_epi32(least);
+                layers = _mm256_set1_epi32(table.cells[2]), limit = _mm256_set1_epi32(min);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   std::size_t n = 0;
   for (std::size_t g = 0; g < group_count; ++g) {
@@ -74,7 +74,7 @@ inline void store_coordinate(const double row[4], const double* x, const double*
 
 // Coordinates of eight points in vectors, then the lookups one by one: few points are inside the grid.
 std::size_t find(const double* x, const double* y, const double* z, const std::uint32_t* groups,
-                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int least,
+                 std::size_t group_count, const CellTransform& to_cells, const CellTable& table, int min,
                  std::uint32_t* found) {
   const auto columns = static_cast<std::uint32_t>(table.cells[0]),
              rows = static_cast<std::uint32_t>(table.cells[1]),
@@ -91,7 +91,7 @@ std::size_t find(const double* x, const double* y, const double* z, const std::u
                  k = static_cast<std::uint32_t>(cell[2][lane]);
       if (!((i < columns) & (j < rows) & (k < layers))) continue;
       found[n] = static_cast<std::uint32_t>(at + lane);
-      n += table.value[(k * rows + j) * columns + i] >= least ? 1 : 0;
+      n += table.value[(k * rows + j) * columns + i] >= min ? 1 : 0;
     }
   }
   return n;
@@ -103,8 +103,8 @@ std::size_t find(const double* x, const double* y, const double* z, const std::u
 
 std::size_t points_in_cells(const double* x, const double* y, const double* z, const std::uint32_t* groups,
                             std::size_t group_count, const CellTransform& to_cells, const CellTable& table,
-                            int least, std::uint32_t* found) {
-  return find(x, y, z, groups, group_count, to_cells, table, least, found);
+                            int min, std::uint32_t* found) {
+  return find(x, y, z, groups, group_count, to_cells, table, min, found);
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

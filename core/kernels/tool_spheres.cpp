@@ -48,15 +48,15 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
                       _mm512_mul_pd(w.away, w.away));
     __mmask8 in = _mm512_cmp_pd_mask(squared, _mm512_mul_pd(reach, reach), _CMP_NGT_UQ);
     if (in == 0) continue;
-    const __m512d way = _mm512_add_pd(_mm512_add_pd(u.away, v.away), w.away);
-    const __m512d least =
-        _mm512_sub_pd(_mm512_set1_pd(code.zero), _mm512_mul_pd(_mm512_add_pd(reach, way), per_unit));
+    const __m512d path_length = _mm512_add_pd(_mm512_add_pd(u.away, v.away), w.away);
+    const __m512d min =
+        _mm512_sub_pd(_mm512_set1_pd(code.zero), _mm512_mul_pd(_mm512_add_pd(reach, path_length), per_unit));
     const __m256i cell = _mm256_add_epi32(
         _mm256_mullo_epi32(_mm256_add_epi32(_mm256_mullo_epi32(w.cell, rows), v.cell), columns), u.cell);
     const __m256i words = _mm256_mmask_i32gather_epi32(_mm256_setzero_si256(), in, cell,
                                                        reinterpret_cast<const int*>(table.value), 1);
     const __m512d values = _mm512_cvtepi32_pd(_mm256_srai_epi32(_mm256_slli_epi32(words, 24), 24));
-    in = _mm512_mask_cmp_pd_mask(in, values, least, _CMP_NLT_UQ);
+    in = _mm512_mask_cmp_pd_mask(in, values, min, _CMP_NLT_UQ);
     const __m256i number = _mm256_add_epi32(lanes, _mm256_set1_epi32(static_cast<int>(at)));
     _mm256_mask_compressstoreu_epi32(found + n, in, number);
     n += static_cast<std::size_t>(__builtin_popcount(in));
@@ -90,7 +90,7 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
   std::size_t n = 0;
   for (std::size_t g = 0; g < group_count; ++g) {
     const std::size_t at = kLanes * std::size_t{groups[g]};
-    double in[3][kLanes], least[kLanes];
+    double in[3][kLanes], min[kLanes];
 #pragma omp simd
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const double x = spheres.x[at + lane], y = spheres.y[at + lane], z = spheres.z[at + lane];
@@ -100,18 +100,18 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
       const double du = magnitude(u - iu), dv = magnitude(v - iv), dw = magnitude(w - iw);
       const double reach = code.reach + code.per_m * spheres.radius[at + lane];
       const double needed = code.zero - (reach + (du + dv + dw)) * per_unit;
-      least[lane] = du * du + dv * dv + dw * dw > reach * reach ? kNever : needed;
+      min[lane] = du * du + dv * dv + dw * dw > reach * reach ? kNever : needed;
       in[0][lane] = iu, in[1][lane] = iv, in[2][lane] = iw;
     }
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (least[lane] == kNever) continue;
+      if (min[lane] == kNever) continue;
       const int i = static_cast<int>(in[0][lane]), j = static_cast<int>(in[1][lane]),
                 k = static_cast<int>(in[2][lane]);
       const int column = i < table.cells[0] ? i : table.cells[0] - 1,
                 row = j < table.cells[1] ? j : table.cells[1] - 1,
                 layer = k < table.cells[2] ? k : table.cells[2] - 1;
       found[n] = static_cast<std::uint32_t>(at + lane);
-      n += table.value[(layer * table.cells[1] + row) * table.cells[0] + column] < least[lane] ? 0 : 1;
+      n += table.value[(layer * table.cells[1] + row) * table.cells[0] + column] < min[lane] ? 0 : 1;
     }
   }
   return n;
@@ -121,7 +121,7 @@ std::size_t find(const SphereColumns& spheres, const std::uint32_t* groups, std:
 
 }  // namespace
 
-std::size_t spheres_near(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
+std::size_t near_spheres(const SphereColumns& spheres, const std::uint32_t* groups, std::size_t group_count,
                          const CellTransform& to_cells, const CellTable& table, const NearnessCode& code,
                          std::uint32_t* found) {
   return find(spheres, groups, group_count, to_cells, table, code, found);

@@ -12,7 +12,7 @@ class InputError : public std::runtime_error {
   // subject: the file or the parameter path, as the user would write it.
   InputError(const std::string& subject, const std::string& problem)
       : std::runtime_error(subject + ": " + problem) {}
-  // Both in one, as a function conflict() gives them.
+  // Both in one, as a function validate() gives them.
   explicit InputError(const std::string& line) : std::runtime_error(line) {}
 };
 

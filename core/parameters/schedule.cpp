@@ -12,7 +12,7 @@ double scheduled(const std::vector<double>& rows, double time_s) {
   return before + (time_s - before_s) / (rows[next] - before_s) * (rows[next + 1] - before);
 }
 
-std::string schedule_conflict(const std::vector<double>& rows, const std::string& name,
+std::string validate_schedule(const std::vector<double>& rows, const std::string& name,
                               const std::string& what) {
   for (std::size_t i = 0; i < rows.size(); i += 2) {
     if (rows[i + 1] > 1) return name + ": " + what + " " + std::to_string(rows[i + 1]) + ": allowed 0 to 1";

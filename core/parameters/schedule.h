@@ -12,7 +12,7 @@ double scheduled(const std::vector<double>& rows, double time_s);
 
 // "schedule: time ...": the first row with a share outside 0 to 1 or a time before the one above; empty:
 // none. what: the share's name.
-std::string schedule_conflict(const std::vector<double>& rows, const std::string& name,
+std::string validate_schedule(const std::vector<double>& rows, const std::string& name,
                               const std::string& what);
 
 }  // namespace remote_touch

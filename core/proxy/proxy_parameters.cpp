@@ -16,11 +16,11 @@ Parameters parameters(ProxyParameters& p) {
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s of the virtual coupling (4.16)"},
       {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper k_d of the virtual coupling (4.16)"},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000, "largest number of proxy steps in a haptic tick"},
-      {"closing_steps", &p.closing_steps, 0, 1000,
+      {"max_exit_steps", &p.max_exit_steps, 0, 1000,
        "in clouds with forbidden regions: further steps (5.11) of a tick that would end inside one; 0: as printed"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
        "carry the proxy with the cloud at updates (4.3), (4.13)"},
-      {"longest_prediction_s", &p.longest_prediction_s, 0, 10,
+      {"max_prediction_s", &p.max_prediction_s, 0, 10,
        "(4.3) carries the proxy, and (4.15) the force, no longer than this beyond a frame (or one frame interval)"},
       {"step_rule", choice(p.step_rule, {"variable", "fixed"}), 0, 0,
        "step sizes of 4.2.4, or fixed small steps as in the predecessor [1]"},
@@ -44,7 +44,7 @@ Parameters parameters(ProxyParameters& p) {
   };
 }
 
-std::string conflict(const ProxyParameters& p) {
+std::string validate(const ProxyParameters& p) {
   std::ostringstream text;
   if (!(p.r1_m < p.r2_m))
     text << "r1_m = " << p.r1_m << ": allowed below r2_m = " << p.r2_m;

@@ -26,9 +26,9 @@ struct ProxyParameters {
   double stiffness_N_per_m = 600;
   double damping_Ns_per_m = 0;
   int steps_per_tick = 30;
-  int closing_steps = 10;
+  int max_exit_steps = 10;
   bool velocity_estimate = true;
-  double longest_prediction_s = 0.1;
+  double max_prediction_s = 0.1;
   StepRule step_rule = StepRule::variable;
   double fixed_step_m = 1e-4;
   FreeRoot free_root = FreeRoot::ahead;
@@ -46,6 +46,6 @@ struct ProxyParameters {
 
 Parameters parameters(ProxyParameters& p);
 // What contradicts what, as one line; empty when the settings fit together.
-std::string conflict(const ProxyParameters& p);
+std::string validate(const ProxyParameters& p);
 
 }  // namespace remote_touch

@@ -4,21 +4,21 @@
 #include <limits>
 #include <utility>
 
+#include "core/proxy/admissible_motion.h"
 #include "core/proxy/proxy_step.h"
-#include "core/proxy/touching_regions.h"
 
 namespace remote_touch {
 
 namespace {
 // A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
-constexpr double kFarthestHip_m = 1e6;
+constexpr double kMaxHipDistance_m = 1e6;
 }  // namespace
 
 ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
     : p_(parameters),
       kernels_(kernels),
       near_(parameters.r3_m, kernels),
-      velocity_(parameters.longest_prediction_s),
+      velocity_(parameters.max_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
 
 bool ProxyRenderer::is_newer(const Frame& frame) const {
@@ -40,25 +40,25 @@ bool ProxyRenderer::take(const Frame& frame) {
 
 void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points) {
   near_.set_points(std::move(points));
-  has_look_ = false;
+  has_local_query_ = false;
   is_clear_ = false;
 }
 
 void ProxyRenderer::on_frame(const Frame& frame) {
   if (!take(frame) || !p_.velocity_estimate) return;
-  carry(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
+  displace(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
 }
 
 void ProxyRenderer::on_frame(const Frame& frame, const SurfaceMotion& motion) {
   if (!take(frame)) return;
   velocity_.on_measured(frame.captured_s, motion.velocity_m_per_s, motion.normal_W);
-  carry(motion.carry_m);
+  displace(motion.displacement_m);
 }
 
-void ProxyRenderer::carry(const Vec3& way_m) {
-  proxy_W_ += way_m;
-  carried_m_ += way_m;
-  contact_proxy_W_ += way_m;
+void ProxyRenderer::displace(const Vec3& displacement_m) {
+  proxy_W_ += displacement_m;
+  frame_correction_m_ += displacement_m;
+  contact_proxy_W_ += displacement_m;
 }
 
 RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
@@ -67,8 +67,8 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   out.proxy_W = proxy_W_, out.normal_W = normal_W_;
   out.slave_W = slave_W_;
   out.frame_index = frame_index_;
-  out.carried_m = std::exchange(carried_m_, Vec3::Zero());
-  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
+  out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
     // Hold still and let go: a force from a lost position would be a guess.
     coupling_.release();
     out.status = RenderStatus::device_not_finite;
@@ -83,7 +83,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
     if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
   } else {
     out.proxy_W = proxy_W_ = hip_W;
-    out.nearest_m = std::numeric_limits<double>::infinity();
+    out.nearest_distance_m = std::numeric_limits<double>::infinity();
     out.converged = true;
     out.status = RenderStatus::no_frame;
     clear_W_ = hip_W;
@@ -94,20 +94,20 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
 }
 
 // State (4.2.1) and normal (4.1) at the proxy, in one pass over the points around it; kept while it rests.
-const ProxyRenderer::Look& ProxyRenderer::look() {
-  if (has_look_ && proxy_W_ == looked_from_W_) return look_;
-  look_.points = near_.around(proxy_W_).view();
-  look_.survey = survey(look_.points, proxy_W_);
-  look_.state = classify(look_.survey.nearest, p_);
-  looked_from_W_ = proxy_W_;
-  has_look_ = true;
-  return look_;
+const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
+  if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
+  local_query_.points = near_.around(proxy_W_).view();
+  local_query_.query = query(local_query_.points, proxy_W_);
+  local_query_.state = classify(local_query_.query.nearest, p_);
+  query_position_W_ = proxy_W_;
+  has_local_query_ = true;
+  return local_query_;
 }
 
 // pre: the points are those of the present list of neighbours.
-Survey ProxyRenderer::survey(const PointsView& points, const Vec3& p_W) const {
+ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) const {
   const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
-  return kernels_.survey(points, p_W.data(), regions);
+  return kernels_.contact_query(points, p_W.data(), regions);
 }
 
 // The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
@@ -116,12 +116,12 @@ int ProxyRenderer::move(const Vec3& hip_W) {
   bool touched = false;
   for (int k = 1; k <= p_.steps_per_tick; ++k) {
     const Vec3 u = hip_W - proxy_W_;
-    const Look& here = look();
-    normal_W_ = unit_normal(here.survey, normal_W_);
+    const LocalQuery& here = local_query();
+    normal_W_ = unit_normal(here.query, normal_W_);
     if (here.state == ContactState::contact) {
       in_contact_ = true;
       contact_proxy_W_ = proxy_W_;
-      contact_stiffness_N_per_m_ = stiffness(here.survey);
+      contact_stiffness_N_per_m_ = stiffness(here.query);
     }
     touched |= here.state != ContactState::free;
     if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
@@ -149,17 +149,17 @@ int ProxyRenderer::move(const Vec3& hip_W) {
 // steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
 // back. Returns the number of steps.
 int ProxyRenderer::close(const Vec3& hip_W) {
-  if (p_.closing_steps == 0) return 0;
+  if (p_.max_exit_steps == 0) return 0;
   int steps = 0;
-  for (; steps < p_.closing_steps && look().state == ContactState::entrenched; ++steps) {
-    normal_W_ = unit_normal(look_.survey, normal_W_);
-    proxy_W_ += next_step(look_, hip_W - proxy_W_);
+  for (; steps < p_.max_exit_steps && local_query().state == ContactState::entrenched; ++steps) {
+    normal_W_ = unit_normal(local_query_.query, normal_W_);
+    proxy_W_ += next_step(local_query_, hip_W - proxy_W_);
   }
-  if (is_clear_ && look().state == ContactState::entrenched) proxy_W_ = clear_W_;
+  if (is_clear_ && local_query().state == ContactState::entrenched) proxy_W_ = clear_W_;
   return steps;
 }
 
-Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
+Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
   switch (here.state) {
     case ContactState::free:
       return free_step(near_, proxy_W_, u, p_);
@@ -175,16 +175,16 @@ Vec3 ProxyRenderer::next_step(const Look& here, const Vec3& u) {
 
 // The output describes the position that the tick ends in; the state of the method is not touched.
 void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
-  const Look& here = look();
+  const LocalQuery& here = local_query();
   out.proxy_W = proxy_W_;
   out.state = here.state;
   if (here.state != ContactState::entrenched) clear_W_ = proxy_W_;
-  out.normal_W = unit_normal(here.survey, normal_W_);
+  out.normal_W = unit_normal(here.query, normal_W_);
   out.surface_velocity_m_per_s = velocity_.m_per_s();
   // The list of neighbours goes further than r3 in some directions: what it finds there is chance.
-  out.nearest_m =
-      here.survey.nearest <= p_.r3_m ? here.survey.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(here.survey.touching);
+  out.nearest_distance_m =
+      here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(here.query.touching);
   const Vec3 u = hip_W - proxy_W_;
   if (p_.contact_rule == ContactRule::regions && here.state == ContactState::contact)
     out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
@@ -201,8 +201,8 @@ Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
   if (!p_.slave_prediction || !in_contact_) return clear_W_;
   const double age_s = std::clamp(time_s - frame_captured_s_, 0.0, velocity_.horizon_s());
   const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
-  const Survey there = survey(near_.around(ahead_W).view(), ahead_W);
-  has_look_ = false;  // what the proxy saw may have made room
+  const ContactQuery there = query(near_.around(ahead_W).view(), ahead_W);
+  has_local_query_ = false;  // what the proxy saw may have made room
   return classify(there.nearest, p_) == ContactState::entrenched ? clear_W_ : ahead_W;
 }
 
@@ -220,8 +220,8 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
 }
 
 // (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.
-double ProxyRenderer::stiffness(const Survey& survey) const {
-  return survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : p_.stiffness_N_per_m;
+double ProxyRenderer::stiffness(const ContactQuery& query) const {
+  return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : p_.stiffness_N_per_m;
 }
 
 }  // namespace remote_touch

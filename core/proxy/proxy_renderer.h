@@ -12,14 +12,14 @@ namespace remote_touch {
 
 // How a surface moved from one frame to the next.
 struct SurfaceMotion {
-  Vec3 carry_m = Vec3::Zero();  // what the proxy is moved by
-  double velocity_m_per_s = 0;  // along the normal, positive towards the proxy
+  Vec3 displacement_m = Vec3::Zero();  // what the proxy is moved by
+  double velocity_m_per_s = 0;         // along the normal, positive towards the proxy
   Vec3 normal_W = Vec3::Zero();
 };
 
 class ProxyRenderer final : public Renderer {
  public:
-  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
   ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
 
   void reserve(std::size_t points) override { near_.reserve(points, true, true); }
@@ -29,7 +29,7 @@ class ProxyRenderer final : public Renderer {
   // Other points in place of the newest frame's.
   void replace_points(std::shared_ptr<const NeighbourSearch> points);
   // Moves the proxy with a surface.
-  void carry(const Vec3& way_m);
+  void displace(const Vec3& displacement_m);
   // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
   bool is_newer(const Frame& frame) const;
@@ -39,19 +39,19 @@ class ProxyRenderer final : public Renderer {
 
  private:
   bool take(const Frame& frame);
-  struct Look {  // what the proxy sees from where it is
-    Survey survey;
+  struct LocalQuery {  // what the proxy sees from where it is
+    ContactQuery query;
     ContactState state;
     PointsView points;
   };
-  const Look& look();
+  const LocalQuery& local_query();
   int move(const Vec3& hip_W);
   int close(const Vec3& hip_W);
-  Vec3 next_step(const Look& here, const Vec3& u);
+  Vec3 next_step(const LocalQuery& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
   void report(const Vec3& hip_W, RenderOutput& out);
-  double stiffness(const Survey& survey) const;
-  Survey survey(const PointsView& points, const Vec3& p_W) const;
+  double stiffness(const ContactQuery& query) const;
+  ContactQuery query(const PointsView& points, const Vec3& p_W) const;
   Vec3 slave_command(const Vec3& hip_W, double time_s);
 
   const ProxyParameters p_;
@@ -60,9 +60,9 @@ class ProxyRenderer final : public Renderer {
   SurfaceVelocity velocity_;
   VirtualCoupling coupling_;
 
-  Look look_;  // from looked_from_W_, while has_look_
-  Vec3 looked_from_W_ = Vec3::Zero();
-  bool has_look_ = false;
+  LocalQuery local_query_;  // from query_position_W_, while has_local_query_
+  Vec3 query_position_W_ = Vec3::Zero();
+  bool has_local_query_ = false;
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
@@ -75,7 +75,7 @@ class ProxyRenderer final : public Renderer {
   double contact_stiffness_N_per_m_ = 0;
   double frame_captured_s_ = 0, frame_arrived_s_ = 0;
   int frame_index_ = -1;
-  Vec3 carried_m_ = Vec3::Zero();  // by (4.3) since the last tick
+  Vec3 frame_correction_m_ = Vec3::Zero();  // by (4.3) since the last tick
   bool stale_frame_ = false;
   bool stops_at_convergence_ = false;
 };

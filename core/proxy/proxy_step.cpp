@@ -11,7 +11,7 @@ namespace {
 constexpr double kNoDirection = 1e-10;
 
 // A shorter way to the next region is rounding: those so near touch already.
-constexpr double kNoWay_m = 1e-12;
+constexpr double kNoMotion_m = 1e-12;
 
 // sin(theta)^2 by series, for std::sin may differ in the last bit between machines; exact to 1e-16 below 1
 // rad and monotonic up to 90 degrees.
@@ -56,13 +56,13 @@ Vec3 step_towards(const Vec3& goal, const ProxyParameters& p) {
 
 }  // namespace
 
-ContactState classify(double nearest_m, const ProxyParameters& p) {
-  if (nearest_m < p.r1_m) return ContactState::entrenched;
-  return nearest_m <= p.r2_m ? ContactState::contact : ContactState::free;
+ContactState classify(double nearest_distance_m, const ProxyParameters& p) {
+  if (nearest_distance_m < p.r1_m) return ContactState::entrenched;
+  return nearest_distance_m <= p.r2_m ? ContactState::contact : ContactState::free;
 }
 
-Vec3 unit_normal(const Survey& survey, const Vec3& previous) {
-  const Vec3 sum(survey.normal_sum[0], survey.normal_sum[1], survey.normal_sum[2]);
+Vec3 unit_normal(const ContactQuery& query, const Vec3& previous) {
+  const Vec3 sum(query.normal_sum[0], query.normal_sum[1], query.normal_sum[2]);
   const double length = sum.norm();
   return length > kNoDirection ? Vec3(sum / length) : previous;
 }
@@ -86,7 +86,7 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
   if (out.isZero(0)) out = along(-u, 1, u.norm());
   if (out.isZero(0)) return Vec3::Zero();
   if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
-  return kernels.way_out(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
+  return kernels.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
 }
 
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
@@ -104,11 +104,12 @@ Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const V
   if (!(length > 0)) return Vec3::Zero();
   // Between r1 and r_c, so that what touches already, at r1 or more, is not met again.
   const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
-  double way = near.first_hit(p_W, step / length, reach, length);
+  double path_length = near.first_hit(p_W, step / length, reach, length);
   // A region that ended an earlier step lies just there, and the rounding of a motion along it can meet it
   // again at once: the proxy would stay for ever. The goal enters no region that touches, so none is there.
-  if (way < kNoWay_m) way = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
-  return step * (way / length);
+  if (path_length < kNoMotion_m)
+    path_length = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
+  return step * (path_length / length);
 }
 
 bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p) {

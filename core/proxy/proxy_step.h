@@ -10,10 +10,10 @@
 namespace remote_touch {
 
 // 4.2.1: entrenched below r1, contact from r1 to r2 with both ends, free above.
-ContactState classify(double nearest_m, const ProxyParameters& p);
+ContactState classify(double nearest_distance_m, const ProxyParameters& p);
 
 // The unit vector of (4.1), or previous where the sum gives no direction (no points, or symmetric ones).
-Vec3 unit_normal(const Survey& survey, const Vec3& previous);
+Vec3 unit_normal(const ContactQuery& query, const Vec3& previous);
 
 // (4.4), (4.9): towards the HIP, up to the first point met. u = HIP - P.
 Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p);

@@ -21,10 +21,10 @@ std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point) {
 }
 
 // radius^2 = -2 ln((word + 1) 2^-32), see kernels/noise.cpp
-std::uint64_t asks_of(double least, double towards) {
+std::uint64_t word_bounds(double min, double towards) {
   constexpr double kWords = 4294967296.0;
-  if (!(least > 0)) return 0xFFFFFFFFu;
-  const double words = kWords * std::exp(-0.5 * least * least) * (1 + 1e-6) + 1;
+  if (!(min > 0)) return 0xFFFFFFFFu;
+  const double words = kWords * std::exp(-0.5 * min * min) * (1 + 1e-6) + 1;
   const std::uint64_t sign = towards < 0 ? 1 : 0;
   return static_cast<std::uint64_t>(std::min(words, kWords - 1)) | sign << 62 | std::uint64_t{1} << 63;
 }

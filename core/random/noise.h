@@ -22,7 +22,7 @@ struct NoiseKey {
 enum class NoiseUse : std::uint32_t {
   point_position = 0,
   depth = 1,
-  delivery = 2,
+  transport = 2,
   motion = 3,
   colour = 4,
   dropout = 5,
@@ -31,7 +31,7 @@ enum class NoiseUse : std::uint32_t {
 };
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.
-inline constexpr double kLargestNormal = 6.661;
+inline constexpr double kMaxNormal = 6.661;
 
 // pre: frame < 2^28.
 inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t frame) {
@@ -49,6 +49,6 @@ std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
 // from the second. Nothing is asked for least <= 0. The answer errs to yes only, by a millionth, so it does
 // not depend on the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the sign wanted;
 // 63: a sign is wanted.
-std::uint64_t asks_of(double least, double towards);
+std::uint64_t word_bounds(double min, double towards);
 
 }  // namespace remote_touch

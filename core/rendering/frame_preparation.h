@@ -20,8 +20,8 @@ template <class Form>
 std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& points,
                                                         const Kernels& kernels) {
   const auto made = std::make_shared<PreparedForm<Form>>();
-  PointCloud room;
-  made->form.assign(points.every_point(kernels, room));
+  PointCloud buffer;
+  made->form.assign(points.every_point(kernels, buffer));
   return made;
 }
 

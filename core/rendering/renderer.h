@@ -30,7 +30,7 @@ struct ToolOutput {
   // Of the pose at the end of the tick; RenderOutput::contact_count is the number of points that touch.
   int active_constraints = 0;     // rows of (6.5) that hold the tool, at most 6
   int contact_clusters = 0;       // groups of touching points, 10 mm cells of the tool frame
-  double penetration_m = 0;       // of the deepest point of the newest frame; 0 or more
+  double tool_penetration_m = 0;  // of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
   bool budget_exhausted = false;  // the tick ended before the tool came to rest
   int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
@@ -38,7 +38,7 @@ struct ToolOutput {
 
 // What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
 struct GuidanceOutput {
-  bool pulls = false;  // a guidance fixture is active and the newest frame shows its target
+  bool active = false;  // a guidance fixture is active and the newest frame shows its target
   Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
   // Where it pulls to, world frame; NaN where it does not.
   Vec3 goal_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -47,8 +47,8 @@ struct GuidanceOutput {
   bool sequence_running = false;  // the step has begun
   int sequence_missed = 0;        // steps that ended by their deadline so far
   // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
-  double ended_m = std::numeric_limits<double>::quiet_NaN();
-  double ended_rad = std::numeric_limits<double>::quiet_NaN();
+  double sequence_distance_m = std::numeric_limits<double>::quiet_NaN();
+  double sequence_angle_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Metres, newtons, world frame. force_N acts on the hand that holds the device.
@@ -61,13 +61,13 @@ struct RenderOutput {
   ContactState state = ContactState::free;  // of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
   double surface_velocity_m_per_s = 0;  // estimate along the normal, positive towards the proxy, (4.13)
-  double nearest_m = 0;                 // distance of proxy_W to the nearest region, r_n of (5.5); infinite
+  double nearest_distance_m = 0;        // distance of proxy_W to the nearest region, r_n of (5.5); infinite
                                         // beyond the renderer's reach
-  Vec3 carried_m = Vec3::Zero();        // how far frame updates moved the proxy since the last tick, (4.3)
-  int steps = 0;                        // proxy steps made in this tick
-  bool converged = false;               // (4.8)
-  int contact_count = 0;                // points within r2
-  int frame_index = -1;                 // newest frame in use, -1 before the first
+  Vec3 frame_correction_m = Vec3::Zero();  // how far frame updates moved the proxy since the last tick, (4.3)
+  int steps = 0;                           // proxy steps made in this tick
+  bool converged = false;                  // (4.8)
+  int contact_count = 0;                   // points within r2
+  int frame_index = -1;                    // newest frame in use, -1 before the first
   RenderStatus status = RenderStatus::ok;
   std::optional<ToolOutput> tool;          // a 3-DOF renderer has none
   std::optional<GuidanceOutput> guidance;  // of experiments with guidance or a sequence

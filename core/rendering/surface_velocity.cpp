@@ -6,9 +6,9 @@ namespace remote_touch {
 
 Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
   const double since = has_frame_ ? captured_s - captured_s_ : 0;
-  const double carried = velocity_m_per_s_ * std::min(since, longest_interval_s_);
+  const double carried = velocity_m_per_s_ * std::min(since, max_interval_s_);
   interval_s_ = awaits_step_ ? interval_s_ + since : since;
-  carried_m_ = awaits_step_ ? carried_m_ + carried : carried;
+  frame_correction_m_ = awaits_step_ ? frame_correction_m_ + carried : carried;
   captured_s_ = captured_s;
   has_frame_ = true;
   normal_ = normal;
@@ -21,11 +21,11 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
 void SurfaceVelocity::on_step(const Vec3& step) {
   if (!awaits_step_) return;
   awaits_step_ = false;
-  velocity_m_per_s_ = std::max(0.0, (carried_m_ + normal_.dot(step)) / interval_s_);
+  velocity_m_per_s_ = std::max(0.0, (frame_correction_m_ + normal_.dot(step)) / interval_s_);
 }
 
 double SurfaceVelocity::horizon_s() const {
-  return std::max(longest_interval_s_, interval_s_);
+  return std::max(max_interval_s_, interval_s_);
 }
 
 void SurfaceVelocity::on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal) {

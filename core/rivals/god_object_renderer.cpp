@@ -9,7 +9,7 @@ namespace remote_touch {
 namespace {
 
 // Radius of the ball in which the mesh is made, and the longest way of one round, in units of the edge limit.
-constexpr double kMeshed = 0.5, kLongestWay = 0.25;
+constexpr double kMeshed = 0.5, kMaxStride = 0.25;
 // A shorter way is none, and planes are obeyed up to this, in units of the surface offset.
 constexpr double kAtRest = 1e-6;
 
@@ -17,7 +17,7 @@ constexpr double kAtRest = 1e-6;
 
 Parameters parameters(GodObjectParameters& p) {
   return {
-      {"edge_limit_m", &p.edge_limit_m, 1e-6, 1,
+      {"max_edge_length_m", &p.max_edge_length_m, 1e-6, 1,
        "triangles with a longer edge are left out, as at depth edges"},
       {"surface_offset_m", &p.surface_offset_m, 1e-9, 0.01,
        "the god-object stays so far off the planes that hold it, so that its side is clear"},
@@ -27,19 +27,19 @@ Parameters parameters(GodObjectParameters& p) {
   };
 }
 
-std::string conflict(const GodObjectParameters& p) {
-  constexpr double kLeastRatio = 10;
-  if (kLeastRatio * p.surface_offset_m <= p.edge_limit_m) return {};
+std::string validate(const GodObjectParameters& p) {
+  constexpr double kMinRatio = 10;
+  if (kMinRatio * p.surface_offset_m <= p.max_edge_length_m) return {};
   std::ostringstream text;
   text << "surface_offset_m = " << p.surface_offset_m
-       << ": allowed up to a tenth of edge_limit_m = " << p.edge_limit_m;
+       << ": allowed up to a tenth of max_edge_length_m = " << p.max_edge_length_m;
   return text.str();
 }
 
 GodObjectRenderer::GodObjectRenderer(const GodObjectParameters& parameters, double, const Kernels& kernels)
-    : RivalRenderer(parameters.edge_limit_m, parameters.stiffness_N_per_m, kernels),
+    : RivalRenderer(parameters.max_edge_length_m, parameters.stiffness_N_per_m, kernels),
       p_(parameters),
-      mesh_(parameters.edge_limit_m),
+      mesh_(parameters.max_edge_length_m),
       planes_(kAtRest * parameters.surface_offset_m) {}
 
 void GodObjectRenderer::reserve(std::size_t points) {
@@ -55,19 +55,19 @@ bool GodObjectRenderer::take(const NeighbourSearch& points) {
 }
 
 // The mesh reaches beyond every way of one round. Which triangles it has beyond that does not matter.
-void GodObjectRenderer::look_around() {
-  const double radius = kMeshed * p_.edge_limit_m, room = radius - kLongestWay * p_.edge_limit_m;
-  if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= room * room) return;
+void GodObjectRenderer::find_planes() {
+  const double radius = kMeshed * p_.max_edge_length_m, margin = radius - kMaxStride * p_.max_edge_length_m;
+  if (is_meshed_ && (proxy_W_ - meshed_W_).squaredNorm() <= margin * margin) return;
   meshed_W_ = proxy_W_;
   is_meshed_ = true;
   // Rounding must not cost a triangle.
-  const double reach = (radius + p_.edge_limit_m) * (1 + 1e-9);
+  const double reach = (radius + p_.max_edge_length_m) * (1 + 1e-9);
   mesh_.assign(near_.within(meshed_W_, reach), columns_, {meshed_W_, radius * (1 + 1e-9)});
 }
 
 void GodObjectRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   rounds_ = 0;
-  held_by_ = 0;
+  active_planes_ = 0;
   out.converged = false;
   while (rounds_ < p_.steps_per_tick && !out.converged) out.converged = !follow(hip_W);
   report(hip_W, out);
@@ -81,7 +81,7 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
   while (rounds_ < p_.steps_per_tick) {
     ++rounds_;
     const PlaneConstraints::Nearest nearest = planes_.nearest(hip_W);
-    held_by_ = nearest.found ? nearest.held_by : 3;
+    active_planes_ = nearest.found ? nearest.active_planes : 3;
     if (!nearest.found || go(nearest.place)) break;
   }
   return (proxy_W_ - start_W).norm() > kAtRest * p_.surface_offset_m;
@@ -90,10 +90,10 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
 // Straight to the goal, or up to the first triangle, whose plane then joins the others. Returns whether this
 // look for planes is over: it got there, or there are too many.
 bool GodObjectRenderer::go(const Vec3& goal) {
-  look_around();
-  const Vec3 way = goal - proxy_W_;
-  const double length = way.norm(), longest = kLongestWay * p_.edge_limit_m;
-  const Vec3 end = length > longest ? Vec3(proxy_W_ + (longest / length) * way) : goal;
+  find_planes();
+  const Vec3 displacement = goal - proxy_W_;
+  const double length = displacement.norm(), max_length = kMaxStride * p_.max_edge_length_m;
+  const Vec3 end = length > max_length ? Vec3(proxy_W_ + (max_length / length) * displacement) : goal;
   const std::optional<Crossing> crossing = mesh_.first_crossing(proxy_W_, end);
   if (!crossing) {
     proxy_W_ = end;
@@ -110,16 +110,16 @@ bool GodObjectRenderer::go(const Vec3& goal) {
 void GodObjectRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   PointsView points = near_.around(proxy_W_).view();
   points.radius = nullptr;
-  const double reach = p_.edge_limit_m;
-  const Survey survey =
-      kernels_.survey(points, proxy_W_.data(), {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
-  out.nearest_m = survey.nearest <= reach ? survey.nearest : std::numeric_limits<double>::infinity();
+  const double reach = p_.max_edge_length_m;
+  const ContactQuery query = kernels_.contact_query(points, proxy_W_.data(),
+                                                    {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
+  out.nearest_distance_m = query.nearest <= reach ? query.nearest : std::numeric_limits<double>::infinity();
   out.steps = rounds_;
-  if (held_by_ == 0) return;
+  if (active_planes_ == 0) return;
   const Vec3 push = proxy_W_ - hip_W;
-  out.contact_count = held_by_;
+  out.contact_count = active_planes_;
   out.state = ContactState::contact;
-  out.force_N = stiffness_of(survey) * push;
+  out.force_N = stiffness_of(query) * push;
   if (!push.isZero(0)) normal_W_ = push.normalized();
 }
 

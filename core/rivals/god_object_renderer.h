@@ -12,12 +12,13 @@
 //
 // Limits: a new frame replaces the mesh and the god-object stays where it is, for nothing tells how the
 // surface moved: a mesh that passes over it leaves it behind (pop-through). It falls through what was not
-// measured, and through triangles with an edge above edge_limit_m. A frame whose points stand in no order has
-// no mesh: nothing holds then, and the status is no_frame, with frame_index 0 or more. Forbidden regions r_f
-// are ignored; the stiffness of points (5.8) is not.
+// measured, and through triangles with an edge above max_edge_length_m. A frame whose points stand in no
+// order has no mesh: nothing holds then, and the status is no_frame, with frame_index 0 or more. Forbidden
+// regions r_f are ignored; the stiffness of points (5.8) is not.
 //
 // Of the outputs: contact_count counts the planes that hold the god-object, 0 to 3, steps the rounds,
-// nearest_m goes to the nearest point; it is never entrenched, for what has passed it is out of its reach.
+// nearest_distance_m goes to the nearest point; it is never entrenched, for what has passed it is out of its
+// reach.
 #pragma once
 
 #include <string>
@@ -30,7 +31,7 @@
 namespace remote_touch {
 
 struct GodObjectParameters {
-  double edge_limit_m = 0.02;
+  double max_edge_length_m = 0.02;
   double surface_offset_m = 1e-5;
   double stiffness_N_per_m = 600;
   int steps_per_tick = 60;
@@ -38,18 +39,18 @@ struct GodObjectParameters {
 
 Parameters parameters(GodObjectParameters& p);
 // What contradicts what, as one line; empty when the settings fit together.
-std::string conflict(const GodObjectParameters& p);
+std::string validate(const GodObjectParameters& p);
 
 class GodObjectRenderer final : public RivalRenderer {
  public:
-  // pre: conflict(parameters) is empty. The rate does not matter to the method: it has no memory of time.
+  // pre: validate(parameters) is empty. The rate does not matter to the method: it has no memory of time.
   GodObjectRenderer(const GodObjectParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
 
  private:
   bool take(const NeighbourSearch& points) override;
   void touch(const Vec3& hip_W, RenderOutput& out) override;
-  void look_around();
+  void find_planes();
   bool follow(const Vec3& hip_W);
   bool go(const Vec3& goal);
   void report(const Vec3& hip_W, RenderOutput& out);
@@ -60,7 +61,7 @@ class GodObjectRenderer final : public RivalRenderer {
   bool is_meshed_ = false;
   int columns_ = 0;  // of the newest frame
   PlaneConstraints planes_;
-  int held_by_ = 0, rounds_ = 0;  // of this tick
+  int active_planes_ = 0, rounds_ = 0;  // of this tick
 };
 
 }  // namespace remote_touch

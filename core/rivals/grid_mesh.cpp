@@ -83,8 +83,8 @@ std::optional<Crossing> GridMesh::first_crossing(const Vec3& from, const Vec3& t
     const double over = t.normal.dot(from - t.a), side = over < 0 ? -1 : 1;
     const Crossing crossing{&t, side * over, side * t.normal.dot(to - t.a)};
     if (!(crossing.start > 0 && crossing.end <= 0)) continue;
-    if (first && !(crossing.share() < first->share())) continue;
-    if (contains(t, from + crossing.share() * (to - from))) first = crossing;
+    if (first && !(crossing.fraction() < first->fraction())) continue;
+    if (contains(t, from + crossing.fraction() * (to - from))) first = crossing;
   }
   return first;
 }

@@ -23,12 +23,12 @@ struct Triangle {
 struct Crossing {
   const Triangle* triangle = nullptr;
   double start = 0, end = 0;
-  double share() const { return start / (start - end); }  // of the segment, up to the plane
+  double fraction() const { return start / (start - end); }  // of the segment, up to the plane
 };
 
 class GridMesh {
  public:
-  explicit GridMesh(double edge_limit_m) : edge_limit_m_(edge_limit_m) {}
+  explicit GridMesh(double max_edge_length_m) : edge_limit_m_(max_edge_length_m) {}
 
   // Room for frames of so many points. assign() and the rest then never allocate.
   void reserve(std::size_t points);
@@ -48,8 +48,8 @@ class GridMesh {
 
   double edge_limit_m_;
   std::size_t count_ = 0;
-  Room<Triangle> triangles_;
-  Room<std::uint32_t> place_;  // of each point in a window of the frame: number in the list + 1; 0: none
+  Buffer<Triangle> triangles_;
+  Buffer<std::uint32_t> place_;  // of each point in a window of the frame: number in the list + 1; 0: none
 };
 
 }  // namespace remote_touch

@@ -9,11 +9,11 @@ namespace remote_touch {
 namespace {
 
 // In units of R:
-constexpr double kStride = 0.125;       // longest step of a walk or a slide
-constexpr double kLongestNewton = 0.5;  // longest step back to the surface
-constexpr double kOnSurface = 1e-10;    // nearer to f = 0 than this is on it
-constexpr double kAtRest = 1e-9;        // a shorter way is none
-constexpr double kNearRest = 1e-4;      // shorter steps than this are the last ones
+constexpr double kStride = 0.125;     // longest step of a walk or a slide
+constexpr double kMaxNewton = 0.5;    // longest step back to the surface
+constexpr double kOnSurface = 1e-10;  // nearer to f = 0 than this is on it
+constexpr double kAtRest = 1e-9;      // a shorter way is none
+constexpr double kNearRest = 1e-4;    // shorter steps than this are the last ones
 constexpr int kNewtonSteps = 10, kBisections = 12, kHalvings = 6;
 
 bool is_inside(const SurfaceSample& sample) {
@@ -81,7 +81,7 @@ bool ImplicitSurfaceRenderer::settle(Place& here) {
     if (is_on_surface(here.sample)) return true;
     const Vec3 n = here.sample.normal();
     if (n.isZero(0)) return false;
-    const double step = std::clamp(here.sample.distance(), -kLongestNewton, kLongestNewton);
+    const double step = std::clamp(here.sample.distance(), -kMaxNewton, kMaxNewton);
     here = place(here.p_W - (p_.support_radius_m * step) * n, n);
   }
   return is_on_surface(here.sample);
@@ -99,9 +99,9 @@ bool ImplicitSurfaceRenderer::advance(Place& here, const Vec3& hip_W) {
 bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   const double R = p_.support_radius_m, distance = (hip_W - here.p_W).norm();
   const Vec3 direction = (hip_W - here.p_W) / distance;
-  double way = kStride * R;
-  if (!here.sample.supported) way += near_.first_hit(here.p_W, direction, R, distance);
-  const Vec3 goal = way < distance ? Vec3(here.p_W + way * direction) : hip_W;
+  double path_length = kStride * R;
+  if (!here.sample.supported) path_length += near_.first_hit(here.p_W, direction, R, distance);
+  const Vec3 goal = path_length < distance ? Vec3(here.p_W + path_length * direction) : hip_W;
   const Place next = place(goal, here.sample.normal());
   if (!is_inside(next.sample)) {
     here = next;
@@ -147,10 +147,10 @@ void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, Rende
   PointsView points = near_.around(proxy_W_).view();
   points.radius = nullptr;
   const double R = p_.support_radius_m;
-  const Survey survey =
-      kernels_.survey(points, proxy_W_.data(), {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
-  out.nearest_m = survey.nearest <= R ? survey.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(survey.touching);
+  const ContactQuery query =
+      kernels_.contact_query(points, proxy_W_.data(), {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
+  out.nearest_distance_m = query.nearest <= R ? query.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(query.touching);
   out.steps = steps_;
   const Vec3 u = hip_W - proxy_W_;
   if (is_inside(here.sample)) {
@@ -159,7 +159,7 @@ void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, Rende
   } else if (is_on_surface(here.sample) && here.sample.normal().dot(u) < 0) {
     out.state = ContactState::contact;
   }
-  if (out.state != ContactState::free) out.force_N = -stiffness_of(survey) * u;
+  if (out.state != ContactState::free) out.force_N = -stiffness_of(query) * u;
 }
 
 }  // namespace remote_touch

@@ -35,7 +35,7 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
-inline std::string conflict(const ImplicitSurfaceParameters&) {
+inline std::string validate(const ImplicitSurfaceParameters&) {
   return {};
 }
 

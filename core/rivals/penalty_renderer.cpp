@@ -20,7 +20,7 @@ Parameters parameters(PenaltyParameters& p) {
   };
 }
 
-std::string conflict(const PenaltyParameters& p) {
+std::string validate(const PenaltyParameters& p) {
   if (p.contact_radius_m < p.r3_m) return {};
   std::ostringstream text;
   text << "contact_radius_m = " << p.contact_radius_m << ": allowed below r3_m = " << p.r3_m;
@@ -42,17 +42,17 @@ void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   const PointsView points = near_.around(hip_W).view();
   const ProxyRegions regions{p_.contact_radius_m, p_.contact_radius_m, p_.r3_m, near_.sum_grid(),
                              p_.stiffness_N_per_m};
-  const Survey survey = kernels_.survey(points, hip_W.data(), regions);
-  normal_W_ = unit_normal(survey, normal_W_);
-  out.nearest_m = survey.nearest <= p_.r3_m ? survey.nearest : std::numeric_limits<double>::infinity();
-  out.contact_count = static_cast<int>(survey.touching);
+  const ContactQuery query = kernels_.contact_query(points, hip_W.data(), regions);
+  normal_W_ = unit_normal(query, normal_W_);
+  out.nearest_distance_m = query.nearest <= p_.r3_m ? query.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(query.touching);
   out.steps = 1;
   out.converged = true;
-  const double depth = p_.contact_radius_m - survey.nearest;
+  const double depth = p_.contact_radius_m - query.nearest;
   if (!(depth > 0)) return;
   out.state = ContactState::contact;
   if (normal_W_.isZero(0)) out.status = RenderStatus::degenerate_normal;
-  const double push = stiffness_of(survey) * depth - p_.damping_Ns_per_m * velocity.dot(normal_W_);
+  const double push = stiffness_of(query) * depth - p_.damping_Ns_per_m * velocity.dot(normal_W_);
   out.force_N = std::max(push, 0.0) * normal_W_;
 }
 

@@ -30,16 +30,16 @@ struct PenaltyParameters {
 
 Parameters parameters(PenaltyParameters& p);
 // What contradicts what, as one line; empty when the settings fit together.
-std::string conflict(const PenaltyParameters& p);
+std::string validate(const PenaltyParameters& p);
 
 class PenaltyRenderer final : public RivalRenderer {
  public:
-  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
   PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
 
  private:
   void touch(const Vec3& hip_W, RenderOutput& out) override;
-  void let_go() override { has_previous_ = false; }
+  void reset_motion() override { has_previous_ = false; }
 
   const PenaltyParameters p_;
   double haptic_rate_hz_;

@@ -15,8 +15,8 @@ constexpr double kParallel = 1e-9;
 class Search {
  public:
   // rise: how far the goal must rise along each normal.
-  Search(const std::array<Vec3, PlaneConstraints::kMost>& normal,
-         const std::array<double, PlaneConstraints::kMost>& rise, std::size_t count, double slack)
+  Search(const std::array<Vec3, PlaneConstraints::kMaxCount>& normal,
+         const std::array<double, PlaneConstraints::kMaxCount>& rise, std::size_t count, double slack)
       : normal_(normal), rise_(rise), count_(count), slack_(slack) {}
 
   void on_plane(std::size_t i) { offer(rise_[i] * normal_[i], 1); }
@@ -35,38 +35,38 @@ class Search {
     if (!(std::abs(volume) > kParallel)) return;
     offer((rise_[i] * jk + rise_[j] * ki + rise_[k] * ij) / volume, 3);
   }
-  void offer(const Vec3& motion, int held_by) {
+  void offer(const Vec3& motion, int active_planes) {
     const double squared = motion.squaredNorm();
     if (!(squared < shortest_)) return;
     for (std::size_t i = 0; i < count_; ++i)
       if (!(normal_[i].dot(motion) >= rise_[i] - slack_)) return;
-    shortest_ = squared, best_ = motion, held_by_ = held_by;
+    shortest_ = squared, best_ = motion, active_planes_ = active_planes;
   }
 
   bool found() const { return shortest_ < std::numeric_limits<double>::infinity(); }
   const Vec3& best() const { return best_; }
-  int held_by() const { return held_by_; }
+  int active_planes() const { return active_planes_; }
 
  private:
-  const std::array<Vec3, PlaneConstraints::kMost>& normal_;
-  const std::array<double, PlaneConstraints::kMost>& rise_;
+  const std::array<Vec3, PlaneConstraints::kMaxCount>& normal_;
+  const std::array<double, PlaneConstraints::kMaxCount>& rise_;
   std::size_t count_;
   double slack_, shortest_ = std::numeric_limits<double>::infinity();
   Vec3 best_ = Vec3::Zero();
-  int held_by_ = 0;
+  int active_planes_ = 0;
 };
 
 }  // namespace
 
 bool PlaneConstraints::add(const Vec3& normal, const Vec3& point, double offset_m) {
-  if (count_ == kMost) return false;
+  if (count_ == kMaxCount) return false;
   planes_[count_++] = {normal, point, offset_m};
   return true;
 }
 
 PlaneConstraints::Nearest PlaneConstraints::nearest(const Vec3& goal) const {
-  std::array<Vec3, kMost> normal;
-  std::array<double, kMost> rise;
+  std::array<Vec3, kMaxCount> normal;
+  std::array<double, kMaxCount> rise;
   for (std::size_t i = 0; i < count_; ++i) {
     normal[i] = planes_[i].normal;
     rise[i] = planes_[i].normal.dot(planes_[i].point - goal) + planes_[i].offset_m;
@@ -80,7 +80,7 @@ PlaneConstraints::Nearest PlaneConstraints::nearest(const Vec3& goal) const {
       for (std::size_t k = j + 1; k < count_; ++k) search.on_corner(i, j, k);
     }
   }
-  return {search.found(), goal + search.best(), search.held_by()};
+  return {search.found(), goal + search.best(), search.active_planes()};
 }
 
 }  // namespace remote_touch

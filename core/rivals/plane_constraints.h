@@ -16,17 +16,17 @@ class PlaneConstraints {
   // slack_m: planes may be violated by so much, for rounding.
   explicit PlaneConstraints(double slack_m) : slack_m_(slack_m) {}
 
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMaxCount = 8;
 
   void clear() { count_ = 0; }
   std::size_t size() const { return count_; }
-  // n . y >= n . point + offset_m for a unit normal n. Returns false when there are kMost already.
+  // n . y >= n . point + offset_m for a unit normal n. Returns false when there are kMaxCount already.
   bool add(const Vec3& normal, const Vec3& point, double offset_m);
 
   struct Nearest {
     bool found = false;  // some place obeys all planes
     Vec3 place = Vec3::Zero();
-    int held_by = 0;  // planes, 0 to 3
+    int active_planes = 0;  // planes, 0 to 3
   };
   Nearest nearest(const Vec3& goal) const;
 
@@ -35,7 +35,7 @@ class PlaneConstraints {
     Vec3 normal, point;
     double offset_m;
   };
-  std::array<Plane, kMost> planes_;
+  std::array<Plane, kMaxCount> planes_;
   std::size_t count_ = 0;
   double slack_m_;
 };

@@ -11,11 +11,11 @@ namespace {
 // A gradient shorter than this has no direction: what remains is rounding.
 constexpr double kNoDirection = 1e-10;
 // Sums of weights below this are mostly rounding: they count as outside of all support.
-constexpr double kLeastWeight = 1e-6;
+constexpr double kMinWeight = 1e-6;
 // A middle variance below this, units of R^2: the points do not span a plane.
-constexpr double kLeastWidth = 1e-6;
+constexpr double kMinWidth = 1e-6;
 // No term of a gradient is longer than 4 where its weight is at most 1.
-constexpr double kLongestTerm = 4;
+constexpr double kMaxTerm = 4;
 
 // w at a distance, and what multiplies (x - p) / R in its gradient by p / R.
 struct Bell {
@@ -86,10 +86,10 @@ SurfaceSample PointSurface::metaballs(const PointsView& points, double sum_grid,
   ExactVector slopes(sum_grid);
   for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e) {
     weights.add(bell.weight);
-    slopes.add((bell.slope / kLongestTerm) * e);
+    slopes.add((bell.slope / kMaxTerm) * e);
   });
   if (!(weights.value() > 0)) return {};
-  return {true, threshold_ - weights.value(), -kLongestTerm * slopes.value()};
+  return {true, threshold_ - weights.value(), -kMaxTerm * slopes.value()};
 }
 
 SurfaceSample PointSurface::surfels(const PointsView& points, double sum_grid, const Vec3& p_W,
@@ -102,7 +102,7 @@ SurfaceSample PointSurface::surfels(const PointsView& points, double sum_grid, c
     squares.add(bell.weight * e.cwiseProduct(e));
     products.add(bell.weight * Vec3(e.y() * e.z(), e.z() * e.x(), e.x() * e.y()));
   });
-  if (!(weights.value() > kLeastWeight)) return {};
+  if (!(weights.value() > kMinWeight)) return {};
   const Vec3 mean = first.value() / weights.value();  // a - p
   const Vec3 xx = squares.value() / weights.value(), yz = products.value() / weights.value();
   Eigen::Matrix3d covariance;
@@ -110,7 +110,7 @@ SurfaceSample PointSurface::surfels(const PointsView& points, double sum_grid, c
   covariance -= mean * mean.transpose();
 
   const ThinnestAxis thin = thinnest_axis(covariance);
-  if (thin.middle < kLeastWidth) {
+  if (thin.middle < kMinWidth) {
     const double length = mean.norm();
     return {true, length, length > kNoDirection ? Vec3(-mean / length) : Vec3::Zero()};
   }

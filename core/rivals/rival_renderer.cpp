@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 // A HIP further away than this is not a hand's; squares of its distances would lose all meaning.
-constexpr double kFarthestHip_m = 1e6;
+constexpr double kMaxHipDistance_m = 1e6;
 }  // namespace
 
 void RivalRenderer::on_frame(const Frame& frame) {
@@ -19,17 +19,17 @@ RenderOutput RivalRenderer::step(const DeviceState& device, double) {
   const Vec3& hip_W = device.position_W;
   RenderOutput out;
   out.frame_index = order_.newest();
-  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kFarthestHip_m) {
-    let_go();  // hold still: a force from a lost position would be a guess
+  if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
+    reset_motion();  // hold still: a force from a lost position would be a guess
     out.status = RenderStatus::device_not_finite;
   } else {
     if (!placed_) proxy_W_ = hip_W, placed_ = true;
     if (usable_) {
       touch(hip_W, out);
     } else {
-      let_go();
+      reset_motion();
       proxy_W_ = hip_W;
-      out.nearest_m = std::numeric_limits<double>::infinity();
+      out.nearest_distance_m = std::numeric_limits<double>::infinity();
       out.converged = true;
       out.status = RenderStatus::no_frame;
     }

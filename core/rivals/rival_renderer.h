@@ -24,15 +24,15 @@ class RivalRenderer : public Renderer {
   // one the answers are those without a frame.
   virtual bool take(const NeighbourSearch& /*points*/) { return true; }
   // One tick for a HIP that is finite and a frame that was taken. The proxy starts at the first HIP. Fills in
-  // force_N, state, nearest_m, steps, converged, contact_count and status, and leaves the proxy and the
-  // normal in the members below.
+  // force_N, state, nearest_distance_m, steps, converged, contact_count and status, and leaves the proxy and
+  // the normal in the members below.
   virtual void touch(const Vec3& hip_W, RenderOutput& out) = 0;
   // The HIP is lost, or there is no frame: forget what belongs to an unbroken motion.
-  virtual void let_go() {}
+  virtual void reset_motion() {}
 
   // (5.8) where points carry a stiffness, else the renderer's own.
-  double stiffness_of(const Survey& survey) const {
-    return survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : stiffness_N_per_m_;
+  double stiffness_of(const ContactQuery& query) const {
+    return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : stiffness_N_per_m_;
   }
 
   Neighbourhood near_;

@@ -43,11 +43,11 @@ ThinnestAxis thinnest_axis(const Eigen::Matrix3d& symmetric) {
     turned |= rotate(a, axes, 0, 2, nothing);
     turned |= rotate(a, axes, 1, 2, nothing);
   }
-  int least = 0;
+  int min = 0;
   for (int i = 1; i < 3; ++i)
-    if (a(i, i) < a(least, least)) least = i;
-  const double others[] = {a((least + 1) % 3, (least + 1) % 3), a((least + 2) % 3, (least + 2) % 3)};
-  return {axes.col(least), a(least, least), std::min(others[0], others[1])};
+    if (a(i, i) < a(min, min)) min = i;
+  const double others[] = {a((min + 1) % 3, (min + 1) % 3), a((min + 2) % 3, (min + 2) % 3)};
+  return {axes.col(min), a(min, min), std::min(others[0], others[1])};
 }
 
 }  // namespace remote_touch

@@ -3,10 +3,10 @@
 namespace remote_touch {
 
 void GatheredPoints::reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness) {
-  const std::size_t room = cloud_size + 2 * kLanes;
-  x_.grow(room), y_.grow(room), z_.grow(room), index_.grow(room);
-  if (with_radius) radius_.grow(room);
-  if (with_stiffness) stiffness_.grow(room);
+  const std::size_t capacity = cloud_size + 2 * kLanes;
+  x_.grow(capacity), y_.grow(capacity), z_.grow(capacity), index_.grow(capacity);
+  if (with_radius) radius_.grow(capacity);
+  if (with_stiffness) stiffness_.grow(capacity);
   with_radius_ = with_radius, with_stiffness_ = with_stiffness;
 }
 

@@ -18,7 +18,7 @@ struct Ball {
 
 // Room for numbers that are written before they are read; pages never written cost nothing.
 template <class T>
-class Room {
+class Buffer {
  public:
   // When the room grows the first ones that are to be kept stay, what else was stored is lost.
   void grow(std::size_t size, std::size_t kept = 0) {
@@ -55,8 +55,8 @@ class GatheredPoints {
  private:
   std::size_t count_ = 0;
   bool with_radius_ = false, with_stiffness_ = false;
-  Room<double> x_, y_, z_, radius_, stiffness_;
-  Room<std::uint32_t> index_;
+  Buffer<double> x_, y_, z_, radius_, stiffness_;
+  Buffer<std::uint32_t> index_;
 };
 
 }  // namespace remote_touch

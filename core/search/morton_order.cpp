@@ -24,8 +24,8 @@ std::vector<std::uint32_t> morton_order(const PointCloud& cloud) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     if (cloud.is_measured(i)) low = low.cwiseMin(cloud.point(i)), high = high.cwiseMax(cloud.point(i));
-  const double largest = std::max((high - low).maxCoeff(), 1e-9);
-  const double per_m = 0x1ffffe / largest;
+  const double max = std::max((high - low).maxCoeff(), 1e-9);
+  const double per_m = 0x1ffffe / max;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;

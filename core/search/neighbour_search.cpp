@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointCloud& room) const {
+const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointCloud& buffer) const {
   constexpr double kEverywhere_m = 1e6;
   GatheredPoints all;
   all.reserve(size(), has_fixture_radius(), has_stiffness());
@@ -17,15 +17,14 @@ const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointClou
   const auto column = [&](const double* from) {
     return from ? std::vector<double>(from, from + all.size()) : std::vector<double>();
   };
-  room = {};
-  room.x = column(view.x), room.y = column(view.y), room.z = column(view.z);
-  room.fixture_radius_m = column(view.radius), room.stiffness_N_per_m = column(view.stiffness);
-  return room;
+  buffer = {};
+  buffer.x = column(view.x), buffer.y = column(view.y), buffer.z = column(view.z);
+  buffer.fixture_radius_m = column(view.radius), buffer.stiffness_N_per_m = column(view.stiffness);
+  return buffer;
 }
 
 CloudSearch::CloudSearch(PointCloud cloud) : cloud_(std::move(cloud)) {
-  for (const double r : cloud_.fixture_radius_m)
-    largest_fixture_radius_ = std::max(largest_fixture_radius_, r);
+  for (const double r : cloud_.fixture_radius_m) max_fixture_radius_ = std::max(max_fixture_radius_, r);
 }
 
 PointRun CloudSearch::run(std::size_t first, std::size_t count) const {

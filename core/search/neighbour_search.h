@@ -23,13 +23,13 @@ class NeighbourSearch {
   // writes what gather() finds into room: positions, and radii and stiffness where there are some, but no
   // normals and no colours. A search over a stored cloud gives the cloud itself, so all its columns, and the
   // rows of missing measurements too.
-  virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& room) const;
+  virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& buffer) const;
   virtual bool has_fixture_radius() const { return false; }
   // Some radius is above 0: there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
   virtual bool has_stiffness() const { return false; }
   // No r_f of the cloud is larger, m.
-  virtual double largest_fixture_radius_m() const { return 0; }
+  virtual double max_fixture_radius_m() const { return 0; }
   // Of an organised frame: how wide its rows are. The point in a row and column has the number row x columns
   // + column in GatheredPoints::index(), whatever the order of the search. 0: points in no order.
   virtual int organised_columns() const { return 0; }
@@ -41,9 +41,9 @@ class CloudSearch : public NeighbourSearch {
   explicit CloudSearch(PointCloud cloud);
   std::size_t size() const override { return cloud_.size(); }
   bool has_fixture_radius() const override { return !cloud_.fixture_radius_m.empty(); }
-  bool has_regions() const override { return largest_fixture_radius_ > 0; }
+  bool has_regions() const override { return max_fixture_radius_ > 0; }
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
-  double largest_fixture_radius_m() const override { return largest_fixture_radius_; }
+  double max_fixture_radius_m() const override { return max_fixture_radius_; }
   int organised_columns() const override { return cloud_.columns(); }
   const PointCloud& cloud() const { return cloud_; }
   const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
@@ -51,11 +51,11 @@ class CloudSearch : public NeighbourSearch {
  protected:
   PointRun run(std::size_t first, std::size_t count) const;
   // In which the points lie whose regions meet the ball: wider by the largest r_f of the cloud.
-  Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + largest_fixture_radius_}; }
+  Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + max_fixture_radius_}; }
   PointCloud cloud_;
 
  private:
-  double largest_fixture_radius_ = 0;
+  double max_fixture_radius_ = 0;
 };
 
 // Looks at every point: the oracle for the others, and the best choice for a few hundred points.

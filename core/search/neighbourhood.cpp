@@ -11,7 +11,7 @@ namespace {
 // A cube's edge in units of the reach: smaller means fewer useless points in a list, larger fewer new lists.
 constexpr double kPitch = 0.125;
 // A tube is searched in at most so many hops, however far the HIP jumped.
-constexpr double kMostHops = 64;
+constexpr double kMaxHops = 64;
 }  // namespace
 
 Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
@@ -24,27 +24,27 @@ Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);
   reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
-  for (Kept& kept : kept_) kept.valid = false;
+  for (CachedList& kept : cache_) kept.valid = false;
 }
 
 void Neighbourhood::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
-  for (Kept& kept : kept_) kept.points.reserve(points, with_radius, with_stiffness);
+  for (CachedList& kept : cache_) kept.points.reserve(points, with_radius, with_stiffness);
   tube_.reserve(points, with_radius, with_stiffness);
 }
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {
   const Vec3 centre = (p / pitch_).array().round().matrix() * pitch_;
-  const auto holds = [&](const Kept& kept) { return kept.valid && centre == kept.centre; };
-  if (holds(kept_[present_])) return kept_[present_].points;
-  for (std::size_t i = 0; i < kept_.size(); ++i)
-    if (holds(kept_[i])) return kept_[present_ = i].points;
-  present_ = (present_ + 1) % kept_.size();
-  kept_[present_].centre = centre;
-  gather(kept_[present_]);
-  return kept_[present_].points;
+  const auto holds = [&](const CachedList& kept) { return kept.valid && centre == kept.centre; };
+  if (holds(cache_[current_])) return cache_[current_].points;
+  for (std::size_t i = 0; i < cache_.size(); ++i)
+    if (holds(cache_[i])) return cache_[current_ = i].points;
+  current_ = (current_ + 1) % cache_.size();
+  cache_[current_].centre = centre;
+  gather(cache_[current_]);
+  return cache_[current_].points;
 }
 
-void Neighbourhood::gather(Kept& kept) {
+void Neighbourhood::gather(CachedList& kept) {
   kept.points.clear();
   points_->gather({kept.centre, list_radius_}, kernels_, kept.points);
   kept.points.finish();
@@ -60,14 +60,14 @@ const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {
 }
 
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
-  const Kept& here = kept_[present_];
+  const CachedList& here = cache_[current_];
   const bool covered = here.valid && (p - here.centre).norm() + limit + radius <= list_radius_;
   if (covered) return std::min(limit, kernels_.first_hit(here.points.view(), p.data(), u.data(), radius));
 
   // The region of a point first met between two hops comes within radius of that part of the axis, so it
   // meets that hop's ball; the root is taken from p itself, whatever the hop, so the result does not depend
   // on the hops.
-  const double hop = std::max(2 * reach_, limit / kMostHops);
+  const double hop = std::max(2 * reach_, limit / kMaxHops);
   for (double start = 0; start < limit; start += hop) {
     const double end = std::min(start + hop, limit);
     const double rounding = 1e-9 * (1 + end);

@@ -32,24 +32,24 @@ class Neighbourhood {
   bool has_regions() const { return points_->has_regions(); }
 
   // M of kernels.h for sums over the present list.
-  double sum_grid() const { return kept_[present_].sum_grid; }
+  double sum_grid() const { return cache_[current_].sum_grid; }
 
  private:
-  struct Kept {
+  struct CachedList {
     Vec3 centre = Vec3::Zero();
     bool valid = false;
     double sum_grid = 1.5;
     GatheredPoints points = {};
   };
-  void gather(Kept& kept);
+  void gather(CachedList& kept);
 
   double reach_;
   double pitch_;  // edge of the cubes
   double list_radius_;
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> points_;
-  std::array<Kept, 4> kept_;
-  std::size_t present_ = 0;
+  std::array<CachedList, 4> cache_;
+  std::size_t current_ = 0;
   GatheredPoints tube_;  // what was gathered for one call
 };
 

@@ -35,32 +35,32 @@ struct ActiveRows {
         const Packed<N> more = q.transposed_times(outside);
         inside.add(1, more), outside.add(-1, q.times(more));
       }
-      const Packed<N> share = inverse.times(inside);  // of each row that holds y in unit_row
+      const Packed<N> fraction = inverse.times(inside);  // of each row that holds y in unit_row
       const double squared = outside.dot(outside);
       const bool is_free = squared > kParallelSquared;
       double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
                             : std::numeric_limits<double>::infinity();
       int leaves = -1;
       for (int j = 0; j < count; ++j)
-        if (share[j] > kRounding && multiplier[j] < step * share[j])
-          step = multiplier[j] / share[j], leaves = j;
+        if (fraction[j] > kRounding && multiplier[j] < step * fraction[j])
+          step = multiplier[j] / fraction[j], leaves = j;
       if (!(step < std::numeric_limits<double>::infinity())) return false;
       if (is_free) y.add(step, outside);
-      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * share[j]);
+      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * fraction[j]);
       its_multiplier += step;
       if (leaves < 0) {
-        append(row, its_multiplier, outside, share, 1 / std::sqrt(squared));
+        append(row, its_multiplier, outside, fraction, 1 / std::sqrt(squared));
         return true;
       }
       remove(leaves);
     }
   }
 
-  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& share,
+  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& fraction,
               double scale) {
     number[count] = row, multiplier[count] = its_multiplier;
     q.column[count].add(scale, outside);
-    inverse.column[count].add(-scale, share);
+    inverse.column[count].add(-scale, fraction);
     inverse.column[count].set(count, scale);
     ++count;
   }

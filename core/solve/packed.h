@@ -34,7 +34,7 @@ struct Packed {
     for (int p = 1; p < kPairs; ++p) sum += pair[p] * other.pair[p];
     return sum[0] + sum[1];
   }
-  double largest() const {
+  double max_abs() const {
     double result = 0;
     for (int i = 0; i < N; ++i) result = std::max(result, std::abs((*this)[i]));
     return result;

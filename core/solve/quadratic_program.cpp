@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kLanes = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kLargest = 1e150;        // its square is finite
-constexpr double kContradiction = 5e-13;  // violations below may be the rounding of rows that nearly agree
+constexpr double kMax = 1e150;         // its square is finite
+constexpr double kInfeasible = 5e-13;  // violations below may be the rounding of rows that nearly agree
 
 // How far two rows are violated, and the number of the first of them.
 struct PairOfRows {
@@ -44,23 +44,23 @@ template <int N>
 bool QuadraticProgram<N>::add(const Vector& row, double bound) {
   if (count_ == capacity_ || !row.allFinite() || !std::isfinite(bound)) return false;
   const auto i = static_cast<std::size_t>(count_++);
-  const double largest = row.cwiseAbs().maxCoeff();
+  const double max = row.cwiseAbs().maxCoeff();
   Vector scaled = row;
   double scale = 1;
-  if (!(largest > 1e-150 && largest < kLargest) && largest > 0) {  // its square would vanish or overflow
-    scale = largest;
+  if (!(max > 1e-150 && max < kMax) && max > 0) {  // its square would vanish or overflow
+    scale = max;
     scaled /= scale, bound /= scale;
   }
-  const double length = largest > 0 ? scaled.norm() : 1;
+  const double length = max > 0 ? scaled.norm() : 1;
   for (int k = 0; k < N; ++k) rows_[i + static_cast<std::size_t>(k * stride_)] = scaled[k] / length;
-  bounds_[i] = largest > 0 ? bound / length : bound > 0 ? kInfinite : -kInfinite;
+  bounds_[i] = max > 0 ? bound / length : bound > 0 ? kInfinite : -kInfinite;
   lengths_[i] = scale * length;
   return true;
 }
 
 // Padding is never violated.
 template <int N>
-typename QuadraticProgram<N>::Violation QuadraticProgram<N>::largest_violation(const double* y) const {
+typename QuadraticProgram<N>::Violation QuadraticProgram<N>::max_violation(const double* y) const {
   Pair y_twice[N];
   for (int k = 0; k < N; ++k) y_twice[k] = both(y[k]);
   PairOfRows worst[kLanes / 2];
@@ -80,7 +80,7 @@ template <int N>
 ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
   ProgramResult<N> result;
   result.status = ProgramStatus::stalled;
-  if (!target.allFinite() || target.cwiseAbs().maxCoeff() > kLargest) return result;
+  if (!target.allFinite() || target.cwiseAbs().maxCoeff() > kMax) return result;
   const auto unit_row = [this](int i) {
     Packed<N> row;
     for (int k = 0; k < N; ++k) row.set(k, rows_[static_cast<std::size_t>(k * stride_ + i)]);
@@ -91,21 +91,21 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
   for (int k = 0; k < N; ++k) start.set(k, target[k]);
   Packed<N> y = start;
   ActiveRows<N> held;
-  const double start_scale = start.largest();
-  double least = 0;  // violations that are due to rounding
+  const double start_scale = start.max_abs();
+  double min = 0;  // violations that are due to rounding
   bool settled = false;
-  const int most = 8 * (N + count_);
-  while (result.iterations++ < most) {
+  const int max = 8 * (N + count_);
+  while (result.iterations++ < max) {
     double plain[2 * Packed<N>::kPairs];
     std::memcpy(plain, y.pair, sizeof plain);
-    const Violation worst = largest_violation(plain);
-    const double scale = std::max(start_scale, y.largest());
-    if (worst.distance <= std::max(least, kRounding * scale)) {
+    const Violation worst = max_violation(plain);
+    const double scale = std::max(start_scale, y.max_abs());
+    if (worst.distance <= std::max(min, kRounding * scale)) {
       result.status = ProgramStatus::optimal;
       Packed<N> distance;
       for (int j = 0; j < held.count; ++j)
         distance.set(j, bound(held.number[j]) - unit_row(held.number[j]).dot(y));
-      if (settled || distance.largest() <= kRounding * scale) break;
+      if (settled || distance.max_abs() <= kRounding * scale) break;
       held.settle(distance, start, y);
       settled = true;
       continue;
@@ -113,8 +113,8 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
     settled = false;
     const int before = held.count;
     if (held.take_in(worst.row, unit_row(worst.row), bound(worst.row), y)) continue;
-    if (held.count == before && worst.distance <= kContradiction * scale) {
-      least = worst.distance;
+    if (held.count == before && worst.distance <= kInfeasible * scale) {
+      min = worst.distance;
       continue;
     }
     result.status = ProgramStatus::infeasible;

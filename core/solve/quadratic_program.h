@@ -53,7 +53,7 @@ class QuadraticProgram {
     double distance;  // to the row's half space
     int row;
   };
-  Violation largest_violation(const double* y) const;
+  Violation max_violation(const double* y) const;
 
   int capacity_, stride_, count_ = 0;
   std::vector<double> rows_;    // of unit length; column after column, each of stride_ = padded capacity

@@ -7,7 +7,7 @@ namespace remote_touch {
 
 PairChoice::PairChoice(double look_ahead_m, const Kernels& kernels)
     : look_ahead_m_(look_ahead_m), motion_m_(0.5 * look_ahead_m), kernels_(kernels) {
-  chosen_.reserve(kRoom);
+  chosen_.reserve(kCapacity);
 }
 
 void PairChoice::begin() {
@@ -24,18 +24,18 @@ double PairChoice::within_m(double gap_m) const {
 }
 
 std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {
-  if (chosen_.size() + kMostOfLeaf > kRoom) keep_most_urgent(kRoom / 2);
+  if (chosen_.size() + kMaxPairsOfLeaf > kCapacity) keep_shortest_motions(kCapacity / 2);
   const NearRegions& near = found.regions;
-  LeftRegions left{kernels_.deepest_region(near, found.count), found.count};
+  RemainingRegions left{kernels_.deepest_region(near, found.count), found.count};
   const std::uint32_t deepest = near.number[left.deepest];
-  const double least_m = near.gap[left.deepest], most_m = within_m(least_m);
-  const bool deep = is_deep(least_m);
+  const double min_m = near.gap[left.deepest], max_m = within_m(min_m);
+  const bool deep = is_deep(min_m);
   constexpr double kAny = -2;  // below every cosine
   const double motion_m = deep ? 2 * look_ahead_m_ : motion_m_, alike = deep ? kAlike : kAny;
-  for (std::size_t kept = 0; kept < kMostOfLeaf && left.deepest < left.count; ++kept) {
+  for (std::size_t kept = 0; kept < kMaxPairsOfLeaf && left.deepest < left.count; ++kept) {
     const std::size_t at = left.deepest;
     chosen_.push_back({leaf.number, near.gap[at], {near.nx[at], near.ny[at], near.nz[at]}, near.gap[at]});
-    left = kernels_.next_deepest_region(near, left.count, at, motion_m, alike, most_m);
+    left = kernels_.next_deepest_region(near, left.count, at, motion_m, alike, max_m);
   }
   return deepest;
 }
@@ -47,25 +47,25 @@ void PairChoice::rate() {
     ChosenPair& pair = chosen_[rated_];
     if (pair.leaf != chosen_[first].leaf) first = rated_;
     if (is_deep(chosen_[first].gap_m)) continue;
-    double longest_squared = 0;
+    double max_squared = 0;
     for (std::size_t i = first; i < rated_; ++i) {
-      const double rise_m = pair.gap_m - chosen_[i].gap_m,
+      const double rise_height_m = pair.gap_m - chosen_[i].gap_m,
                    apart_squared = (pair.n_W - chosen_[i].n_W).squaredNorm();
-      if (apart_squared > 0) longest_squared = std::max(longest_squared, rise_m * rise_m / apart_squared);
+      if (apart_squared > 0)
+        max_squared = std::max(max_squared, rise_height_m * rise_height_m / apart_squared);
     }
-    pair.motion_m = std::max(pair.gap_m, longest_squared > 0 ? std::sqrt(longest_squared) : pair.gap_m);
+    pair.motion_m = std::max(pair.gap_m, max_squared > 0 ? std::sqrt(max_squared) : pair.gap_m);
   }
 }
 
-void PairChoice::keep_most_urgent(std::size_t most) {
+void PairChoice::keep_shortest_motions(std::size_t max) {
   rate();
   const auto is_sooner = [](const ChosenPair& a, const ChosenPair& b) {
     if (a.motion_m != b.motion_m) return a.motion_m < b.motion_m;
     return a.leaf != b.leaf ? a.leaf < b.leaf : a.gap_m < b.gap_m;
   };
   std::sort(chosen_.begin(), chosen_.end(), is_sooner);
-  if (chosen_.size() > most)
-    chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(most), chosen_.end());
+  if (chosen_.size() > max) chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(max), chosen_.end());
   rated_ = chosen_.size();
 }
 

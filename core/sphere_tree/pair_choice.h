@@ -33,12 +33,12 @@ struct ChosenPair {
 // finds it.
 //
 // Of every leaf the deepest pair is kept, so no pair is deeper than all that are kept. Room ends with
-// kMostOfLeaf of a leaf, then the shallower ones are lost, and with kRoom of all, then those are lost that
-// only the longest motions can violate; those of deep leaves count as their gaps, so the deepest stay.
+// kMaxPairsOfLeaf of a leaf, then the shallower ones are lost, and with kCapacity of all, then those are lost
+// that only the longest motions can violate; those of deep leaves count as their gaps, so the deepest stay.
 // Allocates on construction only.
 class PairChoice {
  public:
-  static constexpr std::size_t kMostOfLeaf = 64, kRoom = 4096;
+  static constexpr std::size_t kMaxPairsOfLeaf = 64, kCapacity = 4096;
   static constexpr double kAlike = 0.90630778703664996;  // cosine of 25 degrees
 
   PairChoice(double look_ahead_m, const Kernels& kernels);
@@ -52,7 +52,7 @@ class PairChoice {
 
   std::span<const ChosenPair> chosen() const { return chosen_; }
   // No more than most of them: those that the shortest motions can violate, these first.
-  void keep_most_urgent(std::size_t most);
+  void keep_shortest_motions(std::size_t max);
   bool is_deep(double gap_m) const { return gap_m < -motion_m_; }
 
  private:

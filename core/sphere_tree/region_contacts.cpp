@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // As many contacts as ContactThinning can sort without losing any.
-constexpr std::size_t kMostToThin = ContactThinning::kMostCells / 2;
+constexpr std::size_t kMaxToThin = ContactThinning::kMaxCells / 2;
 
 }  // namespace
 
@@ -22,8 +22,8 @@ RegionContacts::RegionContacts(std::shared_ptr<const SphereTree> tool, double lo
       collision_(*tool_, kernels),
       choice_(look_ahead_m, kernels),
       deepest_(tool_->leaves().size(), kNone) {
-  contacts_.reserve(ContactThinning::kMost);
-  others_.reserve(kMostToThin);
+  contacts_.reserve(ContactThinning::kMaxCount);
+  others_.reserve(kMaxToThin);
 }
 
 void RegionContacts::on_frame(std::shared_ptr<const RegionTree> regions) {
@@ -55,7 +55,7 @@ ToolContact RegionContacts::contact(const ChosenPair& pair, const Eigen::Quatern
 NearContacts RegionContacts::near(const ToolPose& pose, double) {
   choice_.begin();
   std::uint32_t neighbours = kNone;
-  double least_m = kInfinite;
+  double min_m = kInfinite;
   for (const CloseLeaf& leaf : collision_.close_leaves(pose, look_ahead_m_)) {
     std::uint32_t& deepest = deepest_[leaf.number];
     const double within_m = choice_.within_m(std::min(bound_m(leaf, deepest), bound_m(leaf, neighbours)));
@@ -63,18 +63,18 @@ NearContacts RegionContacts::near(const ToolPose& pose, double) {
     if (found.count == 0) continue;
     deepest = neighbours = choice_.choose(leaf, found);
   }
-  for (const ChosenPair& pair : choice_.chosen()) least_m = std::min(least_m, pair.gap_m);
-  if (choice_.chosen().size() > ContactThinning::kMost)
-    choice_.keep_most_urgent(choice_.is_deep(least_m) ? kMostToThin : ContactThinning::kMost);
+  for (const ChosenPair& pair : choice_.chosen()) min_m = std::min(min_m, pair.gap_m);
+  if (choice_.chosen().size() > ContactThinning::kMaxCount)
+    choice_.keep_shortest_motions(choice_.is_deep(min_m) ? kMaxToThin : ContactThinning::kMaxCount);
   take_contacts(pose.q_WT.conjugate());
-  return {contacts_, -least_m};
+  return {contacts_, -min_m};
 }
 
 // Where there are too many, half of the room is for the most urgent, which all hold a tool that is wedged.
 void RegionContacts::take_contacts(const Eigen::Quaterniond& q_TW) {
-  constexpr std::size_t kHalf = ContactThinning::kMost / 2;
+  constexpr std::size_t kHalf = ContactThinning::kMaxCount / 2;
   const std::span<const ChosenPair> chosen = choice_.chosen();
-  const std::size_t as_they_are = chosen.size() > ContactThinning::kMost ? kHalf : chosen.size();
+  const std::size_t as_they_are = chosen.size() > ContactThinning::kMaxCount ? kHalf : chosen.size();
   contacts_.clear(), others_.clear();
   for (const ChosenPair& pair : chosen.first(as_they_are)) contacts_.push_back(contact(pair, q_TW));
   for (const ChosenPair& pair : chosen.subspan(as_they_are)) others_.push_back(contact(pair, q_TW));
@@ -88,11 +88,11 @@ RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N
   double weights = 0, weighted = 0;
   for (const CloseLeaf& leaf : collision_.close_leaves(pose, std::max(look_ahead_m_, kTouch_m))) {
     const TreeCollision::Found found =
-        collision_.regions_near(leaf, std::max(kTouch_m, std::min(look_ahead_m_, touch.nearest_m)));
+        collision_.regions_near(leaf, std::max(kTouch_m, std::min(look_ahead_m_, touch.nearest_distance_m)));
     const int before = touch.leaf_pairs;
     for (std::size_t i = 0; i < found.count; ++i) {
       const double gap_m = found.regions.gap[i];
-      touch.nearest_m = std::min(touch.nearest_m, gap_m);
+      touch.nearest_distance_m = std::min(touch.nearest_distance_m, gap_m);
       if (gap_m > kTouch_m) continue;
       ++touch.leaf_pairs;
       const double weight = std::min((kTouch_m - gap_m) / (2 * kTouch_m), 1.0);
@@ -100,9 +100,9 @@ RegionTouch RegionContacts::touched(const ToolPose& pose, double own_stiffness_N
       weights += weight;
       weighted += weight * (std::isnan(stiffness) ? own_stiffness_N_per_m : stiffness);
     }
-    touch.tool_leaves += touch.leaf_pairs > before ? 1 : 0;
+    touch.max_tool_leaves += touch.leaf_pairs > before ? 1 : 0;
   }
-  if (touch.nearest_m > look_ahead_m_) touch.nearest_m = kInfinite;
+  if (touch.nearest_distance_m > look_ahead_m_) touch.nearest_distance_m = kInfinite;
   if (weights > 0) touch.stiffness_N_per_m = weighted / weights;
   return touch;
 }

@@ -15,10 +15,10 @@ namespace remote_touch {
 
 // What a tool touches at a pose.
 struct RegionTouch {
-  double nearest_m;          // smallest gap, negative inside; infinite where none is within the look-ahead
-  int leaf_pairs = 0;        // with gaps of kTouch_m or less
-  int tool_leaves = 0;       // that have one
-  double stiffness_N_per_m;  // mean of k_s over them, by how deep each is; the tool's own without any
+  double nearest_distance_m;  // smallest gap, negative inside; infinite where none is within the look-ahead
+  int leaf_pairs = 0;         // with gaps of kTouch_m or less
+  int max_tool_leaves = 0;    // that have one
+  double stiffness_N_per_m;   // mean of k_s over them, by how deep each is; the tool's own without any
 };
 
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless others

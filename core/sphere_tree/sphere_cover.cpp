@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kMostCells = 1e7;  // a slim body across its box would have far more
+constexpr double kMaxCells = 1e7;  // a slim body across its box would have far more
 
 }  // namespace
 
@@ -20,7 +20,7 @@ SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, d
   low_ = -high;
   for (const Vec3& p : points) low_ = low_.cwiseMin(p), high = high.cwiseMax(p);
   if (points.empty()) low_ = high = Vec3::Zero();
-  while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMostCells) cell_m_ *= 2;
+  while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMaxCells) cell_m_ *= 2;
   for (int axis = 0; axis < 3; ++axis)
     cells_[axis] = static_cast<std::int64_t>((high[axis] - low_[axis]) / cell_m_) + 1;
   const auto cell_of = [&](const Vec3& p) {
@@ -62,7 +62,7 @@ void SphereCover::within(const Sphere& sphere, const Act& act) const {
 
 // A sphere never covers more than it did before, so a count from an earlier round is a bound: only what is on
 // top of the heap has to be counted again.
-SphereCover::Result SphereCover::cover(double growth_m, std::size_t most) const {
+SphereCover::Result SphereCover::cover(double inflation_m, std::size_t max) const {
   struct Entry {
     std::uint32_t count, sphere;
     bool operator<(const Entry& other) const {
@@ -71,7 +71,7 @@ SphereCover::Result SphereCover::cover(double growth_m, std::size_t most) const 
   };
   std::vector<std::uint8_t> covered(points_.size(), 0);
   const auto grown = [&](std::uint32_t i) {
-    return Sphere{choice_[i].centre, choice_[i].radius_m + growth_m};
+    return Sphere{choice_[i].centre, choice_[i].radius_m + inflation_m};
   };
   const auto count_of = [&](std::uint32_t i) {
     std::uint32_t count = 0;
@@ -85,7 +85,7 @@ SphereCover::Result SphereCover::cover(double growth_m, std::size_t most) const 
   std::priority_queue<Entry> heap({}, std::move(entries));
   Result result;
   result.left = points_.size();
-  while (!heap.empty() && result.left > 0 && result.spheres.size() <= most) {
+  while (!heap.empty() && result.left > 0 && result.spheres.size() <= max) {
     Entry best = heap.top();
     heap.pop();
     const std::uint32_t now = count_of(best.sphere);

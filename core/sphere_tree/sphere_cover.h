@@ -13,13 +13,13 @@ class SphereCover {
   // points, and spheres to choose from; cell_m: of the grid that finds points, about the size of a sphere.
   SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m);
 
-  // Spheres of the choice, grown by growth_m, until all points are covered that any of them covers, or until
-  // there are more than most; of two that cover as many the one that comes first.
+  // Spheres of the choice, grown by inflation_m, until all points are covered that any of them covers, or
+  // until there are more than most; of two that cover as many the one that comes first.
   struct Result {
     std::vector<Sphere> spheres;
     std::size_t left = 0;  // points that are not covered
   };
-  Result cover(double growth_m, std::size_t most) const;
+  Result cover(double inflation_m, std::size_t max) const;
 
  private:
   // Calls act(point) for the points in the sphere.

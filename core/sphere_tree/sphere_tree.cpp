@@ -33,7 +33,7 @@ Sphere bounding_sphere(std::span<const Sphere> spheres) {
 void SphereTree::clear() {
   leaves_.clear();
   level_count_ = 0;
-  for (std::vector<double>* column : {&x_, &y_, &z_, &radius_, &most_radius_}) column->clear();
+  for (std::vector<double>* column : {&x_, &y_, &z_, &radius_, &max_radius_}) column->clear();
   for (std::size_t axis = 0; axis < 3; ++axis) low_[axis].clear(), high_[axis].clear();
   run_starts_.clear();
 }
@@ -46,13 +46,13 @@ std::vector<SphereNode>& SphereTree::new_level() {
 }
 
 void SphereTree::append_run(std::span<const Sphere> leaves) {
-  run_starts_.push_back({x_.size(), most_radius_.size()});
+  run_starts_.push_back({x_.size(), max_radius_.size()});
   for (std::size_t first = 0; first < leaves.size(); first += kLanes)
     append_group(leaves.subspan(first, std::min(kLanes, leaves.size() - first)));
   const std::size_t padded = in_whole_groups(x_.size());
   for (std::vector<double>* column : {&x_, &y_, &z_}) column->resize(padded, kFarAway);
   radius_.resize(padded, 0);
-  const std::size_t groups = most_radius_.size() - run_starts_.back().group;
+  const std::size_t groups = max_radius_.size() - run_starts_.back().group;
   pad_groups(in_whole_groups(groups) - groups);
 }
 
@@ -67,14 +67,14 @@ void SphereTree::append_group(std::span<const Sphere> leaves) {
     const auto i = static_cast<Eigen::Index>(axis);
     low_[axis].push_back(box.low[i]), high_[axis].push_back(box.high[i]);
   }
-  most_radius_.push_back(box.most_radius_m);
+  max_radius_.push_back(box.max_radius_m);
 }
 
 void SphereTree::pad_groups(std::size_t padding) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::vector<double>* column : {&low_[axis], &high_[axis]})
       column->insert(column->end(), padding, kFarAway);
-  most_radius_.insert(most_radius_.end(), padding, 0);
+  max_radius_.insert(max_radius_.end(), padding, 0);
 }
 
 void SphereTree::add(std::span<const Sphere> leaves) {
@@ -90,7 +90,7 @@ void SphereTree::add(std::span<const Sphere> leaves) {
 
 SphereRun SphereTree::run(std::size_t node) const {
   const auto [leaf, group] = run_starts_[node];
-  const std::size_t end = node + 1 < run_starts_.size() ? run_starts_[node + 1].group : most_radius_.size();
+  const std::size_t end = node + 1 < run_starts_.size() ? run_starts_[node + 1].group : max_radius_.size();
   const auto from = [](const std::vector<double>& column, std::size_t start) {
     return column.data() + start;
   };
@@ -100,7 +100,7 @@ SphereRun SphereTree::run(std::size_t node) const {
           from(radius_, leaf),
           {from(low_[0], group), from(low_[1], group), from(low_[2], group)},
           {from(high_[0], group), from(high_[1], group), from(high_[2], group)},
-          from(most_radius_, group),
+          from(max_radius_, group),
           end - group,
           levels_.front()[node].first};
 }

@@ -23,12 +23,12 @@ Sphere bounding_sphere(std::span<const Sphere> spheres);
 // large spheres lie close together, as regions do.
 struct SphereBox {
   Vec3 low, high;
-  double most_radius_m;
+  double max_radius_m;
 
   static SphereBox around(const Sphere& one) { return {one.centre, one.centre, one.radius_m}; }
   void add(const SphereBox& other) {
     low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
-    most_radius_m = std::max(most_radius_m, other.most_radius_m);
+    max_radius_m = std::max(max_radius_m, other.max_radius_m);
   }
 };
 
@@ -74,7 +74,7 @@ class SphereTree {
     std::size_t leaf, group;
   };
   std::vector<double> x_, y_, z_, radius_;
-  std::vector<double> low_[3], high_[3], most_radius_;
+  std::vector<double> low_[3], high_[3], max_radius_;
   std::vector<RunStart> run_starts_;  // of each node, in these columns
 };
 

@@ -29,8 +29,8 @@ ContactState state_of(double gap_m) {
 Parameters region_parameters(ToolParameters& p) {
   Parameters all = parameters(p);
   std::erase_if(all, [](const Parameter& parameter) {
-    for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_share",
-                              "velocity_estimate", "longest_prediction_s"})
+    for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio",
+                              "velocity_estimate", "max_prediction_s"})
       if (parameter.name == other) return true;
     return false;
   });
@@ -78,34 +78,34 @@ RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
   RenderOutput out;
   out.frame_index = order_.newest();
   out.tool.emplace();
-  const std::optional<ToolPose> held = held_by(device);
-  if (!held) {
+  const std::optional<ToolPose> target = device_pose(device);
+  if (!target) {
     out.status = RenderStatus::device_not_finite;  // hold still and let go
   } else {
-    if (!placed_) pose_ = *held, placed_ = true;
+    if (!placed_) pose_ = *target, placed_ = true;
     if (order_.newest() < 0) {
-      pose_ = *held;
+      pose_ = *target;
       out.converged = true;
       out.status = RenderStatus::no_frame;
     } else {
-      follow(*held, out);
+      follow(*target, out);
     }
   }
   const RegionTouch touch = contacts_.touched(pose_, p_.stiffness_N_per_m);
-  if (held) {
+  if (target) {
     const Wrench wrench =
-        coupling_wrench(coupling_of(p_, touch.stiffness_N_per_m), tool_->inertia_m2, pose_, *held);
+        coupling_wrench(coupling_of(p_, touch.stiffness_N_per_m), tool_->inertia_m2, pose_, *target);
     out.force_N = wrench.force_N;
     out.tool->torque_Nm = wrench.torque_Nm;
   }
   out.proxy_W = out.slave_W = pose_.p_W;
   out.tool->orientation_W = pose_.q_WT;
   out.normal_W = normal_W_;
-  out.state = state_of(touch.nearest_m);
-  out.nearest_m = touch.nearest_m;
+  out.state = state_of(touch.nearest_distance_m);
+  out.nearest_distance_m = touch.nearest_distance_m;
   out.contact_count = touch.leaf_pairs;
-  out.tool->contact_clusters = touch.tool_leaves;
-  out.tool->penetration_m = std::max(0.0, -touch.nearest_m);
+  out.tool->contact_clusters = touch.max_tool_leaves;
+  out.tool->tool_penetration_m = std::max(0.0, -touch.nearest_distance_m);
   out.status = order_.status(out.status);
   return out;
 }

@@ -16,13 +16,13 @@ namespace remote_touch {
 // The device holds the tool by its centre of mass. Only points with r_f above 0 have a region; a point's k_s,
 // where it has one, is the stiffness of the coupling while its region holds the tool, (5.3).
 //
-// Of the output: nearest_m is the smallest gap between a leaf of the tool and a region, infinite beyond the
-// look-ahead; contact_count are the pairs of leaves that touch, contact_clusters the leaves of the tool among
-// them; penetration_m is the deepest leaf in a region.
+// Of the output: nearest_distance_m is the smallest gap between a leaf of the tool and a region, infinite
+// beyond the look-ahead; contact_count are the pairs of leaves that touch, contact_clusters the leaves of the
+// tool among them; tool_penetration_m is the deepest leaf in a region.
 class SphereTreeRenderer final : public Renderer {
  public:
   // Of the parameters those count that region_parameters() lists. spheres: of the tool, in its frame. pre:
-  // conflict(parameters) is empty.
+  // validate(parameters) is empty.
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                      std::shared_ptr<const SphereTree> spheres, const Kernels& kernels);
 

@@ -89,8 +89,8 @@ std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& t
           for (int dj = -1; dj <= 1; ++dj)
             for (int di = -1; di <= 1; ++di) {
               if (di == 0 && dj == 0 && dk == 0) continue;
-              const double way = grid.size_m * std::sqrt(di * di + dj * dj + dk * dk);
-              steepest = std::max(steepest, (-at(i + di, j + dj, k + dk) - here) / way);
+              const double path_length = grid.size_m * std::sqrt(di * di + dj * dj + dk * dk);
+              steepest = std::max(steepest, (-at(i + di, j + dj, k + dk) - here) / path_length);
             }
         if (steepest < kDominated) balls.push_back({grid.origin_T + grid.size_m * Vec3(i, j, k), here});
       }
@@ -101,21 +101,21 @@ std::vector<Sphere> inscribed_balls(const VoxelTool& tool, const TriangleTree& t
   return balls;
 }
 
-// The least growth with which most_leaves cover the surface, by bisection between none and the whole tool.
-SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, std::size_t most_leaves,
-                             double& growth_m) {
+// The least growth with which max_leaves cover the surface, by bisection between none and the whole tool.
+SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, std::size_t max_leaves,
+                             double& inflation_m) {
   double low = 0, high = 2 * tool.reach_m;
-  SphereCover::Result best = cover.cover(high, most_leaves);
+  SphereCover::Result best = cover.cover(high, max_leaves);
   for (int i = 0; i < kBisections; ++i) {
     // Most of the way is far too much: the first steps divide by ten.
     const double middle = low == 0 ? 0.1 * high : 0.5 * (low + high);
-    SphereCover::Result result = cover.cover(middle, most_leaves);
-    if (result.left == 0 && result.spheres.size() <= most_leaves)
+    SphereCover::Result result = cover.cover(middle, max_leaves);
+    if (result.left == 0 && result.spheres.size() <= max_leaves)
       best = std::move(result), high = middle;
     else
       low = middle;
   }
-  growth_m = high;
+  inflation_m = high;
   return best;
 }
 
@@ -145,60 +145,58 @@ SphereTree tree_of(std::vector<Sphere> leaves) {
 }
 
 // The most that a sample of the surface lies outside all leaves.
-double farthest_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
-  double farthest = 0;
-#pragma omp parallel for reduction(max : farthest)
+double max_inside_m(std::span<const Vec3> samples, std::span<const Sphere> leaves) {
+  double max_distance = 0;
+#pragma omp parallel for reduction(max : max_distance)
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Sphere& leaf : leaves)
-      least = std::min(least, (samples[i] - leaf.centre).norm() - leaf.radius_m);
-    farthest = std::max(farthest, least);
+    double min = std::numeric_limits<double>::infinity();
+    for (const Sphere& leaf : leaves) min = std::min(min, (samples[i] - leaf.centre).norm() - leaf.radius_m);
+    max_distance = std::max(max_distance, min);
   }
-  return farthest;
+  return max_distance;
 }
 
 // The most that a place of a leaf lies outside the mesh, over places spread evenly on it.
-double farthest_outside_m(const VoxelTool& tool, const TriangleTree& triangles,
-                          std::span<const Sphere> leaves) {
+double max_outside_m(const VoxelTool& tool, const TriangleTree& triangles, std::span<const Sphere> leaves) {
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
-  double farthest = 0;
-#pragma omp parallel for schedule(dynamic) reduction(max : farthest)
+  double max_distance = 0;
+#pragma omp parallel for schedule(dynamic) reduction(max : max_distance)
   for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
     int face = 0;
     for (int i = 0; i < kPlacesOfLeaf; ++i) {
       const double z = 1 - (2 * i + 1.0) / kPlacesOfLeaf, around = std::sqrt(1 - z * z);
-      const Vec3 way(around * std::cos(turn * i), around * std::sin(turn * i), z);
-      const Vec3 place = leaves[leaf].centre + leaves[leaf].radius_m * way;
+      const Vec3 path_length(around * std::cos(turn * i), around * std::sin(turn * i), z);
+      const Vec3 place = leaves[leaf].centre + leaves[leaf].radius_m * path_length;
       if (sample_field(tool, place).distance_m <= 0) continue;
       const TriangleTree::Nearest nearest = triangles.nearest(place, face);
       face = nearest.face;
-      farthest = std::max(farthest, std::sqrt(nearest.squared_m2));
+      max_distance = std::max(max_distance, std::sqrt(nearest.squared_m2));
     }
   }
-  return farthest;
+  return max_distance;
 }
 
 }  // namespace
 
-ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves) {
+ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   const TriangleTree triangles(tool.mesh);
   std::vector<Sphere> balls = inscribed_balls(tool, triangles);
   if (balls.empty())
     throw InputError("tool", "no place of its grid is inside; allowed a smaller renderer.tool_voxel_m");
-  const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * most_leaves));
+  const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * max_leaves));
   const SphereCover cover(thinned(surface_samples(tool.mesh, spacing_m), spacing_m), std::move(balls),
                           2 * spacing_m);
   ToolSpheres made;
   std::vector<Sphere> leaves =
-      tightest(cover, tool, static_cast<std::size_t>(most_leaves), made.growth_m).spheres;
+      tightest(cover, tool, static_cast<std::size_t>(max_leaves), made.inflation_m).spheres;
   // Between the places that were covered some of the surface is left.
   const double finer_m = kDenser * spacing_m;
   const std::vector<Vec3> dense = thinned(surface_samples(tool.mesh, finer_m), 0.5 * finer_m);
-  const double left_m = std::max(0.0, farthest_inside_m(dense, leaves));
-  for (Sphere& leaf : leaves) leaf.radius_m += left_m;
-  made.growth_m += left_m;
-  made.inside_m = std::max(0.0, farthest_inside_m(dense, leaves));
-  made.outside_m = farthest_outside_m(tool, triangles, leaves);
+  const double remaining_m = std::max(0.0, max_inside_m(dense, leaves));
+  for (Sphere& leaf : leaves) leaf.radius_m += remaining_m;
+  made.inflation_m += remaining_m;
+  made.inside_m = std::max(0.0, max_inside_m(dense, leaves));
+  made.outside_m = max_outside_m(tool, triangles, leaves);
   made.spheres = tree_of(std::move(leaves));
   return made;
 }

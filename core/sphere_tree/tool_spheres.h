@@ -12,18 +12,18 @@ namespace remote_touch {
 
 struct ToolSpheres {
   SphereTree spheres;  // in the tool frame
-  double growth_m = 0;
+  double inflation_m = 0;
   // How far the union of the leaves is from the mesh: the most that a leaf stands out of it, and the most
   // that the surface stands out of all leaves, both measured on dense samples. The first can be no more than
-  // growth_m; the leaves were grown until nothing was left of the second on these samples.
+  // inflation_m; the leaves were grown until nothing was left of the second on these samples.
   double outside_m = 0, inside_m = 0;
 };
 std::string text(const ToolSpheres& spheres);
 
-inline constexpr int kFewestLeaves = 1, kMostLeaves = 10000;
+inline constexpr int kMinLeaves = 1, kMaxLeaves = 10000;
 
-// pre: most_leaves in the range above. Fewer leaves are made where they do. Throws InputError for a tool
+// pre: max_leaves in the range above. Fewer leaves are made where they do. Throws InputError for a tool
 // without a node of its grid inside.
-ToolSpheres make_tool_spheres(const VoxelTool& tool, int most_leaves);
+ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);
 
 }  // namespace remote_touch

@@ -15,7 +15,7 @@ constexpr double kRounding = 1 + 1e-12;  // of the sums: no region within the ma
 // such spheres are never near.
 bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
   const SphereBox& box = node.box;
-  const double reach_m = (a.radius_m + box.most_radius_m + margin_m) * kRounding;
+  const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRounding;
   const Vec3 beyond = (box.low - a.centre).cwiseMax(a.centre - box.high).cwiseMax(0);
   return reach_m >= 0 && beyond.squaredNorm() <= reach_m * reach_m;
 }
@@ -41,10 +41,10 @@ void TreeCollision::on_frame(const SphereTree& regions) {
 
 void TreeCollision::reserve(std::size_t leaves, std::size_t patches) {
   if (!tool_.empty()) patches_.reserve(tool_.level(0).size() * patches);
-  const std::size_t room = leaves + 2 * kLanes;
-  if (number_.size() >= room) return;
-  for (std::vector<double>* column : {&gap_, &nx_, &ny_, &nz_}) column->resize(room);
-  number_.resize(room);
+  const std::size_t pairs = leaves + 2 * kLanes;
+  if (number_.size() >= pairs) return;
+  for (std::vector<double>* column : {&gap_, &nx_, &ny_, &nz_}) column->resize(pairs);
+  number_.resize(pairs);
 }
 
 Sphere TreeCollision::placed(const Sphere& sphere_T) const {
@@ -109,23 +109,23 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
 }
 
 // A heap with the shallowest of those that are kept on top, once there is no more room.
-std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> room) {
+std::size_t TreeCollision::near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs) {
   std::size_t count = 0;
   for (const CloseLeaf& leaf : close_leaves(pose, margin_m)) {
     const Found found = regions_near(leaf, margin_m);
     for (std::size_t i = 0; i < found.count; ++i, ++count) {
       const LeafPair pair{leaf.number, found.regions.number[i], found.regions.gap[i]};
-      if (count < room.size()) {
-        room[count] = pair;
-        if (count + 1 == room.size()) std::make_heap(room.begin(), room.end(), is_deeper);
-      } else if (!room.empty() && is_deeper(pair, room.front())) {
-        std::pop_heap(room.begin(), room.end(), is_deeper);
-        room.back() = pair;
-        std::push_heap(room.begin(), room.end(), is_deeper);
+      if (count < pairs.size()) {
+        pairs[count] = pair;
+        if (count + 1 == pairs.size()) std::make_heap(pairs.begin(), pairs.end(), is_deeper);
+      } else if (!pairs.empty() && is_deeper(pair, pairs.front())) {
+        std::pop_heap(pairs.begin(), pairs.end(), is_deeper);
+        pairs.back() = pair;
+        std::push_heap(pairs.begin(), pairs.end(), is_deeper);
       }
     }
   }
-  std::sort(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(std::min(count, room.size())),
+  std::sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size())),
             by_number);
   return count;
 }

@@ -47,7 +47,7 @@ class TreeCollision {
   // All pairs with gaps of margin_m or less, as many as there is room for: where it ends the deepest, of
   // equally deep ones those with the smaller numbers. Ordered by the leaf of the tool, then the region.
   // Returns how many there are.
-  std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> room);
+  std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
 
  private:
   void meet_tool(std::size_t level, std::uint32_t number, std::uint32_t tops);

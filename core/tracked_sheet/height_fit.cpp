@@ -14,8 +14,8 @@ constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
 constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
 constexpr double kConfidence = 3;                // of an interval, in standard errors
 constexpr double kTooUnsure = 0.25;              // standard error that tells no height, contact radii
-constexpr double kLeastNoise = 0.01;             // what the planes themselves cannot follow counts as noise
-constexpr double kFewest = 5;                    // points of a window
+constexpr double kMinNoise = 0.01;               // what the planes themselves cannot follow counts as noise
+constexpr double kMinPoints = 5;                 // points of a window
 
 int corner(double coordinate) {
   return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
@@ -85,7 +85,7 @@ PlaneFit HeightFit::plane_around(double u, double v, double half_side) const {
 }
 
 double HeightFit::noise() const {
-  constexpr double kEnough = 9, kFewestOfBlock = 6, kLow = 0.4;
+  constexpr double kEnough = 9, kMinOfBlock = 6, kLow = 0.4;
   // The variance at that quantile in units of the mean one: of chi square with about 8 degrees of freedom.
   constexpr double kOfMean = 0.85;
   double covered = 0;
@@ -99,7 +99,7 @@ double HeightFit::noise() const {
   std::size_t blocks = 0;
   for (int j = half; j + half <= kCells; j += 2 * half)
     for (int i = half; i + half <= kCells; i += 2 * half) {
-      if (count(i, j, half) < kFewestOfBlock) continue;
+      if (count(i, j, half) < kMinOfBlock) continue;
       const PlaneFit fit = plane(window(i, j, half), 0, 0);
       if (fit.valid) variances[blocks++] = fit.residual / (fit.count - 3);
     }
@@ -127,7 +127,7 @@ void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const 
   const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
   double low = -kInfinity, high = kInfinity;
   for (const int half : kWindows) {
-    if (count(2 * i, 2 * j, half) < kFewest) continue;
+    if (count(2 * i, 2 * j, half) < kMinPoints) continue;
     const PlaneFit fit = plane(window(2 * i, 2 * j, half), u, v);
     if (!fit.valid) continue;
     const double error = sigma * std::sqrt(fit.variance);
@@ -149,7 +149,7 @@ void HeightFit::fit(double sigma, HeightMap& map) const {
         node = {};
         continue;
       }
-      choose(i, j, std::max(sigma, kLeastNoise), node);
+      choose(i, j, std::max(sigma, kMinNoise), node);
       const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
       node.height += trend_.height(u, v);
       node.slope_u += trend_.slope_u(u, v), node.slope_v += trend_.slope_v(u, v);

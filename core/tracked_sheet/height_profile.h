@@ -11,7 +11,7 @@ namespace remote_touch {
 class HeightProfile {
  public:
   static constexpr double kBin = 0.1;
-  static constexpr double kLargestRange = 51.2;
+  static constexpr double kMaxRange = 51.2;
 
   explicit HeightProfile(double half_range = 0) { clear(half_range); }
   void clear(double half_range);
@@ -27,7 +27,7 @@ class HeightProfile {
   double half_range() const { return half_range_; }
   double centre(int bin) const { return (bin + 0.5) * kBin - half_range_; }
   double count(int bin) const { return count_[static_cast<std::size_t>(bin)]; }
-  double most() const;
+  double max() const;
 
   // Counts per bin under a triangle of about this standard deviation.
   HeightProfile smoothed(double sigma) const;
@@ -42,8 +42,8 @@ class HeightProfile {
   double half_range_ = 0;
   double window_ = 1;  // how many bins a count is the mean of
   int bins_ = 0;
-  static constexpr int kMostBins = 1024;
-  std::array<double, kMostBins + 1> count_;  // of each bin, and behind the last of what is in none
+  static constexpr int kMaxBins = 1024;
+  std::array<double, kMaxBins + 1> count_;  // of each bin, and behind the last of what is in none
 };
 
 }  // namespace remote_touch

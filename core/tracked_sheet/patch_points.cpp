@@ -5,9 +5,9 @@
 namespace remote_touch {
 
 void PatchPoints::reserve(std::size_t points) {
-  const std::size_t room = points + kLanes;  // the padding of gathered points is looked at too
-  for (Room<double>* column : {&u_, &v_, &h_, &residual_}) column->grow(room);
-  source_.grow(room), member_.grow(room), bin_.grow(room);
+  const std::size_t capacity = points + kLanes;  // the padding of gathered points is looked at too
+  for (Buffer<double>* column : {&u_, &v_, &h_, &residual_}) column->grow(capacity);
+  source_.grow(capacity), member_.grow(capacity), bin_.grow(capacity);
 }
 
 void PatchPoints::take(const GatheredPoints& gathered, const PatchRegion& region) {

@@ -44,10 +44,10 @@ class PatchPoints {
 
   const Kernels& kernels_;
   std::size_t count_ = 0;
-  Room<double> u_, v_, h_, residual_;
-  Room<std::uint32_t> source_;
-  Room<std::uint8_t> member_;
-  Room<std::int32_t> bin_;  // work of profile_near()
+  Buffer<double> u_, v_, h_, residual_;
+  Buffer<std::uint32_t> source_;
+  Buffer<std::uint8_t> member_;
+  Buffer<std::int32_t> bin_;  // work of profile_near()
 };
 
 }  // namespace remote_touch

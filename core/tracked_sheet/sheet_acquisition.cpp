@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kReaches[] = {6, 12, 24, 40};  // contact radii
-constexpr std::size_t kEnough = 40, kFewest = 4;
+constexpr std::size_t kEnough = 40, kMinPoints = 4;
 
 double gather_near(const NeighbourSearch& frame, const Vec3& p_W, double unit_m, const Kernels& kernels,
                    GatheredPoints& gathered) {
@@ -56,12 +56,12 @@ double profile_of_column(const PatchPoints& points, double half_range, HeightPro
 
 // The height of the mode nearest to the proxy's; small ones do not count.
 double nearest_mode(const HeightProfile& smooth, double proxy_height) {
-  constexpr double kFairShare = 0.4;
-  const double least = kFairShare * smooth.most();
+  constexpr double kMinFraction = 0.4;
+  const double min = kMinFraction * smooth.max();
   double mode = std::numeric_limits<double>::quiet_NaN(), nearest = std::numeric_limits<double>::infinity();
   for (int b = 1; b + 1 < smooth.bins(); ++b) {
     const double c = smooth.count(b);
-    if (c < least || c < smooth.count(b - 1) || c < smooth.count(b + 1)) continue;
+    if (c < min || c < smooth.count(b - 1) || c < smooth.count(b + 1)) continue;
     const double distance = std::abs(proxy_height - smooth.centre(b));
     if (distance < nearest) nearest = distance, mode = smooth.centre(b);
   }
@@ -72,18 +72,18 @@ double nearest_mode(const HeightProfile& smooth, double proxy_height) {
 
 std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
                                      double contact_radius_m, const Kernels& kernels,
-                                     const AcquisitionRoom& room) {
-  const double reach = gather_near(frame, proxy_W, contact_radius_m, kernels, room.gathered);
-  if (room.gathered.size() < kFewest) return {};
-  Vec3 normal = wide_normal(room.gathered, proxy_W, reach * contact_radius_m);
+                                     const AcquisitionBuffers& buffers) {
+  const double reach = gather_near(frame, proxy_W, contact_radius_m, kernels, buffers.gathered);
+  if (buffers.gathered.size() < kMinPoints) return {};
+  Vec3 normal = wide_normal(buffers.gathered, proxy_W, reach * contact_radius_m);
   if (normal.isZero(0)) return {};
   FoundSheet found;
-  PatchPoints& points = room.points;
+  PatchPoints& points = buffers.points;
   Vec3 foot_W = proxy_W;
   constexpr int kRounds = 3;
   for (int round = 0; round < kRounds; ++round) {
     found.frame = PatchFrame(foot_W, normal, contact_radius_m);
-    points.take(room.gathered, {found.frame, HeightMap::kHalf, reach});
+    points.take(buffers.gathered, {found.frame, HeightMap::kHalf, reach});
     HeightProfile profile;
     const double radius = profile_of_column(points, reach, profile);
     if (!(radius > 0)) return {};
@@ -95,9 +95,9 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
       const PatchPlace p = points.place(i);
       points.set_member(i, p.u * p.u + p.v * p.v <= radius * radius && p.h < top && p.h > bottom);
     }
-    room.fit.take(points);
-    const PlaneFit plane = room.fit.plane_around(0, 0, radius);
-    found.sigma = room.fit.noise();
+    buffers.fit.take(points);
+    const PlaneFit plane = buffers.fit.plane_around(0, 0, radius);
+    found.sigma = buffers.fit.noise();
     found.known = radius;
     if (!plane.valid) return {};
     const double steep = std::hypot(plane.slope_u, plane.slope_v);

@@ -18,7 +18,7 @@ struct FoundSheet {
 };
 
 // Room for the work of a search; its contents mean nothing.
-struct AcquisitionRoom {
+struct AcquisitionBuffers {
   GatheredPoints& gathered;
   PatchPoints& points;
   HeightFit& fit;
@@ -28,6 +28,6 @@ struct AcquisitionRoom {
 // of the mode itself. None: too few points, or they make no surface that faces the proxy.
 std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
                                      double contact_radius_m, const Kernels& kernels,
-                                     const AcquisitionRoom& room);
+                                     const AcquisitionBuffers& buffers);
 
 }  // namespace remote_touch

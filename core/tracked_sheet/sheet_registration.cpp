@@ -10,7 +10,7 @@ namespace {
 // The plane of least squares through the residuals that lie within reach of the one before.
 SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const SheetShift& before,
                    double reach) {
-  constexpr double kSteepest = 0.5, kFewest = 12;
+  constexpr double kSteepest = 0.5, kMinPoints = 12;
   const auto [n, su, sv, se, uu, uv, vv, ue, ve] = points.sums_near(
       {proxy.u, proxy.v, kRegistrationReach, before.height, before.slope_u, before.slope_v, reach});
   if (n < 3) return before;
@@ -18,7 +18,7 @@ SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const She
   const double cuu = uu - n * mu * mu, cuv = uv - n * mu * mv, cvv = vv - n * mv * mv;
   const double cue = ue - n * mu * me, cve = ve - n * mv * me, det = cuu * cvv - cuv * cuv;
   SheetShift shift{me, 0, 0};
-  if (n < kFewest || !(det > 0.05 * cuu * cvv)) return shift;
+  if (n < kMinPoints || !(det > 0.05 * cuu * cvv)) return shift;
   shift.slope_u = std::clamp((cvv * cue - cuv * cve) / det, -kSteepest, kSteepest);
   shift.slope_v = std::clamp((cuu * cve - cuv * cue) / det, -kSteepest, kSteepest);
   shift.height = me - shift.slope_u * mu - shift.slope_v * mv;

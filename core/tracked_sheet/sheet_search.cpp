@@ -16,9 +16,9 @@ void SheetSearch::reserve(std::size_t points, bool with_radius, bool with_stiffn
 }
 
 void SheetSearch::start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
-                        std::shared_ptr<GatheredPoints> room) {
+                        std::shared_ptr<GatheredPoints> buffer) {
   region_ = region;
-  frame_ = std::move(frame), room_ = std::move(room);
+  frame_ = std::move(frame), buffer_ = std::move(buffer);
   count_ = 0;
   start_.fill(0);
 }
@@ -53,7 +53,7 @@ void SheetSearch::finish() {
 }
 
 void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
-  const Ball wide{ball.centre, ball.radius + largest_fixture_radius_m()};
+  const Ball wide{ball.centre, ball.radius + max_fixture_radius_m()};
   // Points lie in the cells of their rounded places.
   const PatchPlace c = region_.frame.place(ball.centre);
   const double reach = wide.radius / region_.frame.unit_m() + 0x1p-10;
@@ -69,14 +69,14 @@ void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoint
             ball, kernels);
   }
   if (region_.holds(wide)) return;
-  room_->clear();
-  frame_->gather(ball, kernels, *room_);
-  room_->finish();
-  const PointsView all = room_->view();
-  for (std::size_t i = 0; i < room_->size(); ++i) {
+  buffer_->clear();
+  frame_->gather(ball, kernels, *buffer_);
+  buffer_->finish();
+  const PointsView all = buffer_->view();
+  for (std::size_t i = 0; i < buffer_->size(); ++i) {
     if (region_.holds(region_.frame.place(Vec3(all.x[i], all.y[i], all.z[i])))) continue;
     out.add({all.x + i, all.y + i, all.z + i, has_fixture_radius() ? all.radius + i : nullptr,
-             has_stiffness() ? all.stiffness + i : nullptr, room_->index() + i, 0, 1},
+             has_stiffness() ? all.stiffness + i : nullptr, buffer_->index() + i, 0, 1},
             ball, kernels);
   }
 }

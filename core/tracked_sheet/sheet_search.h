@@ -18,7 +18,7 @@ class SheetSearch final : public NeighbourSearch {
   // Begins with no points in the region. room: for points of the frame while gather() runs, with radius and
   // stiffness whether the frame has them or not.
   void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
-             std::shared_ptr<GatheredPoints> room);
+             std::shared_ptr<GatheredPoints> buffer);
   // A point of the frame, by its row in what was gathered of it, at the place that it is shown at.
   void add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row);
   void finish();
@@ -28,21 +28,21 @@ class SheetSearch final : public NeighbourSearch {
   bool has_fixture_radius() const override { return frame_->has_fixture_radius(); }
   bool has_regions() const override { return frame_->has_regions(); }
   bool has_stiffness() const override { return frame_->has_stiffness(); }
-  double largest_fixture_radius_m() const override { return frame_->largest_fixture_radius_m(); }
+  double max_fixture_radius_m() const override { return frame_->max_fixture_radius_m(); }
 
  private:
   static constexpr int kCells = 20;  // along each side of the region
   struct Columns {
-    Room<double> x, y, z, radius, stiffness;
-    Room<std::uint32_t> index;
+    Buffer<double> x, y, z, radius, stiffness;
+    Buffer<std::uint32_t> index;
   };
   int cell_along(double coordinate) const;
 
   PatchRegion region_;
   std::shared_ptr<const NeighbourSearch> frame_;
-  std::shared_ptr<GatheredPoints> room_;
+  std::shared_ptr<GatheredPoints> buffer_;
   Columns added_, sorted_;  // in the order of coming, and cell by cell
-  Room<std::uint32_t> cell_of_;
+  Buffer<std::uint32_t> cell_of_;
   std::size_t count_ = 0;
   std::array<std::uint32_t, kCells * kCells + 1> start_{};
 };

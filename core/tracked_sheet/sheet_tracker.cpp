@@ -36,13 +36,13 @@ SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_
 
 void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
   gathered_->reserve(points, with_radius, with_stiffness);
-  room_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
+  buffer_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
   points_.reserve(points);
   sheet_.reserve(points);
 }
 
-void SheetTracker::make_room() {
+void SheetTracker::swap_buffers() {
   reserve(newest_->size(), newest_->has_fixture_radius(), newest_->has_stiffness());
 }
 
@@ -59,7 +59,7 @@ void SheetTracker::gather(double half_height) {
   points_.take(*gathered_, region_);
 }
 
-void SheetTracker::start_anew(const Vec3& proxy_W) {
+void SheetTracker::restart(const Vec3& proxy_W) {
   age_ = missed_ = 0;
   shift_ = shift_before_ = 0;
   sheet_.clear();
@@ -125,9 +125,8 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
   points_.set_residuals(map_);
   const HeightProfile smooth = points_.profile_near(proxy, kRegistrationReach, region_.half_height)
                                    .smoothed(std::max(0.2, 0.5 * sigma_));
-  const double most = half_thickness(sigma_);
-  const double up = std::min(most, smooth.valley_from(0, 1)),
-               down = std::min(most, smooth.valley_from(0, -1));
+  const double max = half_thickness(sigma_);
+  const double up = std::min(max, smooth.valley_from(0, 1)), down = std::min(max, smooth.valley_from(0, -1));
   double count = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const bool is_member = points_.residual(i) <= up && points_.residual(i) >= -down;  // NaN is none
@@ -146,9 +145,9 @@ void SheetTracker::fit_map(double weight_of_new_noise) {
 // Finds the sheet in the newest frame; false when it is gone.
 bool SheetTracker::follow(const Vec3& proxy_W) {
   const double before = static_cast<double>(sheet_.size());
-  const double first = age_ >= 1 ? s_.gate_m : s_.first_gate_m;
+  const double first = age_ >= 1 ? s_.gate_m : s_.initial_gate_m;
   double tried_m = 0;
-  for (const double gate_m : {first, s_.first_gate_m, s_.widest_gate_m}) {
+  for (const double gate_m : {first, s_.initial_gate_m, s_.max_gate_m}) {
     if (gate_m <= tried_m) continue;
     tried_m = gate_m;
     const double gate = gate_m / unit_m_;
@@ -160,8 +159,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
     map_.add_plane(shift.height, shift.slope_u, shift.slope_v);
     map_.extend(2);
     const double found = find_members(proxy);
-    if (found >= kDoubtful * before ||
-        (gate_m >= s_.widest_gate_m && found >= kLost * before && found >= 3)) {
+    if (found >= kDoubtful * before || (gate_m >= s_.max_gate_m && found >= kLost * before && found >= 3)) {
       fit_map(age_ >= 1 ? 0.4 : 1);
       return true;
     }
@@ -172,7 +170,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
 
 // From which a proxy that rests on the sheet is kept: r_c + r_f, in contact radii.
 double SheetTracker::contact_distance(const PatchPlace& proxy) const {
-  if (missed_ > 0) return held_distance_;
+  if (missed_ > 0) return pressed_distance_;
   const PointsView all = gathered_->view();
   if (!all.radius) return 1;
   double nearest = 4, radius = 0;
@@ -188,7 +186,7 @@ double SheetTracker::contact_distance(const PatchPlace& proxy) const {
 
 std::shared_ptr<const NeighbourSearch> SheetTracker::keep(std::shared_ptr<const NeighbourSearch> frame) {
   newest_ = std::move(frame);
-  make_room();
+  swap_buffers();
   tracks_ = false;
   return newest_;
 }
@@ -201,7 +199,7 @@ double SheetTracker::clearance(const Vec3& p_W) const {
 
 // Points without their noise lie elsewhere when they are seen from another place: how far a proxy must then
 // go along the normal not to be in the sheet.
-double SheetTracker::way_out(const Vec3& proxy_W) const {
+double SheetTracker::exit_distance(const Vec3& proxy_W) const {
   const PatchPlace p = patch().place(proxy_W);
   const double now = clearance(proxy_W);
   if (!changes_points() || !map_.covers(p.u, p.v) || !std::isfinite(now)) return 0;
@@ -210,7 +208,7 @@ double SheetTracker::way_out(const Vec3& proxy_W) const {
 
 // A proxy that the sheet holds back keeps its clearance; a free one is moved only out of a sheet that swept
 // over it, and no further than the sheet moved. In contact radii, along the normal.
-double SheetTracker::carry(const ProxyPlace& proxy, double clearance_before) const {
+double SheetTracker::proxy_displacement(const ProxyPlace& proxy, double clearance_before) const {
   const double now = clearance(proxy.p_W), moved = clearance_before - now;
   if (!(std::abs(moved) > kResolution)) return 0;
   if (proxy.pressing) return moved;
@@ -219,8 +217,8 @@ double SheetTracker::carry(const ProxyPlace& proxy, double clearance_before) con
 }
 
 // Where the sheet was nowhere seen before.
-SheetUpdate SheetTracker::look_afresh(const Vec3& proxy_W) {
-  start_anew(proxy_W);
+SheetUpdate SheetTracker::reacquire(const Vec3& proxy_W) {
+  restart(proxy_W);
   return {show(proxy_W), Vec3::Zero(), 0, Vec3::Zero()};
 }
 
@@ -229,27 +227,27 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   const Vec3 ahead = last_proxy_W_ ? Vec3(0.5 * (proxy.p_W - *last_proxy_W_)) : Vec3::Zero();
   last_proxy_W_ = proxy.p_W;
   // From the frame before, whose points are still there.
-  const bool goes_on = tracks_ && !is_of_other_surface(proxy);
-  const double held = goes_on ? contact_distance(patch().place(proxy.p_W)) : 1;
+  const bool continues = tracks_ && !is_of_other_surface(proxy);
+  const double held = continues ? contact_distance(patch().place(proxy.p_W)) : 1;
   newest_ = std::move(frame);
-  make_room();
-  if (!goes_on) return look_afresh(proxy.p_W);
+  swap_buffers();
+  if (!continues) return reacquire(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
   const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
   region_.frame.move_along_normal(predicted_shift(interval_s));
   if (!follow(proxy.p_W)) {
-    if (!proxy.pressing || ++missed_ > s_.bridged_frames) return look_afresh(proxy.p_W);
+    if (!proxy.pressing || ++missed_ > s_.max_missed_frames) return reacquire(proxy.p_W);
     region_.frame = unmoved;
-    held_distance_ = held;
+    pressed_distance_ = held;
     return {nullptr, Vec3::Zero(), 0, Vec3::Zero()};
   }
   missed_ = 0;
   SheetUpdate update;
-  update.carry_m = carry(proxy, before) * unit_m_ * patch().normal_W();
+  update.displacement_m = proxy_displacement(proxy, before) * unit_m_ * patch().normal_W();
   update.normal_W = patch().normal_W();
   update.velocity_m_per_s = velocity(proxy.p_W, before, interval_s);
-  update.points = show(proxy.p_W + update.carry_m);
+  update.points = show(proxy.p_W + update.displacement_m);
   return update;
 }
 
@@ -267,45 +265,45 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
   return surely(shift_, shift_error_) * unit_m_ / interval_s;
 }
 
-bool SheetTracker::must_look_again(const Vec3& proxy_W) const {
+bool SheetTracker::must_requery(const Vec3& proxy_W) const {
   if (!newest_ || missed_ > 0) return false;  // where the sheet is missing there is nothing to be seen
-  if (!tracks_) return (proxy_W - looked_from_W_).norm() > unit_m_;
+  if (!tracks_) return (proxy_W - query_position_W_).norm() > unit_m_;
   const double near_m = 0.999 * kMiddle * unit_m_;  // no place is farther off along the patch than in space
   if ((proxy_W - patch().origin_W()).squaredNorm() < near_m * near_m) return false;
   const PatchPlace p = patch().place(proxy_W);
   return !(p.u * p.u + p.v * p.v < kMiddle * kMiddle);
 }
 
-SheetUpdate SheetTracker::look_again(const ProxyPlace& proxy) {
-  if (!tracks_ || is_of_other_surface(proxy)) return look_afresh(proxy.p_W);
+SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
+  if (!tracks_ || is_of_other_surface(proxy)) return reacquire(proxy.p_W);
   recentre(proxy.p_W);
   gather(half_height());
   map_.extend(6);
   find_members(patch().place(proxy.p_W));
   fit_map(0.4);
   SheetUpdate update;
-  update.carry_m = way_out(proxy.p_W) * unit_m_ * patch().normal_W();
-  update.points = show(proxy.p_W + update.carry_m);
+  update.displacement_m = exit_distance(proxy.p_W) * unit_m_ * patch().normal_W();
+  update.points = show(proxy.p_W + update.displacement_m);
   return update;
 }
 
 // The members without their noise, of the others those that are surfaces.
 std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
-  looked_from_W_ = proxy_W;
+  query_position_W_ = proxy_W;
   nearer_stray_ = false;
   sheet_.clear();
   if (!tracks_) return newest_;
   const bool clean = sigma_ < kUntouched || !s_.denoise;
   const PatchPlace proxy = patch().place(proxy_W);
-  const double most = kNoisePart * sigma_;
+  const double max = kNoisePart * sigma_;
   SheetSearch& shown = *shown_[present_ ^= 1];
-  if (!clean) shown.start(region_, newest_, room_);
+  if (!clean) shown.start(region_, newest_, buffer_);
   points_.set_residuals(map_);
   profile_ = points_.profile_near(proxy, kRegistrationReach, region_.half_height + 2).smoothed(0.1);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!points_.is_member(i) || !std::isfinite(points_.residual(i))) continue;
     PatchPlace p = points_.place(i);
-    p.h = PatchFrame::rounded(p.h - std::clamp(points_.residual(i), -most, most));
+    p.h = PatchFrame::rounded(p.h - std::clamp(points_.residual(i), -max, max));
     sheet_.push_back(p);
     if (!clean) shown.add(p, *gathered_, points_.source(i));
   }

@@ -14,8 +14,8 @@
 namespace remote_touch {
 
 struct SheetSettings {
-  double gate_m = 0.015, first_gate_m = 0.035, widest_gate_m = 0.075;
-  int bridged_frames = 1;
+  double gate_m = 0.015, initial_gate_m = 0.035, max_gate_m = 0.075;
+  int max_missed_frames = 1;
   bool denoise = true;
 };
 
@@ -28,7 +28,7 @@ struct ProxyPlace {
 // What a frame shows, and how the proxy is to follow.
 struct SheetUpdate {
   std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet given up
-  Vec3 carry_m = Vec3::Zero();
+  Vec3 displacement_m = Vec3::Zero();
   double velocity_m_per_s = 0;
   Vec3 normal_W = Vec3::Zero();
 };
@@ -42,14 +42,14 @@ class SheetTracker {
   // A new frame, interval_s after the one before.
   SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
                        double interval_s);
-  // Keeps a frame for look_again(), while it is not known where the proxy is, and shows it as it is.
+  // Keeps a frame for requery(), while it is not known where the proxy is, and shows it as it is.
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
   // The proxy has left the middle of the patch.
-  bool must_look_again(const Vec3& proxy_W) const;
+  bool must_requery(const Vec3& proxy_W) const;
   // Gives a missing sheet up: what the newest frame shows is all there is. No allocation.
-  SheetUpdate look_afresh(const Vec3& proxy_W);
+  SheetUpdate reacquire(const Vec3& proxy_W);
   // The newest frame's points around the proxy's new place. No allocation.
-  SheetUpdate look_again(const ProxyPlace& proxy);
+  SheetUpdate requery(const ProxyPlace& proxy);
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
 
@@ -57,9 +57,9 @@ class SheetTracker {
   static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is left as it is
   void gather(double half_height);
   const PatchFrame& patch() const { return region_.frame; }
-  void make_room();
+  void swap_buffers();
   double half_height() const;
-  void start_anew(const Vec3& proxy_W);
+  void restart(const Vec3& proxy_W);
   bool is_of_other_surface(const ProxyPlace& proxy) const;
   void recentre(const Vec3& middle_W);
   double predicted_shift(double interval_s) const;
@@ -67,8 +67,8 @@ class SheetTracker {
   double find_members(const PatchPlace& proxy);
   void fit_map(double weight_of_new_noise);
   double clearance(const Vec3& p_W) const;
-  double way_out(const Vec3& proxy_W) const;
-  double carry(const ProxyPlace& proxy, double clearance_before) const;
+  double exit_distance(const Vec3& proxy_W) const;
+  double proxy_displacement(const ProxyPlace& proxy, double clearance_before) const;
   double velocity(const Vec3& proxy_W, double clearance_before, double interval_s);
   double contact_distance(const PatchPlace& proxy) const;
   std::shared_ptr<const NeighbourSearch> show(const Vec3& proxy_W);
@@ -78,7 +78,7 @@ class SheetTracker {
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> newest_;
   std::shared_ptr<GatheredPoints> gathered_ = std::make_shared<GatheredPoints>(),
-                                  room_ = std::make_shared<GatheredPoints>();
+                                  buffer_ = std::make_shared<GatheredPoints>();
   std::shared_ptr<SheetSearch> shown_[2] = {std::make_shared<SheetSearch>(), std::make_shared<SheetSearch>()};
   int present_ = 0;
 
@@ -92,10 +92,10 @@ class SheetTracker {
   HeightProfile profile_;
   double sigma_ = 0;
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
-  int age_ = 0, missed_ = 0;  // shifts measured; frames without the sheet
-  double held_distance_ = 1;  // contact_distance() when the sheet was last seen
+  int age_ = 0, missed_ = 0;     // shifts measured; frames without the sheet
+  double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen
   bool nearer_stray_ = false;
-  Vec3 looked_from_W_ = Vec3::Zero();
+  Vec3 query_position_W_ = Vec3::Zero();
   std::optional<Vec3> last_proxy_W_;  // when the frame before came
 };
 

@@ -6,8 +6,8 @@
 namespace remote_touch {
 
 namespace {
-constexpr double kFairShare = 0.25;
-constexpr double kFewest = 2;  // besides itself
+constexpr double kMinFraction = 0.25;
+constexpr double kMinPoints = 2;  // besides itself
 }  // namespace
 
 // Columns of one contact radius, with a border on either side.
@@ -25,7 +25,7 @@ void StrayPoints::count(const PatchPoints& points, const PatchRegion& region, do
   side_ = static_cast<int>(std::ceil(2 * half_side_)) + 2;
   thickness_ = std::max({0.5, sigma, 2 * half_height_ / 127});
   layers_ = static_cast<int>(std::ceil(2 * half_height_ / thickness_)) + 2;
-  least_ = std::max(kFewest + 1, kFairShare * 9 * per_unit_area);
+  min_ = std::max(kMinPoints + 1, kMinFraction * 9 * per_unit_area);
   std::fill_n(counts_.begin(), side_ * side_ * layers_, std::uint16_t{0});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points.is_member(i)) continue;
@@ -42,7 +42,7 @@ bool StrayPoints::is_surface(const PatchPlace& p) const {
     for (int v = column(p.v) - 1; v <= column(p.v) + 1; ++v)
       for (int u = column(p.u) - 1; u <= column(p.u) + 1; ++u)
         sum += counts_[static_cast<std::size_t>((l * side_ + v) * side_ + u)];
-  return sum >= least_;
+  return sum >= min_;
 }
 
 }  // namespace remote_touch

@@ -21,10 +21,10 @@ class StrayPoints {
   int column(double coordinate) const;
   int layer(double height) const;
 
-  double half_side_ = 0, half_height_ = 0, thickness_ = 1, least_ = 0;
+  double half_side_ = 0, half_height_ = 0, thickness_ = 1, min_ = 0;
   int side_ = 0, layers_ = 0;
-  std::vector<std::uint16_t> counts_ = std::vector<std::uint16_t>(kMost);
-  static constexpr std::size_t kMost = 18 * 18 * 130;
+  std::vector<std::uint16_t> counts_ = std::vector<std::uint16_t>(kMaxCount);
+  static constexpr std::size_t kMaxCount = 18 * 18 * 130;
 };
 
 }  // namespace remote_touch

@@ -13,10 +13,10 @@ Parameters parameters(TrackedSheetParameters& p) {
   const Parameters more = {
       {"gate_m", &s.gate_m, 1e-4, 1,
        "how far from where it is predicted a tracked sheet is looked for first"},
-      {"first_gate_m", &s.first_gate_m, 1e-4, 1,
+      {"initial_gate_m", &s.initial_gate_m, 1e-4, 1,
        "how far a sheet that was seen once is looked for, and one that is not within gate_m"},
-      {"widest_gate_m", &s.widest_gate_m, 1e-4, 1, "how far a sheet is looked for before it counts as gone"},
-      {"bridged_frames", &s.bridged_frames, 0, 100,
+      {"max_gate_m", &s.max_gate_m, 1e-4, 1, "how far a sheet is looked for before it counts as gone"},
+      {"max_missed_frames", &s.max_missed_frames, 0, 100,
        "frames without the sheet through which a proxy in contact is held; after them it is let go"},
       {"denoise", &s.denoise, 0, 1, "show the proxy the sheet's points without their noise, or as they are"},
   };
@@ -24,21 +24,21 @@ Parameters parameters(TrackedSheetParameters& p) {
   return list;
 }
 
-std::string conflict(const TrackedSheetParameters& p) {
+std::string validate(const TrackedSheetParameters& p) {
   const SheetSettings& s = p.sheet;
-  const auto line = [](const char* name, double value, const char* other, double least) {
+  const auto line = [](const char* name, double value, const char* other, double min) {
     return std::string(name) + " = " + std::to_string(value) + ": allowed from " + other + " = " +
-           std::to_string(least);
+           std::to_string(min);
   };
-  if (s.first_gate_m < s.gate_m) return line("first_gate_m", s.first_gate_m, "gate_m", s.gate_m);
-  if (s.widest_gate_m < s.first_gate_m)
-    return line("widest_gate_m", s.widest_gate_m, "first_gate_m", s.first_gate_m);
-  return conflict(p.proxy);
+  if (s.initial_gate_m < s.gate_m) return line("initial_gate_m", s.initial_gate_m, "gate_m", s.gate_m);
+  if (s.max_gate_m < s.initial_gate_m)
+    return line("max_gate_m", s.max_gate_m, "initial_gate_m", s.initial_gate_m);
+  return validate(p.proxy);
 }
 
 TrackedSheetRenderer::TrackedSheetRenderer(const TrackedSheetParameters& p, double haptic_rate_hz,
                                            const Kernels& kernels)
-    : longest_hold_frames_(p.sheet.bridged_frames),
+    : max_hold_frames_(p.sheet.max_missed_frames),
       proxy_(p.proxy, haptic_rate_hz, kernels),
       tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
 
@@ -58,12 +58,12 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
   if (update.points) {
     shown_ = std::move(update.points);
     captured_s_ = frame.captured_s, has_frame_ = true;
-    held_until_s_ = std::numeric_limits<double>::infinity();
-  } else if (std::isinf(held_until_s_)) {  // the sheet is missing: what was shown stays for a while
-    held_until_s_ = frame.arrives_s + longest_hold_frames_ * interval_s;
+    hold_until_s_ = std::numeric_limits<double>::infinity();
+  } else if (std::isinf(hold_until_s_)) {  // the sheet is missing: what was shown stays for a while
+    hold_until_s_ = frame.arrives_s + max_hold_frames_ * interval_s;
   }
   proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
-                  {update.carry_m, update.velocity_m_per_s, update.normal_W});
+                  {update.displacement_m, update.velocity_m_per_s, update.normal_W});
 }
 
 // A proxy without a place has none until the first HIP; one that moved far needs the newest frame's points
@@ -71,12 +71,12 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
 RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s) {
   if (!placed_ && has_frame_ && device.position_W.allFinite()) {
     placed_ = true;
-    show(tracker_.look_again({device.position_W, false}));
-  } else if (time_s >= held_until_s_) {
-    held_until_s_ = std::numeric_limits<double>::infinity();
-    show(tracker_.look_afresh(proxy_.proxy_W()));
-  } else if (placed_ && tracker_.must_look_again(proxy_.proxy_W())) {
-    show(tracker_.look_again(proxy_place()));
+    show(tracker_.requery({device.position_W, false}));
+  } else if (time_s >= hold_until_s_) {
+    hold_until_s_ = std::numeric_limits<double>::infinity();
+    show(tracker_.reacquire(proxy_.proxy_W()));
+  } else if (placed_ && tracker_.must_requery(proxy_.proxy_W())) {
+    show(tracker_.requery(proxy_place()));
   }
   proxy_.stop_at_convergence(tracker_.changes_points());
   return proxy_.step(device, time_s);
@@ -85,7 +85,7 @@ RenderOutput TrackedSheetRenderer::step(const DeviceState& device, double time_s
 void TrackedSheetRenderer::show(const SheetUpdate& update) {
   if (update.points != shown_) proxy_.replace_points(update.points);
   shown_ = update.points;
-  proxy_.carry(update.carry_m);
+  proxy_.displace(update.displacement_m);
 }
 
 }  // namespace remote_touch

@@ -21,11 +21,11 @@ struct TrackedSheetParameters {
 };
 
 Parameters parameters(TrackedSheetParameters& p);
-std::string conflict(const TrackedSheetParameters& p);
+std::string validate(const TrackedSheetParameters& p);
 
 class TrackedSheetRenderer final : public Renderer {
  public:
-  // pre: conflict(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
   TrackedSheetRenderer(const TrackedSheetParameters& parameters, double haptic_rate_hz,
                        const Kernels& kernels);
   void reserve(std::size_t points) override;
@@ -36,12 +36,12 @@ class TrackedSheetRenderer final : public Renderer {
   ProxyPlace proxy_place() const { return {proxy_.proxy_W(), proxy_.in_contact()}; }
   void show(const SheetUpdate& update);
 
-  const int longest_hold_frames_;
+  const int max_hold_frames_;
   ProxyRenderer proxy_;
   SheetTracker tracker_;
   std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
   double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
-  double held_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the proxy is where the HIP was
 };

@@ -11,7 +11,7 @@ constexpr int kTerms = 6, kPlane = 3;  // of the quadratic; the first of them ar
 
 // Cholesky; false where the matrix is not safely positive. Solves in place.
 bool solve(double a[kTerms][kTerms], double b[kTerms]) {
-  constexpr double kLeastShare = 1e-4;  // of a diagonal element that may be left
+  constexpr double kMinFraction = 1e-4;  // of a diagonal element that may be left
   for (int i = 0; i < kTerms; ++i) {
     const double own = a[i][i];
     for (int j = 0; j <= i; ++j) {
@@ -19,7 +19,7 @@ bool solve(double a[kTerms][kTerms], double b[kTerms]) {
       for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
       if (i != j)
         a[i][j] = sum / a[j][j];
-      else if (sum > kLeastShare * own && own > 0)
+      else if (sum > kMinFraction * own && own > 0)
         a[i][i] = std::sqrt(sum);
       else
         return false;
@@ -38,7 +38,7 @@ bool solve(double a[kTerms][kTerms], double b[kTerms]) {
 
 // By how much the curvature betters the fit, in units of the noise's variance, is a chi square of 3 degrees
 // of freedom where there is none: then nothing of it is kept (James and Stein's rule). a: the factor.
-double share_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
+double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
   constexpr double kOfChance = 6;
   double betters = 0;
   for (int j = kPlane; j < kTerms; ++j) {
@@ -52,11 +52,11 @@ double share_to_keep(const double a[kTerms][kTerms], const double c[kTerms], dou
 }  // namespace
 
 Trend fit_trend(const PatchPoints& points, double sigma) {
-  constexpr double kFewest = 30;
+  constexpr double kMinPoints = 30;
   // Factors are multiples of 2^-12 below 2^6, so sums of up to 2^17 of their products are exact.
   const QuadraticSums sums = points.sums_of_quadratic(kTrendRadius);
   Trend trend;
-  if (sums.power[0] < kFewest) return trend;
+  if (sums.power[0] < kMinPoints) return trend;
   // Degrees of u and v in each term; products of the same degree follow each other, the powers of u falling.
   constexpr int of_u[kTerms] = {0, 1, 0, 2, 1, 0}, of_v[kTerms] = {0, 0, 1, 0, 1, 2};
   double a[kTerms][kTerms], b[kTerms];
@@ -68,7 +68,7 @@ Trend fit_trend(const PatchPoints& points, double sigma) {
     }
   }
   if (!solve(a, b)) return trend;
-  const double keep = share_to_keep(a, b, sigma);
+  const double keep = fraction_to_keep(a, b, sigma);
   for (int i = 0; i < kTerms; ++i) trend.c[i] = i < kPlane ? b[i] : keep * b[i];
   return trend;
 }

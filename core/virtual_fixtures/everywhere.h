@@ -11,10 +11,10 @@ class Everywhere final : public FixtureRule {
     FixtureValues values;
   };
   explicit Everywhere(const Settings& settings) : FixtureRule(settings.values) {}
-  std::vector<double> shares(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
 };
 
 Parameters parameters(Everywhere::Settings& s);
-std::string conflict(const Everywhere::Settings& s);
+std::string validate(const Everywhere::Settings& s);
 
 }  // namespace remote_touch

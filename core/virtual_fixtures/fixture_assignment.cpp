@@ -12,25 +12,25 @@ namespace remote_touch {
 namespace {
 
 // A value that is reached is reached exactly.
-double drawn(double from, double to, double share) {
-  return share == 1 ? to : from + share * (to - from);
+double drawn(double from, double to, double weight) {
+  return weight == 1 ? to : from + weight * (to - from);
 }
 
 void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
   const FixtureValues& values = rule.values();
-  const std::vector<double> shares = rule.shares(cloud);
+  const std::vector<double> weights = rule.weights(cloud);
   const bool stiff = values.stiffness_N_per_m >= 0;
   if (stiff && cloud.stiffness_N_per_m.empty())
     cloud.stiffness_N_per_m.assign(cloud.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double share = shares[i] * strength;
-    if (!(share > 0)) continue;
+    const double weight = weights[i] * strength;
+    if (!(weight > 0)) continue;
     if (values.radius_m >= 0)
-      cloud.fixture_radius_m[i] = drawn(cloud.fixture_radius_m[i], values.radius_m, share);
+      cloud.fixture_radius_m[i] = drawn(cloud.fixture_radius_m[i], values.radius_m, weight);
     if (!stiff) continue;
     double& stiffness = cloud.stiffness_N_per_m[i];
     stiffness =
-        std::isnan(stiffness) ? values.stiffness_N_per_m : drawn(stiffness, values.stiffness_N_per_m, share);
+        std::isnan(stiffness) ? values.stiffness_N_per_m : drawn(stiffness, values.stiffness_N_per_m, weight);
   }
 }
 
@@ -61,7 +61,7 @@ std::vector<GuidanceTarget> FixtureAssignment::targets(const PointCloud& cloud, 
     if (rules_[i]->values().role != FixtureRole::guidance) continue;
     about_rule(i, [&] {
       const double strength = rules_[i]->strength(captured_s);
-      all.push_back(strength > 0 ? guidance_target(cloud, rules_[i]->shares(cloud)) : GuidanceTarget{});
+      all.push_back(strength > 0 ? guidance_target(cloud, rules_[i]->weights(cloud)) : GuidanceTarget{});
       all.back().strength = strength;
     });
   }

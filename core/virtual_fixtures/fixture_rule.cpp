@@ -19,14 +19,14 @@ Parameters parameters(FixtureValues& v) {
   };
 }
 
-std::string conflict(const FixtureValues& v) {
+std::string validate(const FixtureValues& v) {
   if (v.radius_m < 0 && v.radius_m != -1)
     return "radius_m = " + std::to_string(v.radius_m) + ": allowed 0 or more, or -1";
   if (v.stiffness_N_per_m < 0 && v.stiffness_N_per_m != -1)
     return "stiffness_N_per_m = " + std::to_string(v.stiffness_N_per_m) + ": allowed 0 or more, or -1";
   if (v.role == FixtureRole::guidance && v.radius_m <= 0)
     return "radius_m = " + std::to_string(v.radius_m) + ": allowed above 0 for role = guidance";
-  return schedule_conflict(v.schedule, "schedule", "strength");
+  return validate_schedule(v.schedule, "schedule", "strength");
 }
 
 double FixtureRule::strength(double time_s) const {

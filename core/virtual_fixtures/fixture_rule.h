@@ -27,7 +27,7 @@ struct FixtureValues {
 };
 
 Parameters parameters(FixtureValues& v);
-std::string conflict(const FixtureValues& v);
+std::string validate(const FixtureValues& v);
 
 class FixtureRule {
  public:
@@ -36,7 +36,7 @@ class FixtureRule {
 
   // How far the rule counts for each point, from 0, not at all, to 1; 0 for a point that was not measured.
   // Throws InputError when the frame lacks what the rule needs: colours, or an image.
-  virtual std::vector<double> shares(const PointCloud& cloud) const = 0;
+  virtual std::vector<double> weights(const PointCloud& cloud) const = 0;
 
   const FixtureValues& values() const { return values_; }
   // Of the schedule; locks, unlocks and fades the rule as a whole.

@@ -11,15 +11,15 @@ namespace remote_touch {
 // counts from the next frame that is processed.
 class FixtureSwitches {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMaxCount = 64;
 
   // A bit for each that is off.
   std::uint64_t off() const { return off_.load(std::memory_order_relaxed); }
   static bool is_on(std::uint64_t off, std::size_t fixture) {
-    return fixture >= kMost || (off >> fixture & 1) == 0;
+    return fixture >= kMaxCount || (off >> fixture & 1) == 0;
   }
   bool is_on(std::size_t fixture) const { return is_on(off(), fixture); }
-  // pre: below kMost
+  // pre: below kMaxCount
   void set(std::size_t fixture, bool on) {
     const std::uint64_t bit = std::uint64_t{1} << fixture;
     if (on)

@@ -7,17 +7,17 @@ namespace remote_touch {
 namespace {
 
 // A point that is nowhere has no share in a target, whatever its rule says.
-bool counts(const PointCloud& cloud, const std::vector<double>& shares, std::size_t i) {
-  return shares[i] > 0 && cloud.is_measured(i);
+bool counts(const PointCloud& cloud, const std::vector<double>& weights, std::size_t i) {
+  return weights[i] > 0 && cloud.is_measured(i);
 }
 
 // About the mean; the sum of the weights is not divided by.
-Eigen::Matrix3d scatter(const PointCloud& cloud, const std::vector<double>& shares, const Vec3& mean_W) {
+Eigen::Matrix3d scatter(const PointCloud& cloud, const std::vector<double>& weights, const Vec3& mean_W) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!counts(cloud, shares, i)) continue;
+    if (!counts(cloud, weights, i)) continue;
     const Vec3 d = cloud.point(i) - mean_W;
-    sum += shares[i] * (d * d.transpose());
+    sum += weights[i] * (d * d.transpose());
   }
   return sum;
 }
@@ -35,21 +35,21 @@ Vec3 normal_of(const Eigen::Matrix3d& scatter, const Vec3& to_sensor_W) {
 
 }  // namespace
 
-GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& shares) {
+GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights) {
   GuidanceTarget target;
   Vec3 sum_W = Vec3::Zero();
   double weight = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!counts(cloud, shares, i)) continue;
+    if (!counts(cloud, weights, i)) continue;
     ++target.points;
-    sum_W += shares[i] * cloud.point(i);
-    weight += shares[i];
+    sum_W += weights[i] * cloud.point(i);
+    weight += weights[i];
   }
-  if (!target.is_seen()) return target;
+  if (!target.is_visible()) return target;
   target.mean_W = sum_W / weight;
   const Vec3 sensor_W = cloud.image ? Vec3(cloud.image->X_WC.translation()) : Vec3(Vec3::Zero());
   if (target.points >= 3)
-    target.normal_W = normal_of(scatter(cloud, shares, target.mean_W), sensor_W - target.mean_W);
+    target.normal_W = normal_of(scatter(cloud, weights, target.mean_W), sensor_W - target.mean_W);
   return target;
 }
 

@@ -22,12 +22,12 @@ struct GuidanceTarget {
   double strength = 1;  // of its rule when the frame was captured, 0 to 1
   static constexpr double kFlat = 0.25, kLine = 1e-3;
 
-  bool is_seen() const { return points > 0; }
+  bool is_visible() const { return points > 0; }
   bool is_flat() const { return !normal_W.isZero(0); }
 };
 
 // From how far each point counts, 0 to 1, as FixtureRule::shares(); none that is not finite does. The sensor
 // is where the image was taken from, else in the origin.
-GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& shares);
+GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
 
 }  // namespace remote_touch

@@ -11,9 +11,9 @@ Parameters parameters(HalfSpace::Settings& s) {
   return list;
 }
 
-std::string conflict(const HalfSpace::Settings& s) {
+std::string validate(const HalfSpace::Settings& s) {
   if (!(s.normal.norm() > 1e-9)) return "normal: allowed longer than 0";
-  return conflict(s.values);
+  return validate(s.values);
 }
 
 HalfSpace::HalfSpace(const Settings& settings)
@@ -22,14 +22,14 @@ HalfSpace::HalfSpace(const Settings& settings)
       normal_W_(settings.normal.normalized()),
       transition_m_(settings.transition_m) {}
 
-std::vector<double> HalfSpace::shares(const PointCloud& cloud) const {
-  std::vector<double> shares(cloud.size());
+std::vector<double> HalfSpace::weights(const PointCloud& cloud) const {
+  std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double height = (cloud.point(i) - point_W_).dot(normal_W_);  // NaN fails every comparison
     const bool inside = height >= 0;
-    shares[i] = !inside ? 0 : height < transition_m_ ? height / transition_m_ : 1;
+    weights[i] = !inside ? 0 : height < transition_m_ ? height / transition_m_ : 1;
   }
-  return shares;
+  return weights;
 }
 
 }  // namespace remote_touch

@@ -15,7 +15,7 @@ class HalfSpace final : public FixtureRule {
   };
   explicit HalfSpace(const Settings& settings);
   // The plane itself belongs to the half-space; with a transition the share rises evenly from 0 at the plane.
-  std::vector<double> shares(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:
   Vec3 point_W_, normal_W_;
@@ -23,6 +23,6 @@ class HalfSpace final : public FixtureRule {
 };
 
 Parameters parameters(HalfSpace::Settings& s);
-std::string conflict(const HalfSpace::Settings& s);
+std::string validate(const HalfSpace::Settings& s);
 
 }  // namespace remote_touch

@@ -10,37 +10,37 @@ Parameters parameters(HueRange::Settings& s) {
   const Parameters more = {
       {"from_deg", &s.from_deg, 0, 360, "first hue: 0 red, 120 green, 240 blue"},
       {"to_deg", &s.to_deg, 0, 360, "last hue; below from_deg the range goes through 0"},
-      {"least_saturation", &s.least_saturation, 0, 1, "greyer points are not picked: greys have no hue"},
-      {"least_lightness", &s.least_lightness, 0, 1, "nor are darker ones, whose hue is noise"},
-      {"most_lightness", &s.most_lightness, 0, 1, "nor lighter ones"},
+      {"min_saturation", &s.min_saturation, 0, 1, "greyer points are not picked: greys have no hue"},
+      {"min_lightness", &s.min_lightness, 0, 1, "nor are darker ones, whose hue is noise"},
+      {"max_lightness", &s.max_lightness, 0, 1, "nor lighter ones"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;
 }
 
-std::string conflict(const HueRange::Settings& s) {
-  if (s.least_lightness > s.most_lightness)
-    return "least_lightness = " + std::to_string(s.least_lightness) +
-           ": allowed up to most_lightness = " + std::to_string(s.most_lightness);
-  return conflict(s.values);
+std::string validate(const HueRange::Settings& s) {
+  if (s.min_lightness > s.max_lightness)
+    return "min_lightness = " + std::to_string(s.min_lightness) +
+           ": allowed up to max_lightness = " + std::to_string(s.max_lightness);
+  return validate(s.values);
 }
 
 bool HueRange::holds(std::uint32_t rgb) const {
   const HueSaturationLightness colour = hue_saturation_lightness(rgb);
-  if (colour.saturation < settings_.least_saturation || colour.lightness < settings_.least_lightness ||
-      colour.lightness > settings_.most_lightness)
+  if (colour.saturation < settings_.min_saturation || colour.lightness < settings_.min_lightness ||
+      colour.lightness > settings_.max_lightness)
     return false;
   const bool above = colour.hue_deg >= settings_.from_deg, below = colour.hue_deg <= settings_.to_deg;
   return settings_.from_deg <= settings_.to_deg ? above && below : above || below;
 }
 
-std::vector<double> HueRange::shares(const PointCloud& cloud) const {
+std::vector<double> HueRange::weights(const PointCloud& cloud) const {
   if (cloud.colour.empty() && cloud.size() > 0)
     throw InputError("hue-range", "the frame has no colours; allowed with coloured frames");
-  std::vector<double> shares(cloud.size());
+  std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    shares[i] = cloud.point(i).allFinite() && holds(cloud.colour[i]) ? 1 : 0;
-  return shares;
+    weights[i] = cloud.point(i).allFinite() && holds(cloud.colour[i]) ? 1 : 0;
+  return weights;
 }
 
 }  // namespace remote_touch

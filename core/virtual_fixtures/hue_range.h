@@ -11,13 +11,13 @@ class HueRange final : public FixtureRule {
     FixtureValues values;
     double from_deg = 340;
     double to_deg = 20;
-    double least_saturation = 0.3;
-    double least_lightness = 0.1;
-    double most_lightness = 0.9;
+    double min_saturation = 0.3;
+    double min_lightness = 0.1;
+    double max_lightness = 0.9;
   };
   explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
   // Throws InputError when the cloud has no colours.
-  std::vector<double> shares(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:
   bool holds(std::uint32_t rgb) const;
@@ -26,6 +26,6 @@ class HueRange final : public FixtureRule {
 };
 
 Parameters parameters(HueRange::Settings& s);
-std::string conflict(const HueRange::Settings& s);
+std::string validate(const HueRange::Settings& s);
 
 }  // namespace remote_touch

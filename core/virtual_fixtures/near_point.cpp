@@ -12,7 +12,7 @@ Parameters parameters(NearPoint::Settings& s) {
       {"point_m", &s.point_m, -100, 100, "the picked point, world frame"},
       {"row", &s.row, -1, 4095, "image row: what this pixel sees is the picked point; -1: point_m is"},
       {"column", &s.column, -1, 4095, "image column; -1: point_m is the picked point"},
-      {"within_m", &s.within_m, 0, 100, "points no farther than this from it are picked wholly"},
+      {"inner_radius_m", &s.inner_radius_m, 0, 100, "points no farther than this from it are picked wholly"},
       {"falloff_m", &s.falloff_m, 0, 100,
        "beyond, the rule's share of a point falls to 0 over this distance"},
   };
@@ -20,23 +20,23 @@ Parameters parameters(NearPoint::Settings& s) {
   return list;
 }
 
-std::string conflict(const NearPoint::Settings& s) {
+std::string validate(const NearPoint::Settings& s) {
   if ((s.row < 0) != (s.column < 0)) return "row and column: allowed both 0 or more, or both -1";
-  return conflict(s.values);
+  return validate(s.values);
 }
 
 namespace {
 
 // Of the pixels that saw something, the one nearest to (u, v); NaN where there is none.
-Vec3 nearest_seen(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v) {
+Vec3 nearest_measured(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v) {
   const auto seen = [&](int x, int y) { return cloud.point(static_cast<std::size_t>(y) * camera.width + x); };
   if (seen(u, v).allFinite()) return seen(u, v);
   Vec3 nearest = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  long long least = std::numeric_limits<long long>::max();
+  long long min = std::numeric_limits<long long>::max();
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
       const long long dx = x - u, dy = y - v, squared = dx * dx + dy * dy;
-      if (squared < least && seen(x, y).allFinite()) nearest = seen(x, y), least = squared;
+      if (squared < min && seen(x, y).allFinite()) nearest = seen(x, y), min = squared;
     }
   }
   return nearest;
@@ -52,20 +52,20 @@ Vec3 NearPoint::picked(const PointCloud& cloud) const {
   if (settings_.row >= camera.height || settings_.column >= camera.width)
     throw InputError("near-point: row, column", "allowed below " + std::to_string(camera.height) + " and " +
                                                     std::to_string(camera.width));
-  return nearest_seen(cloud, camera, settings_.column, settings_.row);
+  return nearest_measured(cloud, camera, settings_.column, settings_.row);
 }
 
-std::vector<double> NearPoint::shares(const PointCloud& cloud) const {
+std::vector<double> NearPoint::weights(const PointCloud& cloud) const {
   const Vec3 centre = picked(cloud);
-  std::vector<double> shares(cloud.size());
+  std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double beyond = (cloud.point(i) - centre).norm() - settings_.within_m;
+    const double beyond = (cloud.point(i) - centre).norm() - settings_.inner_radius_m;
     if (beyond <= 0)
-      shares[i] = 1;
+      weights[i] = 1;
     else if (beyond < settings_.falloff_m)
-      shares[i] = 1 - beyond / settings_.falloff_m;
+      weights[i] = 1 - beyond / settings_.falloff_m;
   }
-  return shares;
+  return weights;
 }
 
 }  // namespace remote_touch

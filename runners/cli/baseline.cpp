@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"

@@ -95,7 +95,7 @@ void add_scorecard(Subcommands& commands) {
   auto [command, scorecard] = commands.add(
       "scorecard", "renderers against each other over many scenes and noise levels: HDF5 and a page",
       command_scorecard);
-  command->add_option("contenders", scorecard->contenders, "of the list (default: all)");
+  command->add_option("methods", scorecard->methods, "of the list (default: all)");
   command->add_option("--scene", scorecard->scenes, "of the list (default: all)");
   command->add_option("-o,--output", scorecard->folder, "the folder to write into, or to go on with")
       ->required();
@@ -161,7 +161,7 @@ void add_baseline(Subcommands& commands) {
                     "a new baseline: the experiment, a name or a JSON file in the folder");
   other->add_option("--sweep", bless->sweep, "a new baseline: the sweep");
   add_set(other, bless->overrides, "parameter=value of a new baseline");
-  other->add_option("--also", bless->also, "a build of the same source by another compiler")
+  other->add_option("--other-build", bless->also, "a build of the same source by another compiler")
       ->allow_extra_args(false);
   other->add_flag("--one-compiler", bless->one_compiler, "measure the spread without one");
   other->add_option("--folder", bless->folder, "where to store")->capture_default_str();
@@ -187,7 +187,7 @@ void add_live(Subcommands& commands) {
       commands.add("live", "run an experiment in real time, with a sensor and a haptic device", command_live);
   command->add_option("experiment", live->experiment, "a name of the list, a JSON file, or a live session")
       ->required();
-  add_set(command, live->overrides, "parameter=value, for example safety.largest_force_N=3");
+  add_set(command, live->overrides, "parameter=value, for example safety.max_force_N=3");
   command->add_option("--device", live->device, "SCHEME:ADDRESS, see remote-touch devices")
       ->capture_default_str();
   command->add_option("--depth", live->depth, "SCHEME:ADDRESS, see remote-touch devices")

@@ -55,7 +55,7 @@ struct SweepRequest {
 int command_sweep(const CommandLine& line, const SweepRequest& request);
 
 struct ScorecardRequest {
-  std::vector<std::string> contenders, scenes;  // empty: all
+  std::vector<std::string> methods, scenes;  // empty: all
   std::string folder;
   int seeds = 20;
   int threads = 0;  // 0: as OpenMP decides

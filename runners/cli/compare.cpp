@@ -5,7 +5,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/deviation_figure.h"
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/shell_command.h"
@@ -70,7 +70,8 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   rules.rule = {request.margin, request.shift_margin, request.alpha};
   for (const std::string& file : {request.json, request.junit, request.plot}) {
     if (file.empty()) continue;
-    for (const std::string& input : {request.baseline, request.candidate}) require_other(file, input);
+    for (const std::string& input : {request.baseline, request.candidate})
+      require_different_file(file, input);
     require_writable(file);
   }
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);

@@ -7,7 +7,7 @@
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/figures/figures.h"
-#include "runners/scorecard/contest.h"
+#include "runners/scorecard/benchmark.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/sweep/sweep.h"
 #include "runners/tool_files/loaded_spheres.h"
@@ -51,7 +51,7 @@ void print_run_settings() {
 }
 
 bool describe_experiment(const std::string& name) {
-  for (const StoredText& stored : stored_experiments()) {
+  for (const EmbeddedText& stored : embedded_experiments()) {
     if (name != stored.name) continue;
     const Experiment experiment = Experiment::load(name);
     std::printf("%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
@@ -64,7 +64,7 @@ bool describe_experiment(const std::string& name) {
 }
 
 bool describe_sweep(const std::string& name) {
-  for (const StoredText& stored : stored_sweeps()) {
+  for (const EmbeddedText& stored : embedded_sweeps()) {
     if (name != stored.name) continue;
     const Sweep sweep = Sweep::load(name);
     const SweepResult plan = sweep.plan();
@@ -79,25 +79,25 @@ bool describe_sweep(const std::string& name) {
   return false;
 }
 
-bool describe_contender(const std::string& name) {
-  for (const Contender& contender : chosen_contenders({})) {
-    if (name != contender.name) continue;
-    std::printf("%s: a contender of the scorecard: %s\n%s\n", name.c_str(), contender.title.c_str(),
-                parse_json(contender.renderer, name).dump(2).c_str());
+bool describe_method(const std::string& name) {
+  for (const Method& method : chosen_methods({})) {
+    if (name != method.name) continue;
+    std::printf("%s: a method of the scorecard: %s\n%s\n", name.c_str(), method.title.c_str(),
+                parse_json(method.renderer, name).dump(2).c_str());
     return true;
   }
   return false;
 }
 
 bool describe_scene(const std::string& name) {
-  for (const ContestScene& scene : chosen_scenes({})) {
+  for (const BenchmarkScene& scene : chosen_scenes({})) {
     if (name != scene.name) continue;
     std::printf("%s: a scene of the scorecard: %s\n%s\n", name.c_str(), scene.title.c_str(),
                 parse_json(scene.experiment, name).dump(2).c_str());
     std::printf("Noise: %s\nSuccess: %s\n", scene.noise.empty() ? "its own" : scene.noise.c_str(),
                 scene.meaning.c_str());
     for (const Bound& bound : scene.success)
-      std::printf("Bound: %s within %g .. %g\n", bound.measure.c_str(), bound.at_least, bound.at_most);
+      std::printf("Bound: %s within %g .. %g\n", bound.measure.c_str(), bound.min, bound.max);
     return true;
   }
   return false;
@@ -126,7 +126,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_entry(trajectories(), "trajectory", name);
   found |= describe_experiment(name);
   found |= describe_sweep(name);
-  found |= describe_contender(name);
+  found |= describe_method(name);
   found |= describe_scene(name);
   if (name == "run") {
     std::puts("run: what an experiment says beside its parts");

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
@@ -91,9 +91,9 @@ void leave_unjudged(Figure& figure, int coarse) {
 }
 
 // A recording that is not there is no failure of the method: the claim says so and the rest goes on.
-Figure make(const FigureEntry& entry, const Laboratory& laboratory) {
+Figure make(const FigureEntry& entry, const FigureContext& context) {
   try {
-    return entry.make(laboratory);
+    return entry.make(context);
   } catch (const MissingRecording& error) {
     Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
     figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
@@ -115,16 +115,16 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
   bool all_hold = true;
   for (const FigureEntry* entry : chosen) {
     Progress progress(std::string("figure ") + entry->name, line.quiet);
-    const Laboratory laboratory(
-        *line.kernels, line.stop, [&](double share) { progress.update(share); }, request.coarse);
-    Figure figure = make(*entry, laboratory);
-    const bool is_coarse = laboratory.has_coarse_map();
+    const FigureContext context(
+        *line.kernels, line.stop, [&](double fraction) { progress.update(fraction); }, request.coarse);
+    Figure figure = make(*entry, context);
+    const bool is_coarse = context.has_coarse_map();
     if (is_coarse) leave_unjudged(figure, request.coarse);
     const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
     write_figure(
         file, figure,
-        provenance(laboratory.configurations(), figure_command(figure.name, is_coarse ? request.coarse : 1),
-                   line.kernels->isa, laboratory.inputs()));
+        provenance(context.configurations(), figure_command(figure.name, is_coarse ? request.coarse : 1),
+                   line.kernels->isa, context.inputs()));
     std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
     for (const Claim& claim : figure.claims) {
       print(claim);
@@ -132,7 +132,7 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
       all_hold &= claim.verdict != Verdict::fail;
     }
     const std::string text = claims.dump(2) + "\n";  // after each figure: an interruption keeps what is done
-    write_whole_file(claims_file, text.data(), text.size());
+    write_file_atomically(claims_file, text.data(), text.size());
   }
   return all_hold ? kDone : kCheckFailed;
 }

@@ -3,7 +3,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/tick_hashes.h"
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 
@@ -11,7 +11,7 @@ namespace remote_touch {
 
 int command_hashes(const CommandLine&, const HashesRequest& request) {
   if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "allowed 1 or more");
-  require_other(request.output, request.trace);
+  require_different_file(request.output, request.trace);
   require_writable(request.output);
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);

@@ -13,7 +13,7 @@ int command_jitter(const CommandLine& line, const JitterRequest& request) {
   std::printf("%zu ticks at %g Hz: %s\n", jitter.late_s.size(), request.rate_hz, jitter.real_time.c_str());
   std::fputs(histogram(jitter.late_s).c_str(), stdout);
   std::sort(jitter.late_s.begin(), jitter.late_s.end());
-  const auto us = [&](double share) { return 1e6 * quantile(jitter.late_s, share); };
+  const auto us = [&](double fraction) { return 1e6 * quantile(jitter.late_s, fraction); };
   std::printf("  late by p50 %.1f, p99 %.1f, p99.9 %.1f, at most %.1f us; missed %lld\n", us(0.5), us(0.99),
               us(0.999), us(1), jitter.missed);
   return kDone;

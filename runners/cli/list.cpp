@@ -5,7 +5,7 @@
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/figures/figures.h"
-#include "runners/scorecard/contest.h"
+#include "runners/scorecard/benchmark.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {
@@ -26,14 +26,14 @@ int command_list(const CommandLine&, const ListRequest&) {
   std::puts("trajectories");
   for (const auto& entry : trajectories()) row(entry.name, entry.summary);
   std::puts("experiments");
-  for (const auto& stored : stored_experiments())
+  for (const auto& stored : embedded_experiments())
     row(stored.name, Experiment::load(stored.name).settings().title);
   std::puts("sweeps");
-  for (const auto& stored : stored_sweeps()) row(stored.name, Sweep::load(stored.name).title());
-  std::puts("contenders");
-  for (const Contender& contender : chosen_contenders({})) row(contender.name.c_str(), contender.title);
+  for (const auto& stored : embedded_sweeps()) row(stored.name, Sweep::load(stored.name).title());
+  std::puts("methods");
+  for (const Method& method : chosen_methods({})) row(method.name.c_str(), method.title);
   std::puts("scenes");
-  for (const ContestScene& scene : chosen_scenes({})) row(scene.name.c_str(), scene.title);
+  for (const BenchmarkScene& scene : chosen_scenes({})) row(scene.name.c_str(), scene.title);
   std::puts("figures");
   for (const auto& entry : figures()) row(entry.name, entry.summary);
   std::puts("measures");

@@ -5,8 +5,8 @@
 #include <exception>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
-#include "analysis/storage/whole_file.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/shell_command.h"
 #include "runners/provenance/input_hashes.h"
@@ -23,7 +23,7 @@ std::string normalised(const LiveRequest& request) {
   return shell_command(words);
 }
 
-void tell(const std::string& text) {
+void report_line(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
 }
 
@@ -38,10 +38,10 @@ void see_to_every_end() {
 
 // While it runs: a file that cannot be written does not end it.
 void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
-  tell("so far\n" + text(report));
+  report_line("so far\n" + text(report));
   if (!file.empty()) write_figure(file, live_figure(report), origin);
 } catch (const std::exception& error) {
-  tell(error.what());
+  report_line(error.what());
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;
   options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
                                   input_hashes(experiment.inputs()));
-  if (!line.quiet) options.tell = tell;
+  if (!line.quiet) options.report_line = report_line;
   options.on_report = [&](const LiveReport& report) {
     report_now(report, request.report, options.provenance);
   };
@@ -68,9 +68,9 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());
   const LiveReport report = live_report(result.log, result.counts);
-  if (result.force_share < 1)
+  if (result.force_scale < 1)
     std::printf("  the device got %.3g of every force and torque, for its largest stiffness\n",
-                result.force_share);
+                result.force_scale);
   std::fputs(text(report).c_str(), stdout);
   if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
   const std::string sum = request.output.empty() ? digest(result.log.trace.columns())

@@ -31,12 +31,12 @@ void request_rearm(int) {
 
 // REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
 const Kernels& chosen_kernels() {
-  const char* wanted = std::getenv("REMOTE_TOUCH_ISA");
+  const char* requested = std::getenv("REMOTE_TOUCH_ISA");
   const Isa best = best_isa();
-  if (wanted == nullptr) return kernels_for(best);
+  if (requested == nullptr) return kernels_for(best);
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
-    if (isa <= best && kernels_for(isa).isa == std::string(wanted)) return kernels_for(isa);
-  throw InputError(std::string("REMOTE_TOUCH_ISA = ") + wanted,
+    if (isa <= best && kernels_for(isa).isa == std::string(requested)) return kernels_for(isa);
+  throw InputError(std::string("REMOTE_TOUCH_ISA = ") + requested,
                    std::string("allowed x86-64 up to ") + kernels_for(best).isa + " on this machine");
 }
 

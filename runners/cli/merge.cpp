@@ -40,11 +40,12 @@ void require_same_origin(const Part& part, const Part& first) {
   const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
   for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
     for (const auto& [name, value] : *attributes)
-      if (name != "inputs" && name != "command" &&  // the way to one file may be written differently
+      if (name != "input_digests" && name != "command" &&  // the way to one file may be written differently
           attribute(ours, name) != attribute(theirs, name))
         throw InputError(part.file, "has another " + name + " than " + first.file +
                                         "; allowed shards of one sweep, made by one build");
-  for (const auto& input : changed_inputs(attribute(theirs, "inputs"), attribute(ours, "inputs")))
+  for (const auto& input :
+       changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
     throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
                                     first.file + ": " + input.before + "); allowed shards of one sweep");
 }

@@ -33,12 +33,12 @@ void Progress::show(const std::string& text) {
   std::fflush(stderr);
 }
 
-void Progress::update(double share) {
+void Progress::update(double fraction) {
   if (!is_due()) return;
   const double elapsed = std::chrono::duration<double>(last_ - start_).count();
   char text[100];
-  std::snprintf(text, sizeof text, "%3.0f %%, %.1f %%/s, %.0f s left", 100 * share,
-                elapsed > 0 ? 100 * share / elapsed : 0, share > 0 ? elapsed / share - elapsed : 0);
+  std::snprintf(text, sizeof text, "%3.0f %%, %.1f %%/s, %.0f s left", 100 * fraction,
+                elapsed > 0 ? 100 * fraction / elapsed : 0, fraction > 0 ? elapsed / fraction - elapsed : 0);
   show(text);
 }
 

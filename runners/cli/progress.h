@@ -12,7 +12,7 @@ class Progress {
  public:
   Progress(std::string what, bool quiet);
   ~Progress();
-  void update(double share);  // 0 to 1
+  void update(double fraction);  // 0 to 1
   // Counted things, earlier ones of them done before this program began.
   void update(std::size_t done, std::size_t total, std::size_t earlier, const char* things);
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
@@ -66,7 +66,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
-  require_other(request.output, request.map);
+  require_different_file(request.output, request.map);
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
   const SweepResult& result = stored.result;
@@ -83,7 +83,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   SimulationOptions options;
   options.kernels = line.kernels;
   options.stop = line.stop;
-  options.progress = [&](double share) { progress.update(share); };
+  options.progress = [&](double fraction) { progress.update(fraction); };
   const std::size_t run = result.run(cell, request.replicate);
   const Replay replay = replay_run(stored, sweep, run, options, request.output);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), replay.trace.length(),

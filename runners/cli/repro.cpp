@@ -2,12 +2,12 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/tick_hashes.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/scorecard.h"
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
@@ -55,7 +55,7 @@ class Repro {
     for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
       if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
         comment("this program has another " + name + ": " + value);
-    if (!of("inputs").empty()) comment("it read:\n" + of("inputs"));
+    if (!of("input_digests").empty()) comment("it read:\n" + of("input_digests"));
     if (kind_ == "figure")
       print_figure_command();
     else if (command_makes_it())
@@ -67,9 +67,9 @@ class Repro {
   void write_config(const std::string& target) const {
     if (kind_ == "figure")
       throw InputError("--config", "of a figure; allowed with a trace, a sweep or hashes");
-    require_other(target, file_);
+    require_different_file(target, file_);
     const std::string text = of("config") + "\n";
-    write_whole_file(target, text.data(), text.size());
+    write_file_atomically(target, text.data(), text.size());
     std::printf("# configuration written to %s\n", target.c_str());
   }
 
@@ -165,7 +165,7 @@ class Repro {
   std::vector<Column> columns_again(const Experiment& experiment, Progress& progress) const {
     SimulationOptions options;
     options.kernels = line_.kernels, options.stop = line_.stop, options.hash_frames = true;
-    options.progress = [&](double share) { progress.update(share); };
+    options.progress = [&](double fraction) { progress.update(fraction); };
     return simulate(experiment, options).columns();
   }
   TextAttributes ours(const std::string& config, const std::string& inputs) const {
@@ -210,10 +210,10 @@ class Repro {
   ResultComparison figure_again(Progress& progress) const {
     for (const FigureEntry& entry : figures()) {
       if (entry.name != of("figure")) continue;
-      const Laboratory laboratory(
-          *line_.kernels, line_.stop, [&](double share) { progress.update(share); }, coarse());
+      const FigureContext context(
+          *line_.kernels, line_.stop, [&](double fraction) { progress.update(fraction); }, coarse());
       std::vector<Column> columns;
-      for (const Table& table : entry.make(laboratory).tables)
+      for (const Table& table : entry.make(context).tables)
         for (Column column : table.columns) {
           column.name = table.name + "/" + column.name;
           columns.push_back(std::move(column));

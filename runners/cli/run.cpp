@@ -3,7 +3,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/measures/measures.h"
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/geometry/rotation.h"
 #include "runners/cli/commands.h"
@@ -60,7 +60,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.kernels = line.kernels;
   options.stop = line.stop;
   options.hash_frames = true;
-  options.progress = [&](double share) { progress.update(share); };
+  options.progress = [&](double fraction) { progress.update(fraction); };
   if (request.timing) options.step_duration_s = &durations;
   const TextAttributes origin = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
                                            input_hashes(experiment.inputs()));

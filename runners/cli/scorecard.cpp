@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/whole_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
@@ -30,20 +30,20 @@ void make_folders(const std::filesystem::path& folder) {
 }
 
 // Without the scenes whose recording is not here.
-std::string configuration_of(const ContestPlan& plan) {
-  std::vector<ContestScene> scenes;
+std::string configuration_of(const BenchmarkPlan& plan) {
+  std::vector<BenchmarkScene> scenes;
   for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
-  return configuration(plan.contest.contenders, scenes, plan.contest.replicates);
+  return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
 }
 
 // What a folder's scorecard has, this one must have too: its page and result are replaced.
-void require_all_of(const std::filesystem::path& file, const ContestPlan& plan) {
+void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
   const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
                                   false);  // broken: not an object
   const Json wanted = Json::parse(configuration_of(plan));
-  for (const char* kind : {"contenders", "scenes"}) {
+  for (const char* kind : {"methods", "scenes"}) {
     if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
       throw InputError(file.string(), "is no scorecard, and would be replaced; allowed another folder");
     for (const auto& item : stored[kind].items())
@@ -55,10 +55,10 @@ void require_all_of(const std::filesystem::path& file, const ContestPlan& plan) 
 }
 
 // Runs that ended with an error; they count as no success.
-int report_failed_runs(const std::vector<ContestSweep>& sweeps) {
+int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
   std::size_t failed = 0;
   std::string first;
-  for (const ContestSweep& sweep : sweeps) {
+  for (const BenchmarkSweep& sweep : sweeps) {
     const StoredSweep stored = read_sweep(sweep.file);
     const auto runs = stored.result.runs_in(RunState::failed);
     if (!runs.empty() && first.empty()) first = sweep.name + ": " + stored.result.error[runs.front()];
@@ -71,7 +71,7 @@ int report_failed_runs(const std::vector<ContestSweep>& sweeps) {
 
 std::string normalised(const ScorecardRequest& request) {
   std::string command = "remote-touch scorecard";
-  for (const std::string& name : request.contenders) command += " " + name;
+  for (const std::string& name : request.methods) command += " " + name;
   if (!request.scenes.empty()) command += " --scene";
   for (const std::string& name : request.scenes) command += " " + name;
   return command + " --seeds " + std::to_string(request.seeds);
@@ -80,9 +80,10 @@ std::string normalised(const ScorecardRequest& request) {
 void print(const Scorecard& card) {
   for (const SceneScore& scene : card.scenes) {
     std::printf("%s\n", scene.name.c_str());
-    for (std::size_t c = 0; c < card.contenders.size(); ++c) {
-      std::printf("  %-18s", card.contenders[c].c_str());
-      for (const Share& share : scene.success[c]) std::printf(" %3d/%d", share.events, share.runs);
+    for (std::size_t c = 0; c < card.methods.size(); ++c) {
+      std::printf("  %-18s", card.methods[c].c_str());
+      for (const Proportion& fraction : scene.success[c])
+        std::printf(" %3d/%d", fraction.events, fraction.runs);
       std::printf("\n");
     }
   }
@@ -92,16 +93,16 @@ void print(const Scorecard& card) {
 
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
   if (request.threads > 0) omp_set_num_threads(request.threads);
-  const ContestPlan plan = plan_of(
-      {chosen_contenders(request.contenders), chosen_scenes(request.scenes), request.seeds, request.folder});
-  const std::vector<ContestSweep> sweeps = plan.sweeps();
-  require_same_contest(sweeps);
+  const BenchmarkPlan plan = plan_of(
+      {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
+  const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
+  require_same_benchmark(sweeps);
   require_all_of(std::filesystem::path(request.folder) / "scorecard.h5", plan);
   make_folders(request.folder);
   try {
     Progress progress("scorecard", line.quiet);
-    do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double share) {
-      progress.update((static_cast<double>(done) + share) / static_cast<double>(all));
+    do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {
+      progress.update((static_cast<double>(done) + fraction) / static_cast<double>(all));
     });
     Progress after("traces and page", line.quiet);
     const ScorecardPage page =
@@ -112,12 +113,12 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
     const std::string sum = write_figure(folder / "scorecard.h5", figure,
                                          provenance(configuration_of(plan), normalised(request), ""));
     const std::string text = html(page);
-    write_whole_file(folder / "index.html", text.data(), text.size());
+    write_file_atomically(folder / "index.html", text.data(), text.size());
     print(page.card);
     for (const auto& [name, why] : plan.skipped)
       std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
-    std::printf("%s: %zu scenes, %zu contenders, digest %s\n", (folder / "index.html").c_str(),
-                page.card.scenes.size(), page.card.contenders.size(), sum.c_str());
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n", (folder / "index.html").c_str(),
+                page.card.scenes.size(), page.card.methods.size(), sum.c_str());
     return report_failed_runs(sweeps);
   } catch (const Interrupted&) {
     std::fprintf(stderr,

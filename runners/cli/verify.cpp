@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <map>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/experiment/catalog.h"
@@ -15,10 +15,9 @@ namespace {
 std::string text(const CheckResult& result) {
   std::string all = result.scene + ", tick " + std::to_string(result.comparison.first_violation) + ":";
   for (const Deviation& d : result.comparison.deviations) {
-    if (d.largest <= d.tolerance) continue;
+    if (d.max <= d.tolerance) continue;
     char part[128];
-    std::snprintf(part, sizeof part, " %s %.3g %s (allowed %.3g)", d.quantity, d.largest, d.unit,
-                  d.tolerance);
+    std::snprintf(part, sizeof part, " %s %.3g %s (allowed %.3g)", d.quantity, d.max, d.unit, d.tolerance);
     all += part;
   }
   return all + (result.remark.empty() ? "" : "; " + result.remark);
@@ -35,18 +34,17 @@ void print_check(const CheckName& check, const std::vector<CheckResult>& results
     reason = result.reason;
     for (const Deviation& d : result.comparison.deviations) {
       const auto [place, is_new] = worst.try_emplace(d.quantity, d);
-      if (!is_new && d.largest > place->second.largest) place->second = d;
+      if (!is_new && d.max > place->second.max) place->second = d;
     }
   }
   std::printf("  %-4s %-18s %d scene(s), %4d ticks  %s\n", failed > 0 ? "FAIL" : "pass", check.name, scenes,
               ticks, check.meaning);
   bool explained = false;
   for (const auto& [quantity, d] : worst) {
-    if (d.tolerance == 0 && d.largest == 0) continue;
+    if (d.tolerance == 0 && d.max == 0) continue;
     if (!explained) std::printf("       tolerance: %s\n", reason.c_str());
     explained = true;
-    std::printf("       %-20s at most %.3g %s, allowed %.3g\n", quantity.c_str(), d.largest, d.unit,
-                d.tolerance);
+    std::printf("       %-20s at most %.3g %s, allowed %.3g\n", quantity.c_str(), d.max, d.unit, d.tolerance);
   }
   for (const CheckResult& result : results)
     if (result.check == check.name && !result.passed()) std::printf("       in %s\n", text(result).c_str());
@@ -70,7 +68,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
     chosen.push_back(&find_entry(renderers(), name, "renderer"));
   if (chosen.empty())
     for (const RendererEntry& entry : renderers())
-      if (entry.freedoms == Freedoms::three) chosen.push_back(&entry);
+      if (entry.degrees_of_freedom == DegreesOfFreedom::three) chosen.push_back(&entry);
   std::vector<ReportSuite> suites;
   bool all_pass = true;
   for (const RendererEntry* entry : chosen) {

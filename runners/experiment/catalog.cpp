@@ -40,29 +40,32 @@ namespace remote_touch {
 namespace {
 
 template <class Product, class Settings, class... Seam>
-std::unique_ptr<Blueprint<Seam...>> blueprint() {
-  return std::make_unique<BlueprintFor<Product, Settings, Seam...>>();
+std::unique_ptr<Factory<Seam...>> factory() {
+  return std::make_unique<FactoryFor<Product, Settings, Seam...>>();
 }
 
 template <class Product>
 ScenarioEntry scenario(const char* name, const char* summary) {
   return {name, summary,
-          blueprint<Product, typename Product::Settings, Scenario, const NoiseKey&, const Kernels&>};
+          factory<Product, typename Product::Settings, Scenario, const NoiseKey&, const Kernels&>};
 }
 
 template <class Product>
 FixtureEntry fixture(const char* name, const char* summary) {
-  return {name, summary, blueprint<Product, typename Product::Settings, FixtureRule>};
+  return {name, summary, factory<Product, typename Product::Settings, FixtureRule>};
 }
 
 template <class Product>
 TrajectoryEntry trajectory(const char* name, const char* summary) {
-  return {name, summary, blueprint<Product, typename Product::Settings, Trajectory, const Scenario&>};
+  return {name, summary, factory<Product, typename Product::Settings, Trajectory, const Scenario&>};
 }
 
 template <class Product, class Settings>
-RendererEntry renderer(const char* name, Freedoms freedoms, HeldBy held_by, const char* summary) {
-  return {{name, summary, blueprint<Product, Settings, Renderer, double, const Kernels&>}, freedoms, held_by};
+RendererEntry renderer(const char* name, DegreesOfFreedom degrees_of_freedom, ContactModel contact_model,
+                       const char* summary) {
+  return {{name, summary, factory<Product, Settings, Renderer, double, const Kernels&>},
+          degrees_of_freedom,
+          contact_model};
 }
 
 const ScenarioEntry kScenarios[] = {
@@ -109,23 +112,23 @@ const TrajectoryEntry kTrajectories[] = {
 };
 
 const RendererEntry kRenderers[] = {
-    renderer<ProxyRenderer, ProxyParameters>("proxy", Freedoms::three, HeldBy::points,
+    renderer<ProxyRenderer, ProxyParameters>("proxy", DegreesOfFreedom::three, ContactModel::points,
                                              "3-DOF point cloud proxy, chapters 4 and 5"),
     renderer<TrackedSheetRenderer, TrackedSheetParameters>(
-        "tracked-sheet", Freedoms::three, HeldBy::sheet,
+        "tracked-sheet", DegreesOfFreedom::three, ContactModel::sheet,
         "3-DOF proxy on a sheet that is tracked and denoised"),
-    renderer<PenaltyRenderer, PenaltyParameters>("penalty", Freedoms::three, HeldBy::nothing,
+    renderer<PenaltyRenderer, PenaltyParameters>("penalty", DegreesOfFreedom::three, ContactModel::nothing,
                                                  "a rival: direct rendering, a spring and no proxy"),
     renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
-        "implicit-surface", Freedoms::three, HeldBy::points,
+        "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
         "a rival: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
     renderer<GodObjectRenderer, GodObjectParameters>(
-        "god-object", Freedoms::three, HeldBy::mesh,
+        "god-object", DegreesOfFreedom::three, ContactModel::mesh,
         "a rival: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
-    renderer<LoadedTool, LoadedTool::Settings>("tool", Freedoms::six, HeldBy::points,
+    renderer<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(
-        "sphere-tree", Freedoms::six, HeldBy::regions,
+        "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
         "6-DOF forbidden regions: a tool of spheres against those around points, chapter 7"),
 };
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/blueprint.h"
+#include "runners/experiment/factory.h"
 
 namespace remote_touch {
 

@@ -14,11 +14,12 @@ Parameters parameters(RunSettings& s) {
       {"title", &s.title, 0, 0, "one line for lists"},
       {"duration_s", &s.duration_s, 0, 86400, "simulated time; 0: as long as the trajectory lasts"},
       {"haptic_rate_hz", &s.haptic_rate_hz, 100, 10000, "haptic ticks per second, f_h of (4.16)"},
-      {"frame_latency_s", &s.delivery.latency_s, 0, 10,
+      {"frame_latency_s", &s.transport.latency_s, 0, 10,
        "shortest time from the capture of a frame to its arrival"},
-      {"frame_jitter_s", &s.delivery.jitter_s, 0, 10,
+      {"frame_jitter_s", &s.transport.jitter_s, 0, 10,
        "up to so much is added to it, evenly spread and drawn for each frame; they may overtake each other"},
-      {"frame_drop_probability", &s.delivery.drop_probability, 0, 1, "share of the frames that never arrive"},
+      {"frame_drop_probability", &s.transport.drop_probability, 0, 1,
+       "share of the frames that never arrive"},
       {"seed", &s.key.seed, 0, 18446744073709551615.0, "key of all noise"},
       {"cell", &s.key.cell, 0, 4294967295.0, "second key of the noise: the cell of a sweep"},
       {"replicate", &s.key.replicate, 0, 4294967295.0, "third key of the noise: the repetition of a cell"},
@@ -35,10 +36,10 @@ Part<Entry> read_part(const Json& json, std::span<const Entry> entries, const st
     throw InputError(path, "missing; allowed {\"name\": ..., parameters}");
   Part<Entry> part;
   part.name = json["name"].template get<std::string>();
-  part.blueprint = find_entry(entries, part.name, path + ".name").make();
-  read_parameters(json, part.blueprint->settings(), path, true);
-  const std::string contradiction = part.blueprint->contradiction();
-  if (!contradiction.empty()) throw InputError(path + "." + contradiction);
+  part.factory = find_entry(entries, part.name, path + ".name").make();
+  read_parameters(json, part.factory->settings(), path, true);
+  const std::string problem = part.factory->validate();
+  if (!problem.empty()) throw InputError(path + "." + problem);
   return part;
 }
 
@@ -65,8 +66,8 @@ Settings read_settings(const Json& json, const std::string& path) {
   if (!json.is_object()) throw InputError(path, "allowed {parameters}, or to leave it out");
   Settings settings;
   read_parameters(json, parameters(settings), path, false);
-  const std::string contradiction = conflict(settings);
-  if (!contradiction.empty()) throw InputError(path + "." + contradiction);
+  const std::string problem = validate(settings);
+  if (!problem.empty()) throw InputError(path + "." + problem);
   return settings;
 }
 
@@ -98,7 +99,7 @@ void write_section(const std::optional<Settings>& section, const char* path, Jso
 // Of a rule that is not built: some read files when they are.
 FixtureValues values_of(const Part<FixtureEntry>& rule) {
   Json all = Json::object(), own = Json::object();
-  write_parameters(rule.blueprint->settings(), all);
+  write_parameters(rule.factory->settings(), all);
   FixtureValues values;
   for (const Parameter& p : parameters(values)) own[p.name] = all[p.name];
   read_parameters(own, parameters(values), rule.name, false);
@@ -108,7 +109,7 @@ FixtureValues values_of(const Part<FixtureEntry>& rule) {
 template <class Entry>
 Json part_json(const Part<Entry>& part) {
   Json json = {{"name", part.name}};
-  write_parameters(part.blueprint->settings(), json);
+  write_parameters(part.factory->settings(), json);
   return json;
 }
 
@@ -137,8 +138,8 @@ Experiment Experiment::from_json(Json configuration) {
   experiment.live_ = read_section<LiveSettings>(configuration, "live");
   experiment.safety_ = read_section<SafetyLimits>(configuration, "safety");
   read_parameters(configuration, parameters(experiment.settings_), "", false);
-  const std::string contradiction = conflict(experiment.fixture_values(), experiment.sequence_);
-  if (!contradiction.empty()) throw InputError(contradiction);
+  const std::string problem = validate(experiment.fixture_values(), experiment.sequence_);
+  if (!problem.empty()) throw InputError(problem);
   if (experiment.guidance_ && !experiment.has_guidance())
     throw InputError("guidance", "allowed where a fixture has role = guidance");
   if (experiment.has_guidance() && !experiment.guidance_) experiment.guidance_.emplace();
@@ -151,9 +152,9 @@ Experiment Experiment::from_json(Json configuration) {
 }
 
 Experiment Experiment::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
-  const std::string text = looks_like_session(name_or_file)
+  const std::string text = has_result_header(name_or_file)
                                ? session_experiment(name_or_file)
-                               : stored_or_file(stored_experiments(), name_or_file, "an experiment's");
+                               : embedded_or_file(embedded_experiments(), name_or_file, "an experiment's");
   return from_json(text, name_or_file, overrides);
 }
 
@@ -182,23 +183,23 @@ std::string Experiment::to_json() const {
 }
 
 std::vector<RecordingPart> Experiment::inputs() const {
-  std::vector<RecordingPart> all = scenario_.blueprint->inputs();
+  std::vector<RecordingPart> all = scenario_.factory->inputs();
   const auto add = [&](const std::vector<RecordingPart>& parts) {
     all.insert(all.end(), parts.begin(), parts.end());
   };
-  for (const auto& rule : fixtures_) add(rule.blueprint->inputs());
-  add(renderer_.blueprint->inputs()), add(trajectory_.blueprint->inputs());
+  for (const auto& rule : fixtures_) add(rule.factory->inputs());
+  add(renderer_.factory->inputs()), add(trajectory_.factory->inputs());
   return all;
 }
 
 std::unique_ptr<Scenario> Experiment::build_scenario(const Kernels& kernels) const {
-  auto scenario = scenario_.blueprint->build(settings_.key, kernels);
+  auto scenario = scenario_.factory->build(settings_.key, kernels);
   if (!faults_) return scenario;
   return std::make_unique<FaultySensor>(std::move(scenario), *faults_, settings_.key, kernels);
 }
 
 std::unique_ptr<Trajectory> Experiment::build_trajectory(const Scenario& scenario) const {
-  return trajectory_.blueprint->build(scenario.without_faults());
+  return trajectory_.factory->build(scenario.without_faults());
 }
 
 std::vector<FixtureValues> Experiment::fixture_values() const {
@@ -225,7 +226,7 @@ bool Experiment::can_be_pressed(const SequenceStep& step) const {
 
 std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
                                                      std::shared_ptr<FixtureSwitches> switches) const {
-  auto renderer = renderer_.blueprint->build(settings_.haptic_rate_hz, kernels);
+  auto renderer = renderer_.factory->build(settings_.haptic_rate_hz, kernels);
   if (sequence_.empty() && !has_guidance()) return renderer;
   if (!switches) switches = std::make_shared<FixtureSwitches>();
   return std::make_unique<GuidedRenderer>(std::move(renderer), *guidance_, fixture_values(), sequence_,
@@ -234,7 +235,7 @@ std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
 
 FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
-  for (const auto& rule : fixtures_) rules.push_back(rule.blueprint->build());
+  for (const auto& rule : fixtures_) rules.push_back(rule.factory->build());
   // Frames of a scene at rest are sent on only where something can change.
   return FixtureAssignment(std::move(rules), sequence_.empty() ? nullptr : std::move(switches));
 }
@@ -250,9 +251,9 @@ SimulatedHand Experiment::build_hand() const {
   return {operator_, device_, 1 / settings_.haptic_rate_hz};
 }
 
-double Experiment::largest_stiffness_N_per_m() const {
+double Experiment::max_stiffness_N_per_m() const {
   double holds = 0, pulls = 0;
-  for (const Parameter& p : renderer_.blueprint->settings())
+  for (const Parameter& p : renderer_.factory->settings())
     if (const auto* const value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
       holds = **value;
   for (const FixtureValues& v : fixture_values()) {

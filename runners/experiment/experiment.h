@@ -14,7 +14,7 @@
 #include "runners/live/devices/safety_gate.h"
 #include "runners/live/loop/live_settings.h"
 #include "runners/operator/simulated_hand.h"
-#include "runners/settings/stored.h"
+#include "runners/settings/embedded_data.h"
 #include "scenarios/faults/sensor_faults.h"
 
 namespace remote_touch {
@@ -23,7 +23,7 @@ namespace remote_touch {
 struct RunSettings {
   double duration_s = 0;
   double haptic_rate_hz = 1000;
-  Delivery delivery;
+  Transport transport;
   NoiseKey key;
   std::string title;
 };
@@ -34,7 +34,7 @@ Parameters parameters(RunSettings& s);
 template <class Entry>
 struct Part {
   std::string name;
-  decltype(Entry{}.make()) blueprint;
+  decltype(Entry{}.make()) factory;
 };
 
 class Experiment {
@@ -67,7 +67,7 @@ class Experiment {
   SimulatedHand build_hand() const;
   // No pose makes force grow faster with the device's way: springs of the renderer or of a forbidden region,
   // and of all guidance beside them.
-  double largest_stiffness_N_per_m() const;
+  double max_stiffness_N_per_m() const;
   // For the live loop; offline runs take no notice of them.
   LiveSettings live() const { return live_.value_or(LiveSettings{}); }
   SafetyLimits safety() const { return safety_.value_or(SafetyLimits{}); }

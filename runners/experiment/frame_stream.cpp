@@ -4,14 +4,14 @@
 #include <bit>
 #include <utility>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
 // Points that come with another time stamp are another frame.
 std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
-  return mixed(fingerprint(cloud), std::bit_cast<std::uint64_t>(captured_s));
+  return mixed(points_hash(cloud), std::bit_cast<std::uint64_t>(captured_s));
 }
 
 void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) const {
@@ -25,47 +25,50 @@ void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) co
   frame.points = make_search(std::move(cloud));
 }
 
-FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
-                         const NoiseKey& key, bool hash_frames, bool made_points)
+FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
+                         const NoiseKey& key, bool hash_frames, bool generate_all_points)
     : scenario_(scenario),
       processing_(std::move(processing)),
-      delivery_(delivery),
+      transport_(transport),
       key_(key),
       hash_frames_(hash_frames),
-      made_points_(made_points) {}
+      generate_all_points_(generate_all_points) {}
 
 bool FrameStream::exists(int frame) const {
   if (frame < scenario_.frame_count()) return true;
-  const bool goes_on = processing_.fixtures.changes_with_time() || delivery_.drop_probability > 0;
-  return goes_on && !scenario_.ends();
+  const bool continues = processing_.fixtures.changes_with_time() || transport_.drop_probability > 0;
+  return continues && !scenario_.ends();
 }
 
 // Beyond the last frame the camera goes on at its rate and sees what it saw.
-int FrameStream::seen(int frame) const {
+int FrameStream::source_frame(int frame) const {
   return std::min(frame, scenario_.frame_count() - 1);
 }
 
 double FrameStream::captured_s(int frame) const {
-  return scenario_.captured_s(seen(frame)) + (frame - seen(frame)) / scenario_.frame_rate_hz();
+  return scenario_.captured_s(source_frame(frame)) +
+         (frame - source_frame(frame)) / scenario_.frame_rate_hz();
 }
 
 void FrameStream::send(int frame) {
-  const auto chance = uniforms(noise_stream(key_, NoiseUse::delivery, static_cast<std::uint32_t>(frame)), 0);
-  if (chance[0] < delivery_.drop_probability) return;
+  const auto chance = uniforms(noise_stream(key_, NoiseUse::transport, static_cast<std::uint32_t>(frame)), 0);
+  if (chance[0] < transport_.drop_probability) return;
   std::optional<double> out_s;  // of the sensor
-  if (frame == seen(frame)) out_s = scenario_.arrives_s(frame);
+  if (frame == source_frame(frame)) out_s = scenario_.arrives_s(frame);
   const double there_s = out_s.value_or(captured_s(frame));
-  const OnTheWay sent{there_s + delivery_.latency_s + chance[1] * delivery_.jitter_s, frame};
-  const auto after = [](const OnTheWay& a, const OnTheWay& b) { return a.arrives_s < b.arrives_s; };
-  on_the_way_.insert(std::upper_bound(on_the_way_.begin(), on_the_way_.end(), sent, after), sent);
+  const FrameInTransit sent{there_s + transport_.latency_s + chance[1] * transport_.jitter_s, frame};
+  const auto after = [](const FrameInTransit& a, const FrameInTransit& b) {
+    return a.arrives_s < b.arrives_s;
+  };
+  in_transit_.insert(std::upper_bound(in_transit_.begin(), in_transit_.end(), sent, after), sent);
 }
 
 void FrameStream::deliver_until(double time_s, Renderer& renderer) {
   const double now_s = time_s + kSameTime_s;
-  while (exists(next_) && captured_s(next_) + delivery_.latency_s <= now_s) send(next_++);
-  while (!on_the_way_.empty() && on_the_way_.front().arrives_s <= now_s) {
-    const OnTheWay arrived = on_the_way_.front();
-    on_the_way_.erase(on_the_way_.begin());
+  while (exists(next_) && captured_s(next_) + transport_.latency_s <= now_s) send(next_++);
+  while (!in_transit_.empty() && in_transit_.front().arrives_s <= now_s) {
+    const FrameInTransit arrived = in_transit_.front();
+    in_transit_.erase(in_transit_.begin());
     Frame frame{arrived.frame, captured_s(arrived.frame), arrived.arrives_s, nullptr};
     fill(frame);
     if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
@@ -75,17 +78,17 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
 
 void FrameStream::fill(Frame& frame) const {
   if (processing_.changes_points())
-    processing_.fill(frame, scenario_.cloud(seen(frame.index)),
+    processing_.fill(frame, scenario_.cloud(source_frame(frame.index)),
                      scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
   else
-    frame.points = scenario_.points(seen(frame.index));
-  if (made_points_ && !dynamic_cast<const CloudSearch*>(frame.points.get()))
-    frame.points = make_search(scenario_.cloud(seen(frame.index)));
+    frame.points = scenario_.points(source_frame(frame.index));
+  if (generate_all_points_ && !dynamic_cast<const CloudSearch*>(frame.points.get()))
+    frame.points = make_search(scenario_.cloud(source_frame(frame.index)));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
   const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are made when asked for
-  return frame_hash(stored ? stored->cloud() : scenario_.cloud(seen(frame)), captured_s(frame));
+  return frame_hash(stored ? stored->cloud() : scenario_.cloud(source_frame(frame)), captured_s(frame));
 }
 
 }  // namespace remote_touch

@@ -14,7 +14,7 @@
 namespace remote_touch {
 
 // What happens to frames between capture and arrival, each for itself, drawn from the run's noise key.
-struct Delivery {
+struct Transport {
   double latency_s = 0;         // shortest time from capture to arrival
   double jitter_s = 0;          // up to so much is added, evenly spread; frames may overtake each other
   double drop_probability = 0;  // of a frame that never arrives
@@ -38,10 +38,10 @@ class FrameStream {
  public:
   // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
   // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
-  // frame is made for newest_hash(). With made_points frames come with every point made, which are the same
-  // points, so that nobody pays for the noise of those that he asks for.
-  FrameStream(const Scenario& scenario, FrameProcessing processing, const Delivery& delivery,
-              const NoiseKey& key, bool hash_frames, bool made_points = false);
+  // frame is made for newest_hash(). With generate_all_points frames come with every point made, which are
+  // the same points, so that nobody pays for the noise of those that he asks for.
+  FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
+              const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
   // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
   // Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture rule
@@ -51,12 +51,12 @@ class FrameStream {
   std::uint64_t newest_hash() const { return hash_; }
 
  private:
-  struct OnTheWay {
+  struct FrameInTransit {
     double arrives_s;
     int frame;
   };
   bool exists(int frame) const;
-  int seen(int frame) const;  // the scenario's frame that this one shows
+  int source_frame(int frame) const;  // the scenario's frame that this one shows
   double captured_s(int frame) const;
   void send(int frame);
   void fill(Frame& frame) const;  // with its points and targets
@@ -64,11 +64,11 @@ class FrameStream {
 
   const Scenario& scenario_;
   FrameProcessing processing_;
-  Delivery delivery_;
+  Transport transport_;
   NoiseKey key_;
-  bool hash_frames_, made_points_;
+  bool hash_frames_, generate_all_points_;
   int next_ = 0;  // to be sent
-  std::vector<OnTheWay> on_the_way_;
+  std::vector<FrameInTransit> in_transit_;
   std::uint64_t hash_ = 0;
 };
 

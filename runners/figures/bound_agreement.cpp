@@ -76,14 +76,14 @@ std::vector<Bound> bounds(const MeasuredNoise& noise) {
            [&noise](double s) { return scatter_bound(kLift, noise.at(s)); }}};
 }
 
-Agreement agreement_of(const Bound& bound, const Table& map, double most_noise) {
+Agreement agreement_of(const Bound& bound, const Table& map, double max_noise) {
   const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
   std::map<double, double> limit;
   for (const double x : noise) limit.try_emplace(x, bound.at(x * kContactRadius_m) / kContactRadius_m);
   int cells = 0, safe = 0, safe_popped = 0, unsafe_survived = 0;
   for (std::size_t i = 0; i < noise.size(); ++i) {
-    if (noise[i] > most_noise) continue;
+    if (noise[i] > max_noise) continue;
     const bool is_safe = acceleration[i] < limit[noise[i]];
     const bool stays = survived[i] > 0.5;
     ++cells;
@@ -105,9 +105,9 @@ Table agreement_table(const std::vector<Bound>& bounds, const Table& map) {
     names.value_names.push_back(bound.name);
     const Agreement all = agreement_of(bound, map), inside = agreement_of(bound, map, kFittedNoise);
     const auto interval = wilson_interval(all.agree, all.cells);
-    cells.push_back(all.share()), low.push_back(interval.first), high.push_back(interval.second);
+    cells.push_back(all.fraction()), low.push_back(interval.first), high.push_back(interval.second);
     safe.push_back(all.safe_popped), unsafe.push_back(all.unsafe_survived);
-    fitted.push_back(inside.share()), fitted_safe.push_back(inside.safe_popped);
+    fitted.push_back(inside.fraction()), fitted_safe.push_back(inside.safe_popped);
   }
   names.values = number;
   Table table{"agreement", "bounds against the outcome of 5396 lifts", {names}};

@@ -27,7 +27,7 @@ Table criterion_table(const LiftMap& lifts);
 struct Bound {
   std::string name, meaning;
   std::function<double(double noise_m)> at;
-  double most_noise_m = 1;  // drawn up to here: fits mean nothing beyond
+  double max_noise_m = 1;  // drawn up to here: fits mean nothing beyond
 };
 std::vector<Bound> bounds(const MeasuredNoise& noise);
 
@@ -35,9 +35,9 @@ std::vector<Bound> bounds(const MeasuredNoise& noise);
 struct Agreement {
   int cells = 0, agree = 0;
   double safe_popped = 0, unsafe_survived = 0;  // shares of the bound's safe and unsafe cells
-  double share() const { return static_cast<double>(agree) / cells; }
+  double fraction() const { return static_cast<double>(agree) / cells; }
 };
-Agreement agreement_of(const Bound& bound, const Table& map, double most_noise = 4);
+Agreement agreement_of(const Bound& bound, const Table& map, double max_noise = 4);
 Table agreement_table(const std::vector<Bound>& bounds, const Table& map);
 
 // Predicted and observed survival, by ranges of both noise and prediction.

@@ -56,16 +56,16 @@ double peak_to_peak(const Table& table) {
 double steps_to_contact(const Trace& single) {
   const std::size_t jump = jump_tick(single);
   std::size_t i = jump;
-  while (i < single.length() && std::abs(single.nearest_m[i] - kContactRadius_m) > kShell_m) ++i;
+  while (i < single.length() && std::abs(single.nearest_distance_m[i] - kContactRadius_m) > kShell_m) ++i;
   return static_cast<double>(i - jump + 1);
 }
 
 }  // namespace
 
-Figure figure_4_11(const Laboratory& laboratory) {
-  const Trace trace = laboratory.run(Experiment::load("fig4.11"));
+Figure figure_4_11(const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig4.11"));
   // With a budget of one step per tick, the tick of the jump shows where the first step leads.
-  const Trace single = laboratory.run(Experiment::load("fig4.11", {"renderer.steps_per_tick=1"}));
+  const Trace single = context.run(Experiment::load("fig4.11", {"renderer.steps_per_tick=1"}));
   const std::size_t jump = jump_tick(trace);
 
   Figure figure{
@@ -91,9 +91,9 @@ Figure figure_4_11(const Laboratory& laboratory) {
       claim_between("4.11", "ripple of the contact point, peak to peak", "5e-5",
                     peak_to_peak(figure.tables[1]), 4.0e-5, 5.7e-5, "m"),
       claim_at_most("4.11", "distance of the proxy from contact at the end of the tick of the HIP's jump",
-                    "0", std::abs(trace.nearest_m[jump] - kContactRadius_m), kShell_m, "m"),
+                    "0", std::abs(trace.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
       claim_at_most("4.11", "the same after a single proxy step", "1 - 2 steps",
-                    std::abs(single.nearest_m[jump] - kContactRadius_m), kShell_m, "m"),
+                    std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m"),
       claim_between("4.11", "proxy steps from the HIP's jump until contact", "1 - 2",
                     steps_to_contact(single), 1, 2, "steps"),
   };

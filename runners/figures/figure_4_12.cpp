@@ -25,19 +25,19 @@ Table heights_per_update(const Trace& trace) {
 }
 
 // Share of lifts that did not pop through, over seeds 1 .. count.
-double survival(const Laboratory& laboratory, int count, const std::vector<std::string>& overrides) {
+double survival(const FigureContext& context, int count, const std::vector<std::string>& overrides) {
   std::vector<Experiment> lifts;
   for (int seed = 1; seed <= count; ++seed) {
     std::vector<std::string> settings = overrides;
     settings.push_back("seed=" + std::to_string(seed));
     lifts.push_back(Experiment::load("fig4.12", settings));
   }
-  const std::vector<double> popped = laboratory.measure(lifts, popped_through);
+  const std::vector<double> popped = context.measure(lifts, popped_through);
   return 1 - std::accumulate(popped.begin(), popped.end(), 0.0) / count;
 }
 
 // Without noise, over the positions of the grid under the proxy.
-double survival_over_phases(const Laboratory& laboratory, double acceleration) {
+double survival_over_phases(const FigureContext& context, double acceleration) {
   std::vector<Experiment> lifts;
   for (const char* x : {"0", "0.25", "0.5", "0.75"})
     for (const char* z : {"0", "0.25", "0.5", "0.75"})
@@ -45,15 +45,15 @@ double survival_over_phases(const Laboratory& laboratory, double acceleration) {
           "fig4.12",
           {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=" + std::to_string(acceleration),
            std::string("scenario.phase_x=") + x, std::string("scenario.phase_z=") + z}));
-  const std::vector<double> popped = laboratory.measure(lifts, popped_through);
+  const std::vector<double> popped = context.measure(lifts, popped_through);
   return 1 - std::accumulate(popped.begin(), popped.end(), 0.0) / static_cast<double>(lifts.size());
 }
 
 }  // namespace
 
-Figure figure_4_12(const Laboratory& laboratory) {
+Figure figure_4_12(const FigureContext& context) {
   constexpr int kSeeds = 300;
-  const Trace trace = laboratory.run(Experiment::load("fig4.12"));
+  const Trace trace = context.run(Experiment::load("fig4.12"));
   Figure figure{
       "4.12",
       "Lifted point cloud",
@@ -70,13 +70,13 @@ Figure figure_4_12(const Laboratory& laboratory) {
                     {}}};
   const std::string noisy = "lifts at a = 3 m/s^2, sigma = 0.003 m that did not pop through, 300 seeds";
   figure.claims = {
-      claim_at_least("4.12", noisy, "1 of 1", survival(laboratory, kSeeds, {}), 0.9, "share"),
+      claim_at_least("4.12", noisy, "1 of 1", survival(context, kSeeds, {}), 0.9, "fraction"),
       claim_at_most("4.12", noisy + ", without the velocity estimate", "pop-through above 0.08 m/s",
-                    survival(laboratory, kSeeds, {"renderer.velocity_estimate=false"}), 0, "share"),
+                    survival(context, kSeeds, {"renderer.velocity_estimate=false"}), 0, "fraction"),
       claim_at_least("4.12", "lifts at sigma = 0, a = 4.3 m/s^2 that did not pop through, 16 grid phases",
-                     "a < 4.491 (4.14)", survival_over_phases(laboratory, 4.3), 1, "share"),
+                     "a < 4.491 (4.14)", survival_over_phases(context, 4.3), 1, "fraction"),
       claim_at_most("4.12", "the same at a = 4.6 m/s^2", "a < 4.491 (4.14)",
-                    survival_over_phases(laboratory, 4.6), 0, "share"),
+                    survival_over_phases(context, 4.6), 0, "fraction"),
   };
   return figure;
 }

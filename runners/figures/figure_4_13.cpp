@@ -23,21 +23,19 @@ Table with_reference(Table regions) {
   return regions;
 }
 
-double largest_deviation(const Table& regions) {
+double max_deviation(const Table& regions) {
   const auto &survived = numbers(regions, "survived"), &reference = numbers(regions, "reference");
-  double largest = 0;
-  for (std::size_t i = 0; i < survived.size(); ++i)
-    largest = std::max(largest, std::abs(survived[i] - reference[i]));
-  return largest;
+  double max = 0;
+  for (std::size_t i = 0; i < survived.size(); ++i) max = std::max(max, std::abs(survived[i] - reference[i]));
+  return max;
 }
 
 }  // namespace
 
-Figure figure_4_13(const Laboratory& laboratory) {
-  const Table map = map_table("map", laboratory.sweep(laboratory.map("fig4.13")));
-  const Table without =
-      map_table("map_without_estimate",
-                laboratory.sweep(laboratory.map("fig4.13", {"renderer.velocity_estimate=false"})));
+Figure figure_4_13(const FigureContext& context) {
+  const Table map = map_table("map", context.sweep(context.map("fig4.13")));
+  const Table without = map_table(
+      "map_without_estimate", context.sweep(context.map("fig4.13", {"renderer.velocity_estimate=false"})));
   const Table regions = with_reference(region_table("regions", map));
   Figure figure{
       "4.13",
@@ -56,11 +54,11 @@ Figure figure_4_13(const Laboratory& laboratory) {
   figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
   figure.claims = {
       claim_between("4.13", "success over the whole map, 5396 lifts, 1000 steps per frame", "-",
-                    mean(numbers(map, "survived")), 0.395, 0.455, "share"),
+                    mean(numbers(map, "survived")), 0.395, 0.455, "fraction"),
       claim_at_most("4.13", "largest difference from the reference in the 25 regions of the map", "-",
-                    largest_deviation(regions), 0.1, "share"),
+                    max_deviation(regions), 0.1, "fraction"),
       claim_between("4.13", "success over the whole map without the velocity estimate", "-",
-                    mean(numbers(without, "survived")), 0.03, 0.09, "share"),
+                    mean(numbers(without, "survived")), 0.03, 0.09, "fraction"),
   };
   return figure;
 }

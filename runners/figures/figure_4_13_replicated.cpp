@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/statistics/falling_curve.h"
+#include "analysis/statistics/isotonic_regression.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 
@@ -22,9 +22,9 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
       const auto from = static_cast<std::ptrdiff_t>(row * columns),
                  to = from + static_cast<std::ptrdiff_t>(columns);
       const std::vector<double> x(acceleration.begin() + from, acceleration.begin() + to);
-      const std::vector<double> share(values.begin() + from, values.begin() + to);
+      const std::vector<double> fraction(values.begin() + from, values.begin() + to);
       const std::vector<double> weight(runs.begin() + from, runs.begin() + to);
-      list.push_back(crossing(x, nearest_falling(share, weight), 0.5));
+      list.push_back(crossing(x, isotonic_falling(fraction, weight), 0.5));
     }
     return list;
   };
@@ -40,20 +40,20 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
 }
 
 // The contour of an independent implementation at six noise strengths, read against ours by interpolation.
-double largest_contour_deviation(const Table& contour) {
+double max_contour_deviation(const Table& contour) {
   constexpr double kReference[][2] = {{0.08, 840}, {0.68, 960}, {1.08, 740},
                                       {1.48, 600}, {1.88, 500}, {2.48, 300}};
   const auto &noise = numbers(contour, "noise"), &acceleration = numbers(contour, "acceleration");
-  double largest = 0;
+  double max = 0;
   for (const auto& [x, expected] : kReference) {
     const auto next = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(std::upper_bound(noise.begin(), noise.end(), x) - noise.begin(), 1,
                                    static_cast<std::ptrdiff_t>(noise.size()) - 1));
-    const double share = (x - noise[next - 1]) / (noise[next] - noise[next - 1]);
-    const double ours = acceleration[next - 1] + share * (acceleration[next] - acceleration[next - 1]);
-    largest = std::max(largest, std::abs(ours - expected));
+    const double fraction = (x - noise[next - 1]) / (noise[next] - noise[next - 1]);
+    const double ours = acceleration[next - 1] + fraction * (acceleration[next] - acceleration[next - 1]);
+    max = std::max(max, std::abs(ours - expected));
   }
-  return largest;
+  return max;
 }
 
 Panel probability_panel(const std::string& title, const std::string& map, const std::string& contour) {
@@ -67,14 +67,14 @@ Panel probability_panel(const std::string& title, const std::string& map, const 
 
 }  // namespace
 
-Figure figure_4_13_replicated(const Laboratory& laboratory) {
-  const Sweep sweep = laboratory.map("fig4.13-replicated");
-  const SweepResult result = laboratory.sweep(sweep);
+Figure figure_4_13_replicated(const FigureContext& context) {
+  const Sweep sweep = context.map("fig4.13-replicated");
+  const SweepResult result = context.sweep(sweep);
   const std::size_t columns = result.axes.at(1).length();
   const Table map = map_table("map", result);
   const Table without =
       map_table("map_without_estimate",
-                laboratory.sweep(laboratory.map("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
+                context.sweep(context.map("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
   const Table half = contour("contour", map, columns);
   Figure figure{
       "4.13-replicated",
@@ -87,12 +87,12 @@ Figure figure_4_13_replicated(const Laboratory& laboratory) {
   figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
   figure.claims = {
       claim_between("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")), 0.395,
-                    0.455, "share"),
+                    0.455, "fraction"),
       claim_between("4.13-replicated", "success over the map without the velocity estimate", "-",
-                    mean(numbers(without, "survived")), 0.03, 0.09, "share"),
+                    mean(numbers(without, "survived")), 0.03, 0.09, "fraction"),
       claim_at_most("4.13-replicated",
                     "largest difference of the 50 % contour from the reference, six noise levels", "-",
-                    largest_contour_deviation(half), 100, "r_c/s^2"),
+                    max_contour_deviation(half), 100, "r_c/s^2"),
   };
   return figure;
 }

@@ -32,7 +32,7 @@ struct Lifts {
   double survived = 1, survived_to_2 = 1, worst_region = 1, well_above = 1;  // the least of all seeds
 };
 
-double share_above(const SweepResult& result, double distance_m) {
+double fraction_above(const SweepResult& result, double distance_m) {
   double sum = 0;
   for (const double distance : result.measure("end_distance")) sum += distance > distance_m ? 1 : 0;
   return sum / static_cast<double>(result.run_count());
@@ -48,7 +48,7 @@ void add_seed(Lifts& lifts, const SweepResult& result, const Table& map) {
   lifts.survived = std::min(lifts.survived, mean(survived));
   lifts.survived_to_2 = std::min(lifts.survived_to_2, mean(to_2));
   lifts.worst_region = std::min(lifts.worst_region, *std::min_element(by_region.begin(), by_region.end()));
-  lifts.well_above = std::min(lifts.well_above, share_above(result, 0.5 * kContactRadius_m));
+  lifts.well_above = std::min(lifts.well_above, fraction_above(result, 0.5 * kContactRadius_m));
 }
 
 // --- noise under a sliding proxy ---
@@ -75,14 +75,14 @@ Slide slide_of(const Trace& trace) {
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
 
 // The mean of the reported seeds at each noise.
-std::vector<Slide> slides(const Laboratory& laboratory, const std::string& renderer) {
+std::vector<Slide> slides(const FigureContext& context, const std::string& renderer) {
   std::vector<Experiment> runs;
   for (const double sigma : kSlideNoise)
     for (const int number : kReportedSeeds)
       runs.push_back(Experiment::load(
           "fig4.11", {renderer, noise(sigma), seed(number),
                       "trajectory.waypoints=[[0,0.01,0,0],[0,-0.005,0,0.05],[0.02,-0.005,0.01,0.02]]"}));
-  const std::vector<Slide> each = laboratory.measure(runs, slide_of);
+  const std::vector<Slide> each = context.measure(runs, slide_of);
   constexpr std::size_t kSeeds = std::size(kReportedSeeds);
   std::vector<Slide> means(std::size(kSlideNoise));
   for (std::size_t i = 0; i < each.size(); ++i) {
@@ -103,26 +103,26 @@ Table slide_table(const std::string& name, const std::vector<Slide>& slides) {
   return table;
 }
 
-double largest_ratio(const std::vector<Slide>& ours, const std::vector<Slide>& paper, double from, double to,
-                     double Slide::*what) {
-  double largest = 0;
+double max_ratio(const std::vector<Slide>& ours, const std::vector<Slide>& paper, double from, double to,
+                 double Slide::*what) {
+  double max = 0;
   for (std::size_t i = 0; i < ours.size(); ++i)
     if (kSlideNoise[i] >= from && kSlideNoise[i] <= to)
-      largest = std::max(largest, std::abs(ours[i].*what) / std::abs(paper[i].*what));
-  return largest;
+      max = std::max(max, std::abs(ours[i].*what) / std::abs(paper[i].*what));
+  return max;
 }
 
-double largest_height(const std::vector<Slide>& slides) {
-  double largest = 0;
-  for (const Slide& s : slides) largest = std::max(largest, std::abs(s.mean));
-  return largest;
+double max_height(const std::vector<Slide>& slides) {
+  double max = 0;
+  for (const Slide& s : slides) max = std::max(max, std::abs(s.mean));
+  return max;
 }
 
 // --- where there is no noise, and where there are two sheets ---
 
-double ticks_that_differ(const Laboratory& laboratory, const char* experiment) {
-  const Trace paper = laboratory.run(Experiment::load(experiment, {kPaper})),
-              ours = laboratory.run(Experiment::load(experiment, {kTracked}));
+double ticks_that_differ(const FigureContext& context, const char* experiment) {
+  const Trace paper = context.run(Experiment::load(experiment, {kPaper})),
+              ours = context.run(Experiment::load(experiment, {kTracked}));
   double count = 0;
   for (std::size_t i = 0; i < paper.length(); ++i)
     count += paper.proxy(i) != ours.proxy(i) || paper.force(i) != ours.force(i) ||
@@ -132,42 +132,43 @@ double ticks_that_differ(const Laboratory& laboratory, const char* experiment) {
   return count;
 }
 
-double share_held_on_two_sheets(const Laboratory& laboratory, double sigma) {
+double success_on_two_sheets(const FigureContext& context, double sigma) {
   constexpr int kRuns = 40;
   std::vector<Experiment> runs;
   for (int i = 0; i < kRuns; ++i)
     runs.push_back(
         Experiment::load("parallel-sheets", {kTracked, noise(sigma), seed(kReportedSeeds[0] + i)}));
-  const std::vector<double> popped = laboratory.measure(runs, popped_through);
+  const std::vector<double> popped = context.measure(runs, popped_through);
   return 1 - mean(popped);
 }
 
-std::vector<Claim> claims(const Laboratory& laboratory, const Lifts& lifts, const std::vector<Slide>& ours,
+std::vector<Claim> claims(const FigureContext& context, const Lifts& lifts, const std::vector<Slide>& ours,
                           const std::vector<Slide>& paper) {
   const std::string f = "4.13-tracked", three = ", least of 3 seeds";
   constexpr double kAll = 1e9;
   return {
-      claim_at_least(f, "success over the whole map" + three, "0.43", lifts.survived, 0.995, "share"),
-      claim_at_least(f, "success of the worst of 25 regions" + three, "0", lifts.worst_region, 0.98, "share"),
-      claim_at_least(f, "success with noise up to 2 r_c" + three, "-", lifts.survived_to_2, 0.999, "share"),
+      claim_at_least(f, "success over the whole map" + three, "0.43", lifts.survived, 0.995, "fraction"),
+      claim_at_least(f, "success of the worst of 25 regions" + three, "0", lifts.worst_region, 0.98,
+                     "fraction"),
+      claim_at_least(f, "success with noise up to 2 r_c" + three, "-", lifts.survived_to_2, 0.999,
+                     "fraction"),
       claim_at_least(f, "lifts that end more than r_c / 2 above the surface" + three, "-", lifts.well_above,
-                     0.98, "share"),
+                     0.98, "fraction"),
       claim_at_most(f, "ticks of fig4.11, without noise, that differ from the proxy of chapter 4", "-",
-                    ticks_that_differ(laboratory, "fig4.11"), 0, "ticks"),
+                    ticks_that_differ(context, "fig4.11"), 0, "ticks"),
       claim_at_most(f, "ticks of fig4.14, without noise, that differ from the proxy of chapter 4", "-",
-                    ticks_that_differ(laboratory, "fig4.14"), 0, "ticks"),
-      claim_at_most(f, "largest mean height over a flat cloud, noise to 3 r_c", "-", largest_height(ours),
-                    0.1, "r_c"),
+                    ticks_that_differ(context, "fig4.14"), 0, "ticks"),
+      claim_at_most(f, "largest mean height over a flat cloud, noise to 3 r_c", "-", max_height(ours), 0.1,
+                    "r_c"),
       claim_at_most(f, "height's standard deviation to the proxy's, noise from 0.6 r_c", "1",
-                    largest_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio"),
+                    max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio"),
       claim_at_most(f, "force jump at updates to the proxy's, noise to 0.2 r_c", "1",
-                    largest_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio"),
+                    max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio"),
       claim_at_most(f, "force jump at updates to the proxy's, noise from 0.6 r_c", "1",
-                    largest_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio"),
+                    max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio"),
       claim_at_least(f, "the upper of two sheets 3 r_c apart is held, noise 0.3 r_c, 40 seeds", "-",
-                     share_held_on_two_sheets(laboratory, 0.3), 0.95, "share"),
-      claim_at_least(f, "the same, noise 0.4 r_c", "-", share_held_on_two_sheets(laboratory, 0.4), 0.9,
-                     "share"),
+                     success_on_two_sheets(context, 0.3), 0.95, "fraction"),
+      claim_at_least(f, "the same, noise 0.4 r_c", "-", success_on_two_sheets(context, 0.4), 0.9, "fraction"),
   };
 }
 
@@ -182,18 +183,18 @@ Panel slide_panel(const char* title, const char* y_label, const char* column) {
 
 }  // namespace
 
-Figure figure_4_13_tracked(const Laboratory& laboratory) {
+Figure figure_4_13_tracked(const FigureContext& context) {
   Lifts lifts;
   Table map;
   for (const int number : kReportedSeeds) {
-    const SweepResult result = laboratory.sweep(laboratory.map("fig4.13-tracked", {seed(number)}));
+    const SweepResult result = context.sweep(context.map("fig4.13-tracked", {seed(number)}));
     const Table of_seed = map_table("map", result);
     add_seed(lifts, result, of_seed);
     if (number == kReportedSeeds[0]) map = of_seed;
   }
   const Table paper_map =
-      map_table("map_paper", laboratory.sweep(laboratory.map("fig4.13", {seed(kReportedSeeds[0])})));
-  const std::vector<Slide> ours = slides(laboratory, kTracked), paper = slides(laboratory, kPaper);
+      map_table("map_paper", context.sweep(context.map("fig4.13", {seed(kReportedSeeds[0])})));
+  const std::vector<Slide> ours = slides(context, kTracked), paper = slides(context, kPaper);
   Figure figure{
       "4.13-tracked",
       "Pop-through map of the tracked sheet",
@@ -214,7 +215,7 @@ Figure figure_4_13_tracked(const Laboratory& laboratory) {
       slide_panel("Force jump at frame updates", "rms (N)", "force_jump")};
   for (std::size_t i = 0; i < 4; ++i)
     figure.panels[i].place = {static_cast<double>(i / 2), static_cast<double>(i % 2)};
-  figure.claims = claims(laboratory, lifts, ours, paper);
+  figure.claims = claims(context, lifts, ours, paper);
   return figure;
 }
 

@@ -41,15 +41,15 @@ Contact contacts(const Trace& trace, const Oracle& oracle, double from, double t
     if (!pressing(trace, i, kContactRadius_m) || p.x() < from || p.x() > to) continue;
     contact.x.push_back(p.x()), contact.y.push_back(p.y());
     contact.error.push_back(p.y() - oracle.at(p.x()));
-    contact.shell.push_back(trace.nearest_m[i] - kContactRadius_m);
+    contact.shell.push_back(trace.nearest_distance_m[i] - kContactRadius_m);
   }
   return contact;
 }
 
-double largest_magnitude(const std::vector<double>& values) {
-  double largest = values.empty() ? std::nan("") : 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
-  return largest;
+double max_magnitude(const std::vector<double>& values) {
+  double max = values.empty() ? std::nan("") : 0;
+  for (const double v : values) max = std::max(max, std::abs(v));
+  return max;
 }
 
 double rms(const std::vector<double>& values) {
@@ -99,10 +99,10 @@ std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace,
 
 }  // namespace
 
-Figure figure_4_14(const Laboratory& laboratory) {
+Figure figure_4_14(const FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.14");
   const auto scenario = experiment.build_scenario(kernels_for(Isa::x86_64));
-  const Trace trace = laboratory.run(experiment);
+  const Trace trace = context.run(experiment);
   constexpr double kFrom = -0.2, kTo = 0.2;  // the ends of the grid have no neighbours on one side
   const Oracle oracle(*scenario, -0.22, 0.22);
   const Contact contact = contacts(trace, oracle, kFrom, kTo);
@@ -131,9 +131,9 @@ Figure figure_4_14(const Laboratory& laboratory) {
   figure.claims = {
       claim_at_most("4.14", "contact point against the exact closing with a ball of r_c, rms", "very well",
                     rms(contact.error), 1e-4, "m"),
-      claim_at_most("4.14", "the same, largest", "-", largest_magnitude(contact.error), 5e-4, "m"),
+      claim_at_most("4.14", "the same, largest", "-", max_magnitude(contact.error), 5e-4, "m"),
       claim_at_most("4.14", "distance of the nearest point to the proxy less r_c, largest magnitude", "1e-5",
-                    largest_magnitude(contact.shell), 2e-5, "m"),
+                    max_magnitude(contact.shell), 2e-5, "m"),
   };
   return figure;
 }

@@ -47,7 +47,7 @@ Table slice_table(const std::string& name, const PointCloud& cloud, int along, i
 }
 
 // Share of the ticks in which the HIP is held back whose truth is known: of the others nothing is claimed.
-double known_share(const Trace& trace) {
+double known_fraction(const Trace& trace) {
   std::size_t pressed = 0, known = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (!pressing(trace, i, kContactRadius_m)) continue;
@@ -59,15 +59,15 @@ double known_share(const Trace& trace) {
 
 void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
   const std::string prefix = where.empty() ? "" : where + ": ";
-  const auto none = [&](const std::string& what, double share) {
-    figure.claims.push_back(claim_at_most(figure.name, prefix + what, "none", share, 0, "share"));
+  const auto none = [&](const std::string& what, double fraction) {
+    figure.claims.push_back(claim_at_most(figure.name, prefix + what, "none", fraction, 0, "fraction"));
   };
-  none("ticks with the proxy on the wrong side of the surface", wrong_side_share(trace));
+  none("ticks with the proxy on the wrong side of the surface", wrong_side_fraction(trace));
   figure.claims.push_back(claim_at_least(figure.name,
                                          prefix + "touching ticks in which the true side is known", "-",
-                                         known_share(trace), 0.7, "share"));
-  none("ticks with a number that is not finite", non_finite_share(trace));
-  none("ticks in which the HIP was held back without force", share_without_force(trace, kContactRadius_m));
+                                         known_fraction(trace), 0.7, "fraction"));
+  none("ticks with a number that is not finite", non_finite_fraction(trace));
+  none("ticks in which the HIP was held back without force", no_force_fraction(trace, kContactRadius_m));
 }
 
 // Limits around a path, so that far points do not shrink it.
@@ -95,9 +95,9 @@ void add_panels(Figure& figure, const std::string& title, const std::string& tab
 
 }  // namespace
 
-Figure figure_4_16(const Laboratory& laboratory) {
+Figure figure_4_16(const FigureContext& context) {
   const Experiment experiment = Experiment::load("fig4.16");
-  const Trace trace = laboratory.run(experiment);
+  const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
   Figure figure{
       "4.16",
@@ -116,10 +116,10 @@ Figure figure_4_16(const Laboratory& laboratory) {
 namespace {
 
 // The HIP scans over a cloud at rest.
-void add_scan(Figure& figure, const Laboratory& laboratory, const char* name, const std::string& table,
+void add_scan(Figure& figure, const FigureContext& context, const char* name, const std::string& table,
               const std::string& title) {
   const Experiment experiment = Experiment::load(name);
-  const Trace trace = laboratory.run(experiment);
+  const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
   const Vec3 middle = trace.hip(trace.length() / 2);
   const double slope = middle.y() / middle.z();  // of the plane through the camera and the scanned row
@@ -148,8 +148,8 @@ void place_in_column(Figure& figure, std::size_t first, int column) {
 }
 
 // The HIP presses at one pixel while the camera moves.
-void add_moving(Figure& figure, const Laboratory& laboratory) {
-  const Trace trace = laboratory.run(Experiment::load("fig4.16-moving"));
+void add_moving(Figure& figure, const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig4.16-moving"));
   figure.tables.push_back(path_table("moving", trace, 0, 2));
   figure.panels.push_back({"organ model, moving camera",
                            "time (s)",
@@ -169,7 +169,7 @@ void add_moving(Figure& figure, const Laboratory& laboratory) {
 
 }  // namespace
 
-Figure figure_4_16_recorded(const Laboratory& laboratory) {
+Figure figure_4_16_recorded(const FigureContext& context) {
   Figure figure{"4.16-recorded", "Recorded depth images and clouds",
                 "The experiment of Fig 4.16 on recordings; x to the right, z away from the camera. "
                 "Scans: the HIP follows an image row, 1 cm behind the surface of the first frame, and "
@@ -178,13 +178,13 @@ Figure figure_4_16_recorded(const Laboratory& laboratory) {
                 "in this projection it can lie beside the row's points. Moving camera: the HIP keeps 1 "
                 "cm behind the newest frame's surface at one pixel, and lifts off while that pixel looks "
                 "at a hole or an edge."};
-  add_scan(figure, laboratory, "fig4.16-recorded", "still", "box and organ model, camera at rest");
+  add_scan(figure, context, "fig4.16-recorded", "still", "box and organ model, camera at rest");
   place_in_column(figure, 0, 0);
   const std::size_t boxes = figure.panels.size();
-  add_scan(figure, laboratory, "fig4.16-boxes", "boxes", "two boxes on a table, one cloud held");
+  add_scan(figure, context, "fig4.16-boxes", "boxes", "two boxes on a table, one cloud held");
   place_in_column(figure, boxes, 1);
   const std::size_t moving = figure.panels.size();
-  add_moving(figure, laboratory);
+  add_moving(figure, context);
   place_in_column(figure, moving, 2);
   return figure;
 }

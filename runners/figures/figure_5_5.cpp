@@ -26,7 +26,7 @@ Table distances(const Trace& trace) {
   return table;
 }
 
-double least(const std::vector<double>& values) {
+double min(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
@@ -36,30 +36,29 @@ double entrenched_ticks(const Trace& trace) {
 }
 
 // Among the ticks with the HIP outside the region: how far the proxy is at most from it.
-double largest_gap_outside(const Trace& trace) {
-  double largest = 0;
+double max_gap_outside(const Trace& trace) {
+  double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (trace.hip(i).norm() > kBoundary_m)
-      largest = std::max(largest, (trace.proxy(i) - trace.hip(i)).norm());
-  return largest;
+    if (trace.hip(i).norm() > kBoundary_m) max = std::max(max, (trace.proxy(i) - trace.hip(i)).norm());
+  return max;
 }
 
 // Among the ticks with the HIP inside: the force against k_s times the way from the HIP to the contact point
 // of a proxy that stands where the region is nearest to the HIP.
-double largest_force_error(const Trace& trace) {
-  double largest = 0;
+double max_force_error(const Trace& trace) {
+  double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const double depth = kFixtureRadius_m - trace.hip(i).norm();
     if (depth <= 0) continue;
-    largest = std::max(largest, std::abs(trace.force(i).norm() - kStiffness_N_per_m * depth));
+    max = std::max(max, std::abs(trace.force(i).norm() - kStiffness_N_per_m * depth));
   }
-  return largest;
+  return max;
 }
 
 }  // namespace
 
-Figure figure_5_5(const Laboratory& laboratory) {
-  const Trace trace = laboratory.run(Experiment::load("fig5.5"));
+Figure figure_5_5(const FigureContext& context) {
+  const Trace trace = context.run(Experiment::load("fig5.5"));
   Figure figure{"5.5",
                 "Single point virtual fixture",
                 "One point at the origin with r_f = 0.1 m. The HIP passes through its region, leaves it and "
@@ -76,15 +75,15 @@ Figure figure_5_5(const Laboratory& laboratory) {
       {"Force", "time (s)", "force (N)", false, {{"distances", "time", "force", CurveStyle::line, ""}}}};
   figure.claims = {
       claim_between("5.5", "smallest distance of the proxy's centre to the point", ">= 0.105",
-                    least(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
+                    min(numbers(figure.tables[0], "proxy")), kBoundary_m - 1e-6, kBoundary_m + 1e-6, "m"),
       claim_at_most("5.5", "ticks that end with the proxy entrenched", "-", entrenched_ticks(trace), 0,
                     "ticks"),
       claim_at_most("5.5", "smallest distance of the HIP to the point: it does go inside", "-",
-                    least(numbers(figure.tables[0], "hip")), 0.05, "m"),
+                    min(numbers(figure.tables[0], "hip")), 0.05, "m"),
       claim_at_most("5.5", "distance of the proxy from the HIP while that is outside", "0",
-                    largest_gap_outside(trace), 1e-4, "m"),
+                    max_gap_outside(trace), 1e-4, "m"),
       claim_at_most("5.5", "force against k_s times the HIP's depth in the region", "-",
-                    largest_force_error(trace), 0.05, "N"),
+                    max_force_error(trace), 0.05, "N"),
   };
   return figure;
 }

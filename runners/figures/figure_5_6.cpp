@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kContactRadius_m = 0.005, kFixtureRadius_m = 0.01;
-constexpr double kLeast_N = 0.01;  // a force above this is felt
+constexpr double kMin_N = 0.01;  // a force above this is felt
 
 // The part of a run in which the HIP moves along x, and where it stands then.
 struct Crossing {
@@ -51,7 +51,7 @@ double first_x(const Crossing& c, Condition&& holds) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::size_t largest_force(const Crossing& c) {
+std::size_t max_force(const Crossing& c) {
   return static_cast<std::size_t>(std::max_element(c.force.begin(), c.force.end()) - c.force.begin());
 }
 
@@ -112,15 +112,15 @@ Table stiffness_table(const Crossing& c) {
 }
 
 // Away from the ends of the ramp and from the step by more than a ball of r_3 reaches.
-double largest_stiffness_error(const Crossing& c) {
-  double largest = 0;
+double max_stiffness_error(const Crossing& c) {
+  double max = 0;
   for (std::size_t i = 0; i < c.contact_x.size(); ++i) {
     const double x = c.contact_x[i];
     const auto far_from = [&](double place) { return std::abs(x - place) > 0.01; };
     if (far_from(-0.03) && far_from(0) && far_from(0.02))
-      largest = std::max(largest, std::abs(c.stiffness[i] / assigned_N_per_m(x) - 1));
+      max = std::max(max, std::abs(c.stiffness[i] / assigned_N_per_m(x) - 1));
   }
-  return largest;
+  return max;
 }
 
 // A criterion of 5 % about a value of the reference.
@@ -131,10 +131,10 @@ Claim claim_near(const std::string& claim, double measured, double expected, con
 
 }  // namespace
 
-Figure figure_5_6(const Laboratory& laboratory) {
-  const Crossing at_zero = crossing(laboratory.run(Experiment::load("fig5.6")));
-  const Crossing below = crossing(laboratory.run(Experiment::load("fig5.6-below")));
-  const Crossing stiffness = crossing(laboratory.run(Experiment::load("fixture-stiffness")));
+Figure figure_5_6(const FigureContext& context) {
+  const Crossing at_zero = crossing(context.run(Experiment::load("fig5.6")));
+  const Crossing below = crossing(context.run(Experiment::load("fig5.6-below")));
+  const Crossing stiffness = crossing(context.run(Experiment::load("fixture-stiffness")));
 
   Figure figure{
       "5.6", "Virtual fixtures with varying radius and stiffness",
@@ -167,13 +167,13 @@ Figure figure_5_6(const Laboratory& laboratory) {
   for (std::size_t i = 0; i < figure.panels.size(); ++i)
     figure.panels[i].place = std::pair(static_cast<double>(i % 2), static_cast<double>(i / 2));
 
-  const std::size_t peak = largest_force(at_zero), peak_below = largest_force(below);
+  const std::size_t peak = max_force(at_zero), peak_below = max_force(below);
   const auto on_fixture = [&](std::size_t i) {
     return at_zero.proxy_y[i] >= 0.99 * (kFixtureRadius_m + kContactRadius_m);
   };
   figure.claims = {
       claim_near("y = 0: x of the HIP where force begins",
-                 first_x(at_zero, [&](std::size_t i) { return at_zero.force[i] > kLeast_N; }), -0.0136, "m"),
+                 first_x(at_zero, [&](std::size_t i) { return at_zero.force[i] > kMin_N; }), -0.0136, "m"),
       claim_near("y = 0: largest force", at_zero.force[peak], 6.34, "N"),
       claim_near("y = 0: x of the HIP at the largest force", at_zero.hip_x[peak], 0.0018, "m"),
       claim_near("y = 0: x of the HIP where the proxy is on the fixture, within 1 % of r_f + r_c",
@@ -184,7 +184,7 @@ Figure figure_5_6(const Laboratory& laboratory) {
       claim_near("y = -5 mm: x of the HIP where the proxy pops up", below.hip_x[peak_below], 0.0085, "m"),
       claim_near("y = -5 mm: force on the fixture", mean_force(below, 0.02, 0.03), 9.0, "N"),
       claim_at_most("5.6", "felt stiffness against that of the points, away from kinks and steps", "-",
-                    largest_stiffness_error(stiffness), 0.01, "share"),
+                    max_stiffness_error(stiffness), 0.01, "fraction"),
   };
   return figure;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInTouch_s = 1;                                // the approach is over long before
 constexpr double kGrows_s = 5, kGrown_s = 10, kSteady_s = 0.1;  // phases; and what the last frames need
-constexpr double kLargest_m = 0.02, kGrowth_m_per_s = kLargest_m / (kGrown_s - kGrows_s);
+constexpr double kMax_m = 0.02, kGrowth_m_per_s = kMax_m / (kGrown_s - kGrows_s);
 constexpr double kAgreed_m = 2e-4;
 constexpr std::size_t kEvery = 5;  // ticks, in tables
 
@@ -23,7 +23,7 @@ const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
 
 // Distance of the proxy to the surface as the newest frame shows it, beyond r_f + r_c.
 double from_seen_m(const FixtureRun& run, std::size_t i) {
-  return run.scenario->signed_distance(run.trace.proxy(i), run.seen_s(i)) - run.boundary_m(i);
+  return run.scenario->signed_distance(run.trace.proxy(i), run.frame_captured_s(i)) - run.boundary_m(i);
 }
 
 // The same to the surface as it is in that very tick.
@@ -41,26 +41,26 @@ void each_tick(const FixtureRun& run, double from_s, double until_s, Visit&& vis
 constexpr double kEnd_s = std::numeric_limits<double>::infinity();
 
 struct Deviation {
-  double rms_m, largest_m;
+  double rms_m, max_m;
 };
 
 // Over the ticks in touch that are counted.
 template <class Of, class Counts>
 Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
-  double squares = 0, largest = 0, count = 0;
+  double squares = 0, max = 0, count = 0;
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     if (!counts(i)) return;
     const double error = of(run, i);
-    squares += error * error, largest = std::max(largest, std::abs(error)), ++count;
+    squares += error * error, max = std::max(max, std::abs(error)), ++count;
   });
-  return {std::sqrt(squares / count), largest};  // without a tick NaN, which fails
+  return {std::sqrt(squares / count), max};  // without a tick NaN, which fails
 }
 
 struct Summary {
   Deviation seen, at_update, moving;
-  double least_beyond_fixture_m = kEnd_s, least_slave_beyond_fixture_m = kEnd_s;
+  double min_beyond_fixture_m = kEnd_s, min_slave_beyond_fixture_m = kEnd_s;
   double touching_m = 0, held_m = 0, growth_m_per_s = 0;  // mean distances and slope of the phases
-  double largest_speed_m_per_s = 0;                       // of the surface over the proxy
+  double max_speed_m_per_s = 0;                           // of the surface over the proxy
 };
 
 double mean_distance_m(const FixtureRun& run, double from_s, double until_s) {
@@ -81,15 +81,15 @@ double surface_height_m(const FixtureRun& run, std::size_t i, double time_s) {
   return run.scenario->surface_height(run.trace.proxy(i).x(), run.trace.proxy(i).z(), time_s);
 }
 
-double largest_speed_m_per_s(const FixtureRun& run) {
+double max_speed_m_per_s(const FixtureRun& run) {
   constexpr double kApart_s = 1e-3;
-  double largest = 0;
+  double max = 0;
   each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
     const double time_s = run.trace.time_s[i];
     const double rise = surface_height_m(run, i, time_s + kApart_s) - surface_height_m(run, i, time_s);
-    largest = std::max(largest, std::abs(rise) / kApart_s);
+    max = std::max(max, std::abs(rise) / kApart_s);
   });
-  return largest;
+  return max;
 }
 
 Summary summary(const FixtureRun& run) {
@@ -100,16 +100,16 @@ Summary summary(const FixtureRun& run) {
   s.moving = deviation(run, from_moving_m, always);
   for (std::size_t i = 0; i < run.trace.length(); ++i) {
     // Written so that NaN stays and fails.
-    const auto smaller = [](double least, double value) { return value >= least ? least : value; };
-    s.least_beyond_fixture_m =
-        smaller(s.least_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
-    s.least_slave_beyond_fixture_m =
-        smaller(s.least_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
+    const auto smaller = [](double min, double value) { return value >= min ? min : value; };
+    s.min_beyond_fixture_m =
+        smaller(s.min_beyond_fixture_m, run.trace.signed_distance_m[i] - run.radius_m[i]);
+    s.min_slave_beyond_fixture_m =
+        smaller(s.min_slave_beyond_fixture_m, run.trace.slave_distance_m[i] - run.radius_m[i]);
   }
   s.touching_m = mean_distance_m(run, kInTouch_s, kGrows_s);
   s.held_m = mean_distance_m(run, kGrown_s + kSteady_s, kEnd_s);
   s.growth_m_per_s = growth_m_per_s(run);
-  s.largest_speed_m_per_s = largest_speed_m_per_s(run);
+  s.max_speed_m_per_s = max_speed_m_per_s(run);
   return s;
 }
 
@@ -130,7 +130,7 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
       {"radius", "m", "r_f of the frame in use"},
       {"boundary", "m", "r_f + r_c"},
       {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c"},
-      {"deviation_seen", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
+      {"deviation_in_frame", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
       {"force", "N", "magnitude of the force"}};
   return table_of(name, title, columns, rows);
 }
@@ -143,20 +143,20 @@ Table deviation_table(const Summary& a, const Summary& b) {
   const std::string beyond = " of distance - r_f - r_c, ";
   add("rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
       [](const Summary& s) { return s.seen.rms_m; });
-  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.seen.largest_m; });
+  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.seen.max_m; });
   add("rms" + beyond + "surface as it moves, ticks in which a frame came in", "m",
       [](const Summary& s) { return s.at_update.rms_m; });
   add("rms" + beyond + "surface as it moves, all ticks", "m",
       [](const Summary& s) { return s.moving.rms_m; });
-  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.moving.largest_m; });
-  add("smallest distance of the proxy - r_f", "m", [](const Summary& s) { return s.least_beyond_fixture_m; });
+  add("largest" + beyond + "the same", "m", [](const Summary& s) { return s.moving.max_m; });
+  add("smallest distance of the proxy - r_f", "m", [](const Summary& s) { return s.min_beyond_fixture_m; });
   add("smallest distance of the slave's command - r_f", "m",
-      [](const Summary& s) { return s.least_slave_beyond_fixture_m; });
+      [](const Summary& s) { return s.min_slave_beyond_fixture_m; });
   add("mean distance, r_f = 0", "m", [](const Summary& s) { return s.touching_m; });
   add("slope of the distance while r_f grows", "m/s", [](const Summary& s) { return s.growth_m_per_s; });
   add("mean distance, r_f = 0.02 m", "m", [](const Summary& s) { return s.held_m; });
   add("largest speed of the surface over the proxy", "m/s",
-      [](const Summary& s) { return s.largest_speed_m_per_s; });
+      [](const Summary& s) { return s.max_speed_m_per_s; });
   return rows.table("deviations", "how far the proxy is from where r_f and r_c put it, from 1 s on");
 }
 
@@ -175,10 +175,10 @@ std::vector<Panel> panels() {
                      {"noise_free", "time", "distance", CurveStyle::line, "noise-free camera"},
                      {"noise_free", "time", "boundary", CurveStyle::dashed, "r_f + r_c"}};
   distance.y_range = std::pair(0.0, 0.03);
-  deviation.curves = {
-      {"with_noise", "time", "deviation", CurveStyle::line, "with the sensor's noise"},
-      {"noise_free", "time", "deviation", CurveStyle::line, "noise-free camera"},
-      {"noise_free", "time", "deviation_seen", CurveStyle::line, "noise-free, surface of the newest frame"}};
+  deviation.curves = {{"with_noise", "time", "deviation", CurveStyle::line, "with the sensor's noise"},
+                      {"noise_free", "time", "deviation", CurveStyle::line, "noise-free camera"},
+                      {"noise_free", "time", "deviation_in_frame", CurveStyle::line,
+                       "noise-free, surface of the newest frame"}};
   deviation.y_range = std::pair(-0.003, 0.004);
   force.curves = {{"with_noise", "time", "force", CurveStyle::line, "with the sensor's noise"},
                   {"noise_free", "time", "force", CurveStyle::line, "noise-free camera"}};
@@ -196,27 +196,27 @@ void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, doub
       name,
       "largest distance - r_f - r_c, surface as it moves on between frames, against its largest "
       "speed times the frame interval",
-      "-", clean.moving.largest_m, clean.largest_speed_m_per_s * frame_s, "m"));
+      "-", clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m"));
   claim(claim_at_least(name, "smallest distance to the moving surface - r_f, all ticks, no noise", ">= 0",
-                       clean.least_beyond_fixture_m, 0, "m"));
+                       clean.min_beyond_fixture_m, 0, "m"));
   claim(
       claim_between(name, "mean distance while r_f = 0", "r_c = 0.005", clean.touching_m, 0.004, 0.006, "m"));
   claim(claim_between(name, "slope of the distance while r_f grows", "0.004", clean.growth_m_per_s,
                       0.98 * kGrowth_m_per_s, 1.02 * kGrowth_m_per_s, "m/s"));
   claim(claim_between(name, "mean distance while r_f = 0.02 m", "0.025", clean.held_m, 0.024, 0.026, "m"));
   claim(claim_at_least(name, "noise-free: smallest distance of the slave's command - r_f", ">= 0",
-                       clean.least_slave_beyond_fixture_m, 0, "m"));
+                       clean.min_slave_beyond_fixture_m, 0, "m"));
   claim(claim_at_least(name, "with noise: smallest distance of the slave's command - r_f", ">= 0",
-                       noisy.least_slave_beyond_fixture_m, 0, "m"));
+                       noisy.min_slave_beyond_fixture_m, 0, "m"));
 }
 
 }  // namespace
 
-Figure figure_5_8(const Laboratory& laboratory) {
+Figure figure_5_8(const FigureContext& context) {
   std::vector<Experiment> experiments;
   experiments.push_back(Experiment::load("fig5.8"));
   experiments.push_back(Experiment::load("fig5.8", kNoise));
-  const std::vector<FixtureRun> runs = run_fixtures(laboratory, experiments);
+  const std::vector<FixtureRun> runs = run_fixtures(context, experiments);
   const Summary clean = summary(runs[0]), noisy = summary(runs[1]);
   Figure figure{
       "5.8",

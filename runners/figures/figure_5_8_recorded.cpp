@@ -30,9 +30,9 @@ Table frame_table(const RecordedRun& r) {
     const std::size_t i = frame.tick;
     const Trace& trace = r.run.trace;
     rows.push_back({trace.time_s[i], static_cast<double>(trace.frame_index[i]), trace.hip(i).z(),
-                    trace.proxy(i).z(), frame.nearest_m, r.run.boundary_m(i),
-                    frame.nearest_m - r.run.boundary_m(i), trace.signed_distance_m[i], frame.hidden_m,
-                    frame.camera_motion_m, frame.surface_motion_m, trace.force(i).norm()});
+                    trace.proxy(i).z(), frame.nearest_distance_m, r.run.boundary_m(i),
+                    frame.nearest_distance_m - r.run.boundary_m(i), trace.signed_distance_m[i],
+                    frame.hidden_m, frame.camera_motion_m, frame.surface_motion_m, trace.force(i).norm()});
   }
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
@@ -50,7 +50,7 @@ Table frame_table(const RecordedRun& r) {
   return table_of(r.table, r.title + ": the last tick of each frame", columns, rows);
 }
 
-double known_share(const RecordedRun& r) {
+double known_fraction(const RecordedRun& r) {
   const auto& distance = r.run.trace.signed_distance_m;
   const auto known = std::count_if(distance.begin(), distance.end(), [](double d) { return !std::isnan(d); });
   return static_cast<double>(known) / static_cast<double>(distance.size());
@@ -58,45 +58,45 @@ double known_share(const RecordedRun& r) {
 
 // Share of the frames for which it holds.
 template <class Holds>
-double frame_share(const RecordedRun& r, Holds&& holds) {
+double frame_fraction(const RecordedRun& r, Holds&& holds) {
   const auto count = std::count_if(r.frames.begin(), r.frames.end(), holds);
   return static_cast<double>(count) / static_cast<double>(r.frames.size());
 }
 
-double seen_share(const RecordedRun& r) {
-  return frame_share(r, [](const FrameOutcome& f) { return !std::isnan(f.hidden_m); });
+double visible_fraction(const RecordedRun& r) {
+  return frame_fraction(r, [](const FrameOutcome& f) { return !std::isnan(f.hidden_m); });
 }
 
-double hidden_share(const RecordedRun& r) {
-  return frame_share(r, [](const FrameOutcome& f) { return f.hidden_m > 0; });
+double hidden_fraction(const RecordedRun& r) {
+  return frame_fraction(r, [](const FrameOutcome& f) { return f.hidden_m > 0; });
 }
 
-double least_beyond_fixture_m(const RecordedRun& r) {
-  double least = std::numeric_limits<double>::infinity();
+double min_beyond_fixture_m(const RecordedRun& r) {
+  double min = std::numeric_limits<double>::infinity();
   for (const FrameOutcome& frame : r.frames)
-    least = std::min(least, frame.nearest_m - r.run.radius_m[frame.tick]);
-  return least;
+    min = std::min(min, frame.nearest_distance_m - r.run.radius_m[frame.tick]);
+  return min;
 }
 
 double mean_deviation_m(const RecordedRun& r) {
   double sum = 0, count = 0;
   for (const FrameOutcome& frame : r.frames)
     if (r.run.trace.time_s[frame.tick] >= kGrown_s + kSteady_s)
-      sum += frame.nearest_m - r.run.boundary_m(frame.tick), ++count;
+      sum += frame.nearest_distance_m - r.run.boundary_m(frame.tick), ++count;
   return sum / count;
 }
 
-double least_motion_m(const RecordedRun& r) {
-  double least = r.pops.empty() ? kUnknown : std::numeric_limits<double>::infinity();
+double min_motion_m(const RecordedRun& r) {
+  double min = r.pops.empty() ? kUnknown : std::numeric_limits<double>::infinity();
   for (const PopThrough& pop : r.pops)
-    least = pop.surface_motion_m >= least ? least : pop.surface_motion_m;  // NaN stays
-  return least;
+    min = pop.surface_motion_m >= min ? min : pop.surface_motion_m;  // NaN stays
+  return min;
 }
 
-double largest_m(const RecordedRun& r, double FrameOutcome::*of) {
-  double largest = 0;
-  for (const FrameOutcome& frame : r.frames) largest = std::max(largest, std::abs(frame.*of));
-  return largest;
+double max_m(const RecordedRun& r, double FrameOutcome::*of) {
+  double max = 0;
+  for (const FrameOutcome& frame : r.frames) max = std::max(max, std::abs(frame.*of));
+  return max;
 }
 
 Table violation_table(const std::vector<RecordedRun>& runs) {
@@ -109,26 +109,26 @@ Table violation_table(const std::vector<RecordedRun>& runs) {
     rows.add(what, unit, values);
   };
   using R = const RecordedRun&;
-  add("ticks in which the side is known", "share", known_share);
-  add("of those, ticks on the wrong side", "share", [](R r) { return wrong_side_share(r.run.trace); });
-  add("deepest behind the surface", "m", [](R r) { return largest_penetration_m(r.run.trace); });
+  add("ticks in which the side is known", "fraction", known_fraction);
+  add("of those, ticks on the wrong side", "fraction", [](R r) { return wrong_side_fraction(r.run.trace); });
+  add("deepest behind the surface", "m", [](R r) { return max_penetration_m(r.run.trace); });
   add("pop-throughs", "1", [](R r) { return static_cast<double>(r.pops.size()); });
   add("time of the first", "s",
       [](R r) { return r.pops.empty() ? kUnknown : r.run.trace.time_s[r.pops[0].tick]; });
   add("r_f at the first", "m",
       [](R r) { return r.pops.empty() ? kUnknown : r.run.radius_m[r.pops[0].tick]; });
-  add("least motion of the surface past the proxy in a frame that popped it through", "m", least_motion_m);
-  add("frames whose pixel at the proxy measured something", "share", seen_share);
-  add("frames in which the proxy is hidden behind that pixel", "share", hidden_share);
-  add("frames with a measured point nearer than r_f", "share", [](R r) {
-    return frame_share(r, [&](const FrameOutcome& f) { return f.nearest_m < r.run.radius_m[f.tick]; });
+  add("least motion of the surface past the proxy in a frame that popped it through", "m", min_motion_m);
+  add("frames whose pixel at the proxy measured something", "fraction", visible_fraction);
+  add("frames in which the proxy is hidden behind that pixel", "fraction", hidden_fraction);
+  add("frames with a measured point nearer than r_f", "fraction", [](R r) {
+    return frame_fraction(
+        r, [&](const FrameOutcome& f) { return f.nearest_distance_m < r.run.radius_m[f.tick]; });
   });
-  add("smallest distance to a measured point - r_f", "m", least_beyond_fixture_m);
+  add("smallest distance to a measured point - r_f", "m", min_beyond_fixture_m);
   add("mean of distance - r_f - r_c from 10.1 s on", "m", mean_deviation_m);
-  add("largest camera motion in a frame", "m",
-      [](R r) { return largest_m(r, &FrameOutcome::camera_motion_m); });
+  add("largest camera motion in a frame", "m", [](R r) { return max_m(r, &FrameOutcome::camera_motion_m); });
   add("largest surface motion in a frame", "m",
-      [](R r) { return largest_m(r, &FrameOutcome::surface_motion_m); });
+      [](R r) { return max_m(r, &FrameOutcome::surface_motion_m); });
   return rows.table("violations", "how often and how far the fixture was violated");
 }
 
@@ -166,9 +166,9 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
     add_side_claim(figure, r->title, r->run);
     // The plane is unknown at edges; what the proxy's own pixel sees is known nearly always.
     claim(claim_at_least(name, r->title + ": frames in which the pixel at the proxy measured something", "-",
-                         seen_share(*r), 0.9, "share"));
+                         visible_fraction(*r), 0.9, "fraction"));
     claim(claim_at_most(name, r->title + ": frames in which the proxy is hidden behind that pixel", "none",
-                        hidden_share(*r), 0, "share"));
+                        hidden_fraction(*r), 0, "fraction"));
   }
   claim(claim_between(name, still.title + ": mean of distance - r_f - r_c while r_f = 0.02 m", "0",
                       mean_deviation_m(still), -1e-4, 1e-4, "m"));
@@ -177,21 +177,21 @@ void add_claims(Figure& figure, const RecordedRun& still, const RecordedRun& mov
     claim(claim_at_least(name,
                          moving.title + ": least motion of the surface past the proxy in a frame that popped "
                                         "it through, against r_1",
-                         "-", least_motion_m(moving), kInnerRadius_m, "m"));
+                         "-", min_motion_m(moving), kInnerRadius_m, "m"));
   for (const RecordedRun* r : {&still, &moving, &held}) {
     claim(claim_at_least(name, r->title + ": smallest distance to a measured point - r_f", ">= 0",
-                         least_beyond_fixture_m(*r), 0, "m"));
+                         min_beyond_fixture_m(*r), 0, "m"));
     add_sound_claims(figure, r->title, r->run);
   }
 }
 
 // At rest, moving, and moving with the whole fixture from the start.
-std::vector<RecordedRun> recorded_runs(const Laboratory& laboratory) {
+std::vector<RecordedRun> recorded_runs(const FigureContext& context) {
   std::vector<Experiment> experiments;  // the longest first: they go side by side
   experiments.push_back(Experiment::load("fig5.8-moving"));
   experiments.push_back(Experiment::load("fig5.8-moving", {"fixtures.0.schedule=[]"}));
   experiments.push_back(Experiment::load("fig5.8-recorded"));
-  std::vector<FixtureRun> made = run_fixtures(laboratory, experiments);
+  std::vector<FixtureRun> made = run_fixtures(context, experiments);
   const std::pair<const char*, const char*> words[] = {
       {"moving", "moving camera"}, {"held", "moving camera, r_f = 0.02 m"}, {"still", "camera at rest"}};
   std::vector<RecordedRun> runs;
@@ -205,8 +205,8 @@ std::vector<RecordedRun> recorded_runs(const Laboratory& laboratory) {
 
 }  // namespace
 
-Figure figure_5_8_recorded(const Laboratory& laboratory) {
-  const std::vector<RecordedRun> runs = recorded_runs(laboratory);
+Figure figure_5_8_recorded(const FigureContext& context) {
+  const std::vector<RecordedRun> runs = recorded_runs(context);
   Figure figure{
       "5.8-recorded", "A fixture that grows on a recorded organ model",
       "The protocol of Fig 5.8 on depth images of a rigid organ model; the device is simulated: the HIP "

@@ -54,10 +54,10 @@ NormalCount count_normals(const PointCloud& cloud) {
 }
 
 // The hand and its forearm, not the person behind.
-std::vector<std::size_t> hand_points(const PointCloud& cloud, double farthest_m) {
+std::vector<std::size_t> hand_points(const PointCloud& cloud, double max_depth_m) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.z[i] < farthest_m && cloud.x[i] < kRight_m) chosen.push_back(i);
+    if (cloud.z[i] < max_depth_m && cloud.x[i] < kRight_m) chosen.push_back(i);
   return chosen;
 }
 
@@ -192,7 +192,7 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
       claim_at_most(n, "points with 10 neighbours and no unit normal towards the sensor", "0", counted.wrong,
                     0, "points"),
       claim_at_least(n, "share of the measured points that have so many neighbours", "-",
-                     counted.with_neighbours / counted.points, 0.99, "share"),
+                     counted.with_neighbours / counted.points, 0.99, "fraction"),
       claim_at_most(n, "error at a 25 mm step: sigma_f = 0.010 m over 0.025 m", "-",
                     narrow.smear_m / wide.smear_m, 0.2, "1"),
       claim_between(n, "noise left on a wall: sigma_f = 0.010 m over 0.025 m", "-",
@@ -204,10 +204,10 @@ void add_claims(Figure& figure, const NormalCount& counted, const StepMeasuremen
 
 }  // namespace
 
-Figure figure_6_2(const Laboratory& laboratory) {
+Figure figure_6_2(const FigureContext& context) {
   const Experiment experiment = Experiment::load("fig6.2");
-  laboratory.uses(experiment);
-  const Kernels& kernels = laboratory.kernels();
+  context.uses(experiment);
+  const Kernels& kernels = context.kernels();
   const PointCloud cloud = processed_cloud(experiment, kernels, 0);
   PointCloud raw = experiment.build_scenario(kernels)->cloud(0);
   raw.nx = cloud.nx, raw.ny = cloud.ny, raw.nz = cloud.nz;  // only to shade it in the picture

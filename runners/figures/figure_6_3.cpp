@@ -27,27 +27,27 @@ struct BoxRun {
   Trace trace;
 };
 
-double turned_deg(const Eigen::Quaterniond& q) {
+double rotated_deg(const Eigen::Quaterniond& q) {
   return rotation_vector(q).y() / kRadiansPerDegree;
 }
 
 double device_deg(const Trace& trace, std::size_t i) {
-  return turned_deg(trace.hip_orientation_at(i));
+  return rotated_deg(trace.hip_orientation_at(i));
 }
 
 double tool_deg(const Trace& trace, std::size_t i) {
-  return turned_deg(trace.tool_orientation_at(i));
+  return rotated_deg(trace.tool_orientation_at(i));
 }
 
 // Where the device has turned farthest.
 std::size_t plateau(const Trace& trace) {
-  std::size_t farthest = 0;
+  std::size_t max_distance = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (device_deg(trace, i) > device_deg(trace, farthest)) farthest = i;
-  return farthest;
+    if (device_deg(trace, i) > device_deg(trace, max_distance)) max_distance = i;
+  return max_distance;
 }
 
-std::int32_t largest(const std::vector<std::int32_t>& counts) {
+std::int32_t max(const std::vector<std::int32_t>& counts) {
   return *std::max_element(counts.begin(), counts.end());
 }
 
@@ -84,8 +84,8 @@ Table motion_table(const BoxRun& run) {
       {"time", "s", "simulated time"},
       {"device_y", "m", "displacement of the device along y from its start"},
       {"tool_y", "m", "displacement of the tool along y from the same place"},
-      {"device_turn", "deg", "rotation of the device about y"},
-      {"tool_turn", "deg", "rotation of the tool about y"},
+      {"device_rotation", "deg", "rotation of the device about y"},
+      {"tool_rotation", "deg", "rotation of the tool about y"},
       {"points", "1", "points that touch the tool"},
       {"active", "1", "constraints that hold it"},
       {"clusters", "1", "10 mm cells of the tool with points that touch"},
@@ -101,9 +101,10 @@ Table summary_table(const std::vector<BoxRun>& runs) {
   for (const BoxRun& run : runs) {
     const Trace& t = run.trace;
     rules.push_back(run.rule);
-    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau(t)), double(largest(t.contact_count)),
-                    double(largest(t.active_constraints)), double(largest(t.contact_clusters)),
-                    *std::max_element(t.penetration_m.begin(), t.penetration_m.end()), largest_force_N(t),
+    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau(t)), double(max(t.contact_count)),
+                    double(max(t.active_constraints)), double(max(t.contact_clusters)),
+                    *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()),
+                    max_force_N(t),
                     double(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1)),
                     ticks_with(t, [&](std::size_t i) { return agrees(t, i) && any_count(t, i); })});
   }
@@ -121,7 +122,7 @@ Table summary_table(const std::vector<BoxRun>& runs) {
   return table;
 }
 
-std::vector<BoxRun> box_runs(const Laboratory& laboratory) {
+std::vector<BoxRun> box_runs(const FigureContext& context) {
   std::vector<BoxRun> runs;
   std::vector<Experiment> experiments;
   for (const auto& [name, rule] : kRules)
@@ -130,13 +131,13 @@ std::vector<BoxRun> box_runs(const Laboratory& laboratory) {
       experiments.push_back(Experiment::load(
           "fig6.3", {"renderer.contact_rule=" + rule, "scenario.spacing_m=" + std::to_string(mm) + "e-3"}));
     }
-  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<Trace> traces = context.run(experiments);
   for (std::size_t r = 0; r < runs.size(); ++r) runs[r].trace = std::move(traces[r]);
   return runs;
 }
 
 // Along y, among the ticks without a point that touches.
-double largest_gap_untouched_m(const Trace& t) {
+double max_gap_untouched_m(const Trace& t) {
   double gap = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
     if (t.contact_count[i] == 0) gap = std::max(gap, std::abs(t.hip(i).y() - t.proxy(i).y()));
@@ -152,7 +153,7 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
                       "ticks"));
   claim(claim_at_most(
       name, rule + "ticks with a count above 0 while the nearest point is a voxel or more away", "0",
-      ticks_with(t, [&](std::size_t i) { return t.nearest_m[i] >= kVoxel_m && any_count(t, i); }), 0,
+      ticks_with(t, [&](std::size_t i) { return t.nearest_distance_m[i] >= kVoxel_m && any_count(t, i); }), 0,
       "ticks"));
   claim(claim_at_most(
       name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
@@ -164,26 +165,26 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
   claim(claim_between(name, rule + "rotation of the tool where the device has turned 30 deg", "-",
                       tool_deg(t, plateau(t)), 20.5, 22.5, "deg"));
   claim(claim_at_most(name, rule + "gap between device and tool along y while nothing touches", "0",
-                      largest_gap_untouched_m(t), 1e-9, "m"));
-  claim(claim_at_most(name, rule + "most constraints active at once", "6", largest(t.active_constraints), 6,
-                      "1"));
+                      max_gap_untouched_m(t), 1e-9, "m"));
+  claim(
+      claim_at_most(name, rule + "most constraints active at once", "6", max(t.active_constraints), 6, "1"));
   claim(claim_at_most(name, rule + "share of ticks with a number that is not finite", "-",
-                      non_finite_share(t), 0, "share"));
+                      non_finite_fraction(t), 0, "fraction"));
 }
 
 // As many points touch as lie on the faces: more where they lie closer. runs: of one rule, 3, 2, 1 mm.
 void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
   std::string counts;
-  double least_rise = 1e9;
+  double min_rise = 1e9;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const double count = largest(runs[r].trace.contact_count);
+    const double count = max(runs[r].trace.contact_count);
     counts += (r ? ", " : "") + std::to_string(static_cast<int>(count));
-    if (r > 0) least_rise = std::min(least_rise, count - largest(runs[r - 1].trace.contact_count));
+    if (r > 0) min_rise = std::min(min_rise, count - max(runs[r - 1].trace.contact_count));
   }
   figure.claims.push_back(claim_at_least(
       figure.name,
       runs[0].rule + ": most points at once, 3, 2 and 1 mm apart, are " + counts + ": least rise",
-      "6 at an unknown spacing", least_rise, 1, "points"));
+      "6 at an unknown spacing", min_rise, 1, "points"));
 }
 
 Panel time_panel(const std::string& title, const char* label, int row, int column) {
@@ -193,24 +194,24 @@ Panel time_panel(const std::string& title, const char* label, int row, int colum
 
 void add_panels(Figure& figure, const BoxRun& run, int column) {
   const std::string& t = run.name;
-  Panel way = time_panel("Contact rule " + run.rule, "displacement along y (m)", 0, column);
+  Panel path = time_panel("Contact rule " + run.rule, "displacement along y (m)", 0, column);
   Panel turn = time_panel("", "rotation about y (deg)", 1, column);
   Panel counts = time_panel("", "count", 2, column);
-  way.curves = {{t, "time", "device_y", CurveStyle::line, "device"},
-                {t, "time", "tool_y", CurveStyle::dashed, "tool"}};
-  turn.curves = {{t, "time", "device_turn", CurveStyle::line, "device"},
-                 {t, "time", "tool_turn", CurveStyle::dashed, "tool"}};
+  path.curves = {{t, "time", "device_y", CurveStyle::line, "device"},
+                 {t, "time", "tool_y", CurveStyle::dashed, "tool"}};
+  turn.curves = {{t, "time", "device_rotation", CurveStyle::line, "device"},
+                 {t, "time", "tool_rotation", CurveStyle::dashed, "tool"}};
   counts.curves = {{t, "time", "points", CurveStyle::steps, "points that touch"},
                    {t, "time", "clusters", CurveStyle::steps, "10 mm clusters"},
                    {t, "time", "active", CurveStyle::steps, "active constraints"}};
-  way.y_range = std::pair(-0.065, 0.005), turn.y_range = std::pair(-3.0, 33.0);
+  path.y_range = std::pair(-0.065, 0.005), turn.y_range = std::pair(-3.0, 33.0);
   counts.y_range = std::pair(0.0, 16.0);
-  for (const Panel& panel : {way, turn, counts}) figure.panels.push_back(panel);
+  for (const Panel& panel : {path, turn, counts}) figure.panels.push_back(panel);
 }
 
-void add_pictures(Figure& figure, const Laboratory& laboratory, const BoxRun& run) {
+void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& run) {
   const Experiment experiment = Experiment::load("fig6.3");
-  const PointCloud cloud = processed_cloud(experiment, laboratory.kernels(), 0);
+  const PointCloud cloud = processed_cloud(experiment, context.kernels(), 0);
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < cloud.size(); ++i) all.push_back(i);
   const std::shared_ptr<const VoxelTool> tool = tool_of(experiment);
@@ -229,8 +230,8 @@ void add_pictures(Figure& figure, const Laboratory& laboratory, const BoxRun& ru
 
 }  // namespace
 
-Figure figure_6_3(const Laboratory& laboratory) {
-  const std::vector<BoxRun> runs = box_runs(laboratory);
+Figure figure_6_3(const FigureContext& context) {
+  const std::vector<BoxRun> runs = box_runs(context);
   Figure figure{
       "6.3", "A tool in a narrow box of points",
       "A box of four walls, 110 x 90 mm inside, its points 3 mm apart with normals into the box. The device "
@@ -247,7 +248,7 @@ Figure figure_6_3(const Laboratory& laboratory) {
     add_spacing_claim(figure, std::span(runs).subspan(r * step, step));
   }
   figure.tables.push_back(summary_table(runs));
-  add_pictures(figure, laboratory, runs[0]);
+  add_pictures(figure, context, runs[0]);
   return figure;
 }
 

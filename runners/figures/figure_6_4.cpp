@@ -21,7 +21,7 @@ constexpr double kVoxel_m = 5e-4;
 // How a run is drawn: the part of the recording around the object, and where it is seen from.
 struct Shown {
   const char *experiment, *table, *words;
-  double left_m, right_m, top_m, bottom_m, farthest_m;
+  double remaining_m, right_m, top_m, bottom_m, max_depth_m;
   Vec3 eye, target;
   double width_m;
 };
@@ -78,13 +78,13 @@ Table touch_table(const TouchRun& run) {
     rows.push_back({t.time_s[i], static_cast<double>(t.frame_index[i]), lag_m(t, i),
                     lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
                     static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
-                    t.penetration_m[i], static_cast<double>(t.detections[i]),
+                    t.tool_penetration_m[i], static_cast<double>(t.detections[i]),
                     static_cast<double>(t.budget_exhausted[i]), t.force(i).norm(), t.torque(i).norm()});
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
       {"frame", "1", "frame in use"},
       {"lag", "m", "from the tool's centre of mass to the device"},
-      {"lag_turn", "deg", "between their orientations"},
+      {"lag_rotation", "deg", "between their orientations"},
       {"points", "1", "points that touch the tool"},
       {"active", "1", "constraints that hold it"},
       {"clusters", "1", "10 mm cells of the tool with points that touch"},
@@ -102,15 +102,15 @@ std::vector<std::size_t> seen_points(const PointCloud& cloud, const Shown& shown
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p = cloud.point(i);  // NaN is outside
-    if ((i / width + i % width) % 2 == 0 && p.x() > shown.left_m && p.x() < shown.right_m &&
-        p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.farthest_m)
+    if ((i / width + i % width) % 2 == 0 && p.x() > shown.remaining_m && p.x() < shown.right_m &&
+        p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m)
       chosen.push_back(i);
   }
   return chosen;
 }
 
-void add_picture_tables(Figure& figure, const Laboratory& laboratory, const TouchRun& run) {
-  const PointCloud cloud = processed_cloud(run.experiment, laboratory.kernels(), 0);
+void add_picture_tables(Figure& figure, const FigureContext& context, const TouchRun& run) {
+  const PointCloud cloud = processed_cloud(run.experiment, context.kernels(), 0);
   const std::string name = run.shown->table;
   const std::shared_ptr<const VoxelTool> tool = tool_of(run.experiment);
   figure.tables.push_back(cloud_table(name + "_cloud", "points of the first frame, every second pixel", cloud,
@@ -138,7 +138,7 @@ void add_panels(Figure& figure, const TouchRun& run, int row) {
 }
 
 template <class Holds>
-double share_of(const Trace& trace, double from_s, double until_s, Holds&& holds) {
+double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& holds) {
   double count = 0, all = 0;
   for (std::size_t i = tick_at(trace, from_s); i < tick_at(trace, until_s); ++i)
     count += holds(i) ? 1 : 0, ++all;
@@ -149,7 +149,8 @@ double share_of(const Trace& trace, double from_s, double until_s, Holds&& holds
 double deepest_m(const Trace& trace) {
   double deepest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (!trace.frame_update(i) && !(trace.penetration_m[i] <= deepest)) deepest = trace.penetration_m[i];
+    if (!trace.frame_update(i) && !(trace.tool_penetration_m[i] <= deepest))
+      deepest = trace.tool_penetration_m[i];
   return deepest;
 }
 
@@ -165,27 +166,27 @@ double inconsistent_ticks(const TouchRun& run) {
   return count;
 }
 
-double largest_lag_m(const Trace& t) {
-  double largest = 0;
-  for (std::size_t i = 0; i < t.length(); ++i) largest = std::max(largest, lag_m(t, i));
-  return largest;
+double max_lag_m(const Trace& t) {
+  double max = 0;
+  for (std::size_t i = 0; i < t.length(); ++i) max = std::max(max, lag_m(t, i));
+  return max;
 }
 
 void add_claims(Figure& figure, const TouchRun& run) {
   const Trace& t = run.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string name = figure.name, words = std::string(run.shown->words) + ": ";
-  claim(claim_at_most(name, words + "ticks with a number that is not finite", "-", non_finite_share(t), 0,
-                      "share"));
+  claim(claim_at_most(name, words + "ticks with a number that is not finite", "-", non_finite_fraction(t), 0,
+                      "fraction"));
   claim(claim_at_most(name, words + "deepest point in the tool at the end of a tick without a new frame", "0",
                       deepest_m(t), kVoxel_m, "m"));
   claim(claim_at_most(name, words + "ticks whose detections and log of a used-up budget do not fit", "-",
                       inconsistent_ticks(run), 0, "ticks"));
   claim(claim_at_least(
       name, words + "share of the sliding time in which the tool touches", "-",
-      share_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9, "share"));
-  claim(claim_at_least(name, words + "largest distance from tool to device", "-", largest_lag_m(t), 0.005,
-                       "m"));
+      fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9,
+      "fraction"));
+  claim(claim_at_least(name, words + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
   claim(claim_at_most(name, words + "force at the end", "0", t.force(t.length() - 1).norm(), 0, "N"));
 }
 
@@ -198,27 +199,27 @@ Table summary_table(const std::vector<TouchRun>& runs) {
     for (const TouchRun& run : runs) values.push_back(of(run.trace));
     rows.add(what, unit, values);
   };
-  const auto most = [](const auto& of) {
+  const auto max = [](const auto& of) {
     return static_cast<double>(*std::max_element(of.begin(), of.end()));
   };
   using T = const Trace&;
   add("ticks", "1", [](T t) { return static_cast<double>(t.length()); });
-  add("most points that touch at once", "1", [&](T t) { return most(t.contact_count); });
-  add("most active constraints at once", "1", [&](T t) { return most(t.active_constraints); });
-  add("deepest point at the end of any tick", "m", [&](T t) { return most(t.penetration_m); });
+  add("most points that touch at once", "1", [&](T t) { return max(t.contact_count); });
+  add("most active constraints at once", "1", [&](T t) { return max(t.active_constraints); });
+  add("deepest point at the end of any tick", "m", [&](T t) { return max(t.tool_penetration_m); });
   add("ticks that used up their detections", "1", [](T t) {
     return static_cast<double>(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1));
   });
-  add("points of a frame without a normal, at most", "1", [&](T t) { return most(t.disabled_points); });
-  add("largest force", "N", [](T t) { return largest_force_N(t); });
-  add("largest force jump at a frame", "N", [](T t) { return largest_force_jump_N(t); });
+  add("points of a frame without a normal, at most", "1", [&](T t) { return max(t.disabled_points); });
+  add("largest force", "N", [](T t) { return max_force_N(t); });
+  add("largest force jump at a frame", "N", [](T t) { return max_force_jump_N(t); });
   return rows.table("runs", "what happened in the three runs");
 }
 
-std::vector<TouchRun> touch_runs(const Laboratory& laboratory) {
+std::vector<TouchRun> touch_runs(const FigureContext& context) {
   std::vector<Experiment> experiments;
   for (const Shown& shown : kShown) experiments.push_back(Experiment::load(shown.experiment));
-  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<Trace> traces = context.run(experiments);
   std::vector<TouchRun> runs;
   for (std::size_t r = 0; r < experiments.size(); ++r)
     runs.push_back({&kShown[r], std::move(experiments[r]), std::move(traces[r])});
@@ -227,8 +228,8 @@ std::vector<TouchRun> touch_runs(const Laboratory& laboratory) {
 
 }  // namespace
 
-Figure figure_6_4(const Laboratory& laboratory) {
-  const std::vector<TouchRun> runs = touch_runs(laboratory);
+Figure figure_6_4(const FigureContext& context) {
+  const std::vector<TouchRun> runs = touch_runs(context);
   Figure figure{
       "6.4", "Tools of meshes in recorded point clouds",
       "The tool as a filled solid, the device's pose transparent. A bunny on a printed cube and a hand on an "
@@ -238,7 +239,7 @@ Figure figure_6_4(const Laboratory& laboratory) {
       "points are shown from beside the camera, so what it did not see is empty."};
   for (std::size_t r = 0; r < runs.size(); ++r) {
     figure.tables.push_back(touch_table(runs[r]));
-    add_picture_tables(figure, laboratory, runs[r]);
+    add_picture_tables(figure, context, runs[r]);
     add_panels(figure, runs[r], static_cast<int>(r));
     add_claims(figure, runs[r]);
   }

@@ -39,7 +39,7 @@ constexpr std::uint32_t kFound[] = {0xFF3030, 0xFFE000}, kBox = 0xFFFFFF;
 constexpr PictureCrop kCrop{0, 60, 640, 480, 2};
 
 struct MaskNumbers {
-  double picked = 0, in_box = 0, largest_piece = 0, in_pieces_of_100 = 0;
+  double picked = 0, in_box = 0, max_component = 0, in_pieces_of_100 = 0;
   double mean_shift_m = 0;     // by what lies outside the box
   double mean_to_point_m = 0;  // from the mean to the nearest picked point
 };
@@ -84,7 +84,7 @@ MaskNumbers measure_mask(const PointCloud& cloud, const std::vector<char>& picke
     numbers.picked += picked[i], numbers.in_box += inside[i];
   }
   for (const int size : piece_sizes(picked, width)) {
-    numbers.largest_piece = std::max<double>(numbers.largest_piece, size);
+    numbers.max_component = std::max<double>(numbers.max_component, size);
     numbers.in_pieces_of_100 += size >= 100 ? size : 0;
   }
   const Vec3 mean = mean_of(cloud, picked);
@@ -121,10 +121,10 @@ double wander_m(const Scenario& scenario, const FixtureRule& rule) {
     const PointCloud cloud = scenario.cloud(frame);
     means.push_back(mean_of(cloud, picked_points(rule, cloud)));
   }
-  double largest = 0;
+  double max = 0;
   for (const Vec3& a : means)
-    for (const Vec3& b : means) largest = std::max(largest, (a - b).norm());
-  return largest;
+    for (const Vec3& b : means) max = std::max(max, (a - b).norm());
+  return max;
 }
 
 Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
@@ -132,14 +132,14 @@ Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const MaskNumbers& n = numbers[i];
     rows.push_back({static_cast<double>(kShown[i].frame), n.picked, n.in_box / n.picked,
-                    n.largest_piece / n.picked, n.in_pieces_of_100 / n.picked, n.mean_shift_m,
+                    n.max_component / n.picked, n.in_pieces_of_100 / n.picked, n.mean_shift_m,
                     n.mean_to_point_m});
   }
   return table_of(kNames[k], std::string("the mask of the ") + kNames[k],
                   {{"frame", "1", "frame of the recording"},
                    {"picked", "1", "pixels that are picked"},
                    {"in_box", "1", "share of those within the box around the object"},
-                   {"largest_piece", "1", "share of those in the largest connected piece"},
+                   {"max_component", "1", "share of those in the largest connected piece"},
                    {"in_pieces_of_100", "1", "share of those in pieces of 100 pixels or more"},
                    {"mean_shift", "m", "how far what lies outside the box shifts the mean"},
                    {"mean_to_point", "m", "distance of the mean to the nearest picked point"}},
@@ -153,7 +153,7 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
     figure.claims.push_back(claim_not_run(figure.name, object, "a frame in which nothing is picked"));
     return;
   }
-  const auto least = [&](auto&& of) {
+  const auto min = [&](auto&& of) {
     double value = std::numeric_limits<double>::infinity();
     for (const MaskNumbers& n : numbers) value = std::min(value, of(n));
     return value;
@@ -161,12 +161,13 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string& n = figure.name;
   claim(claim_at_least(n, object + ": least share of the mask within the object's box", "-",
-                       least([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
-                       "share"));
+                       min([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
+                       "fraction"));
   claim(claim_at_least(n, object + ": least share of the mask in its largest piece", "-",
-                       least([](const MaskNumbers& m) { return m.largest_piece / m.picked; }), 0.8, "share"));
+                       min([](const MaskNumbers& m) { return m.max_component / m.picked; }), 0.8,
+                       "fraction"));
   claim(claim_at_most(n, object + ": largest shift of the mean by what lies outside the box", "-",
-                      -least([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005,
+                      -min([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005,
                       "m"));
   claim(claim_at_most(n, object + ": how far the mean wanders in five frames at rest", "-", wander, 0.003,
                       "m"));
@@ -174,10 +175,10 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
 
 }  // namespace
 
-Figure figure_7_1_recorded(const Laboratory& laboratory) {
+Figure figure_7_1_recorded(const FigureContext& context) {
   const Experiment experiment = Experiment::load("fig7.1-recorded");
-  laboratory.uses(experiment);
-  const auto scenario = experiment.build_scenario(laboratory.kernels());
+  context.uses(experiment);
+  const auto scenario = experiment.build_scenario(context.kernels());
   const auto rules = rules_of(experiment);
   Figure figure{
       "7.1-recorded", "Fixtures by colour on a recorded desk",

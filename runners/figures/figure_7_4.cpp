@@ -28,18 +28,18 @@ int pushes(const Trace& t) {
 }
 
 // While no leaf is within the look-ahead of a region.
-double largest_free_force_N(const Trace& t) {
-  double largest = 0;
+double max_free_force_N(const Trace& t) {
+  double max = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
-    if (std::isinf(t.nearest_m[i]) && t.frame_index[i] >= 0) largest = std::max(largest, t.force(i).norm());
-  return largest;
+    if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0) max = std::max(max, t.force(i).norm());
+  return max;
 }
 
-double largest_torque_Nm(const Trace& t, double from_s, double until_s) {
-  double largest = 0;
+double max_torque_Nm(const Trace& t, double from_s, double until_s) {
+  double max = 0;
   for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
-    largest = std::max(largest, t.torque(i).norm());
-  return largest;
+    max = std::max(max, t.torque(i).norm());
+  return max;
 }
 
 void add_push_claims(Figure& figure, const ValveTask& task, const char* side, double held_s) {
@@ -51,16 +51,16 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   figure.claims.push_back(
       claim_between(figure.name, "force there", "rises when pushed", t.force(held).norm(), 5, 8, "N"));
   figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
-                                         "rises when pushed", largest_torque_Nm(t, held_s - 1, held_s + 1),
-                                         0.01, "N m"));
+                                         "rises when pushed", max_torque_Nm(t, held_s - 1, held_s + 1), 0.01,
+                                         "N m"));
 }
 
 void add_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string name = figure.name;
-  claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0",
-                      largest_free_force_N(t), 0, "N"));
+  claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0", max_free_force_N(t),
+                      0, "N"));
   claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
   for (const double free_s : {0.25, kBetween_s, t.time_s.back()})
     claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
@@ -71,7 +71,7 @@ void add_claims(Figure& figure, const ValveTask& task) {
     claim(claim_at_least(name,
                          std::string("least distance of the tool's mesh to the true ") +
                              (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
-                         "-", least_clearance_m(task, valve), kRegion_m - 1e-3, "m"));
+                         "-", min_clearance_m(task, valve), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);
 }
 
@@ -85,7 +85,7 @@ void add_slip(Figure& figure, const ValveTask& slip) {
                                          aside.y(), 0.01, "m"));
   figure.claims.push_back(claim_at_least(figure.name,
                                          slip.words + ": least distance of its mesh to the true valve", "-",
-                                         least_clearance_m(slip, Valve::left), kRegion_m - 1e-3, "m"));
+                                         min_clearance_m(slip, Valve::left), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, slip);
 }
 
@@ -102,9 +102,9 @@ Table summary_table(const std::vector<ValveTask>& tasks) {
   };
   using Task = const ValveTask&;
   add("least distance of the mesh to the left valve", "m",
-      [](Task task) { return least_clearance_m(task, Valve::left); });
+      [](Task task) { return min_clearance_m(task, Valve::left); });
   add("least distance of the mesh to the right valve", "m",
-      [](Task task) { return least_clearance_m(task, Valve::right); });
+      [](Task task) { return min_clearance_m(task, Valve::right); });
   add("most pairs of leaves that touch", "1", [](Task task) {
     return double(*std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end()));
   });
@@ -121,10 +121,10 @@ Table summary_table(const std::vector<ValveTask>& tasks) {
 
 }  // namespace
 
-Figure figure_7_4(const Laboratory& laboratory) {
+Figure figure_7_4(const FigureContext& context) {
   const std::vector<ValveTask> tasks = run_tasks(
-      laboratory, {{"task", "first task", "fig7.4"},
-                   {"slip", "pushed deep beside the middle", "fig7.4", {kOffCentre, "duration_s=3.5"}}});
+      context, {{"task", "first task", "fig7.4"},
+                {"slip", "pushed deep beside the middle", "fig7.4", {kOffCentre, "duration_s=3.5"}}});
   Figure figure{
       "7.4", "Forbidden regions around two valves",
       "A simulated camera sees two handwheels in a tank of turbid water; the points of both hues get "
@@ -137,9 +137,9 @@ Figure figure_7_4(const Laboratory& laboratory) {
   figure.panels = {time_panel(tasks[0], "First task", "force", "force (N)", 0),
                    time_panel(tasks[0], "", "torque", "torque (N m)", 1),
                    time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};
-  add_task_picture_tables(figure, laboratory, tasks[0],
+  add_task_picture_tables(figure, context, tasks[0],
                           {tick_of(tasks[0].trace, kHeldLeft_s), tick_of(tasks[0].trace, kHeldRight_s)});
-  add_task_picture_tables(figure, laboratory, tasks[1], {tasks[1].trace.length() - 1});
+  add_task_picture_tables(figure, context, tasks[1], {tasks[1].trace.length() - 1});
   figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 0, 0, 1));
   figure.panels.push_back(task_picture(tasks[0], "C) pushed to the right", 1, 1, 1));
   figure.panels.push_back(task_picture(tasks[1], "Slipped round, at the end", 0, 2, 1));

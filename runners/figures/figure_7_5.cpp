@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kRegion_m = 0.04;
 constexpr double kPressed_s = 3;
-constexpr double kClamp_N = 4;       // guidance.largest_force_N of the experiment
+constexpr double kClamp_N = 4;       // guidance.max_force_N of the experiment
 constexpr double kLittle_Nm = 2e-3;  // what the target's noise makes of torque
 constexpr double kPushed_s = 2.8, kArrived_s = 5.9;
 
 // The first tick in which guidance pulls.
 std::size_t first_pull(const Trace& t) {
-  const auto first = std::find(t.guidance_pulls.begin(), t.guidance_pulls.end(), 1);
-  return static_cast<std::size_t>(first - t.guidance_pulls.begin());
+  const auto first = std::find(t.guidance_active.begin(), t.guidance_active.end(), 1);
+  return static_cast<std::size_t>(first - t.guidance_active.begin());
 }
 
 // Means over the last tenth of a second, of the size of each part.
@@ -56,7 +56,7 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   claim(claim_at_most(name, words + "torque about the handle's y and z at the end", "-",
                       std::max(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
   claim(claim_at_least(name, words + "least distance of the tool's mesh to the true left valve", "-",
-                       least_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
+                       min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);
 }
 
@@ -102,10 +102,10 @@ Table target_table(const ValveTask& task) {
 
 }  // namespace
 
-Figure figure_7_5(const Laboratory& laboratory) {
+Figure figure_7_5(const FigureContext& context) {
   const std::vector<ValveTask> tasks = run_tasks(
-      laboratory,
-      {{"five", "Five motors", "fig7.5"}, {"six", "Six motors", "fig7.5", {"device.turns_x=true"}}});
+      context,
+      {{"five", "Five motors", "fig7.5"}, {"six", "Six motors", "fig7.5", {"device.torque_x=true"}}});
   Figure figure{
       "7.5", "Guidance to one valve, a forbidden region around the other",
       "The simulated operator pushes towards the left valve, presses the button at 3 s and lets go "
@@ -122,7 +122,7 @@ Figure figure_7_5(const Laboratory& laboratory) {
   figure.tables.push_back(target_table(tasks[0]));
   add_roll_claims(figure, tasks[0], tasks[1]);
   const Trace& t = tasks[0].trace;
-  add_task_picture_tables(figure, laboratory, tasks[0], {tick_of(t, kPushed_s), t.length() - 1});
+  add_task_picture_tables(figure, context, tasks[0], {tick_of(t, kPushed_s), t.length() - 1});
   figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 0, 3, 0));
   figure.panels.push_back(task_picture(tasks[0], "D) at the goal, but for the roll", 1, 3, 1));
   return figure;

@@ -39,22 +39,22 @@ class RegionFrames {
 };
 
 // Least distance of the tool's vertices to the points that have a region in the frame in use.
-double least_point_distance_m(const ValveTask& task, const Kernels& kernels) {
+double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   RegionFrames frames(task.experiment, kernels);
   const Trace& t = task.trace;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < t.length(); i += kEvery) {
     if (t.contact_count[i] == 0) continue;
     const PointCloud& cloud = frames.of(t.frame_index[i]);
     for (std::size_t k = 0; k < cloud.size(); ++k) {
       if (!(cloud.fixture_radius_m[k] > 0)) continue;
       const Vec3 p_W = cloud.point(k);
-      if (!((p_W - t.proxy(i)).norm() < task.tool->reach_m + least)) continue;
+      if (!((p_W - t.proxy(i)).norm() < task.tool->reach_m + min)) continue;
       const Vec3 p_T = t.tool_orientation_at(i).conjugate() * (p_W - t.proxy(i));
-      for (const Vec3& vertex : task.tool->mesh.vertices) least = std::min(least, (vertex - p_T).norm());
+      for (const Vec3& vertex : task.tool->mesh.vertices) min = std::min(min, (vertex - p_T).norm());
     }
   }
-  return least;
+  return min;
 }
 
 // From the first to the last place that guidance led to.
@@ -62,7 +62,7 @@ double goal_wander_m(const Trace& t) {
   double wander = 0;
   Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < t.length(); ++i) {
-    if (!t.guidance_pulls[i]) continue;
+    if (!t.guidance_active[i]) continue;
     if (!first.allFinite()) first = t.goal(i);
     wander = std::max(wander, (t.goal(i) - first).norm());
   }
@@ -78,7 +78,7 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   claim(claim_at_least(
       name,
       "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
-      "-", least_point_distance_m(task, kernels), kRegion_m - 1e-3, "m"));
+      "-", min_point_distance_m(task, kernels), kRegion_m - 1e-3, "m"));
   claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
                       "m"));
   const std::vector<SequenceEntry> log = sequence_log(t);
@@ -121,8 +121,8 @@ void add_pictures(Figure& figure, const Kernels& kernels, const ValveTask& task)
 
 }  // namespace
 
-Figure figure_7_5_recorded(const Laboratory& laboratory) {
-  const std::vector<ValveTask> tasks = run_tasks(laboratory, {{"desk", "recorded desk", "fig7.5-recorded"}});
+Figure figure_7_5_recorded(const FigureContext& context) {
+  const std::vector<ValveTask> tasks = run_tasks(context, {{"desk", "recorded desk", "fig7.5-recorded"}});
   const ValveTask& task = tasks[0];
   Figure figure{
       "7.5-recorded", "Forbidden and guiding colours in recorded images",
@@ -136,8 +136,8 @@ Figure figure_7_5_recorded(const Laboratory& laboratory) {
   Panel torque{"Torque", "time (s)", "torque (N m)", false, {}, {}, {}, std::pair(1.0, 0.0)};
   torque.curves = {{task.name, "time", "torque", CurveStyle::line, ""}};
   figure.panels = {force, torque};
-  add_pictures(figure, laboratory.kernels(), task);
-  add_claims(figure, task, laboratory.kernels());
+  add_pictures(figure, context.kernels(), task);
+  add_claims(figure, task, context.kernels());
   return figure;
 }
 

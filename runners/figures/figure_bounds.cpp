@@ -58,20 +58,20 @@ double rms_from_print(const Table& fit) {
 }
 
 // From sigma = r_c / 2 on; below, both are nearly 0.
-double largest_factor_from_print(const Table& fit) {
+double max_factor_from_print(const Table& fit) {
   const auto &noise = numbers(fit, "noise"), &refitted = numbers(fit, "refitted"),
              &printed = numbers(fit, "printed");
-  double largest = 1;
+  double max = 1;
   for (std::size_t i = 0; i < noise.size(); ++i)
-    if (noise[i] >= 0.5) largest = std::max({largest, refitted[i] / printed[i], printed[i] / refitted[i]});
-  return largest;
+    if (noise[i] >= 0.5) max = std::max({max, refitted[i] / printed[i], printed[i] / refitted[i]});
+  return max;
 }
 
 Table bound_table(const std::vector<Bound>& bounds) {
   Table table = noise_table("bounds", "bounds on pop-through");
   for (const Bound& bound : bounds)
     add_bound(table, bound.name, bound.meaning, [&](double noise_m) {
-      const bool is_meant = noise_m <= bound.most_noise_m * (1 + 1e-9);
+      const bool is_meant = noise_m <= bound.max_noise_m * (1 + 1e-9);
       return is_meant ? bound.at(noise_m) : std::numeric_limits<double>::quiet_NaN();
     });
   return table;
@@ -119,9 +119,9 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
   const auto &survives = numbers(phases.table, "survives"), &pops = numbers(phases.table, "pops");
   return {
       claim_at_least("bounds", "noise-free lifts at 4.3 m/s^2 that survived, 64 grid phases",
-                     "a < 4.491 (4.14)", phases.survived_low, 1, "share"),
+                     "a < 4.491 (4.14)", phases.survived_low, 1, "fraction"),
       claim_at_most("bounds", "noise-free lifts at 4.6 m/s^2 that survived, 64 grid phases",
-                    "a < 4.491 (4.14)", phases.survived_high, 0, "share"),
+                    "a < 4.491 (4.14)", phases.survived_high, 0, "fraction"),
       claim_between("bounds", "smallest critical acceleration over the phases, in units of (4.14)",
                     "1 (4.14)",
                     *std::min_element(survives.begin(), survives.end()) / critical_acceleration(kLift), 0.97,
@@ -132,27 +132,28 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
       claim_at_most("bounds", "refitted thickness against (4.23), rms up to 2 r_c", "(4.23)",
                     rms_from_print(thickness), 3e-4, "m"),
       claim_at_most("bounds", "refitted normal error against (4.24), largest factor from r_c/2 to 2 r_c",
-                    "(4.24)", largest_factor_from_print(normal_error), 3, "1"),
+                    "(4.24)", max_factor_from_print(normal_error), 3, "1"),
       claim_at_least("bounds", "pop-throughs that (4.17) foresees at their update", "exact if all were known",
-                     criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "share"),
+                     criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "fraction"),
       claim_at_least("bounds", "updates without pop-through at which (4.17) holds", "exact if all were known",
-                     criterion.holds_stays / (criterion.holds_stays + criterion.fails_stays), 0.98, "share"),
+                     criterion.holds_stays / (criterion.holds_stays + criterion.fails_stays), 0.98,
+                     "fraction"),
       claim_between("bounds", "cells in which (4.25) as printed and the outcome agree", "a bit loose",
-                    agreement_of(bounds.front(), map).share(), 0.75, 0.85, "share"),
+                    agreement_of(bounds.front(), map).fraction(), 0.75, 0.85, "fraction"),
       claim_at_least("bounds", "cells in which the bound with scatter and the outcome agree", "-",
-                     agreement_of(bounds.back(), map).share(), 0.87, "share"),
+                     agreement_of(bounds.back(), map).fraction(), 0.87, "fraction"),
       claim_at_most("bounds", "safe cells of the bound with scatter that popped through", "-",
-                    agreement_of(bounds.back(), map).safe_popped, 0.15, "share"),
+                    agreement_of(bounds.back(), map).safe_popped, 0.15, "fraction"),
   };
 }
 
 }  // namespace
 
-Figure figure_bounds(const Laboratory& laboratory) {
+Figure figure_bounds(const FigureContext& context) {
   constexpr int kSeed = 2;  // not the map that the bound with scatter was looked at while it was derived
-  const Phases phases = critical_over_phases(laboratory);
-  const MeasuredNoise noise = measured_noise(laboratory);
-  const LiftMap lifts = lift_map(laboratory, kSeed);
+  const Phases phases = critical_over_phases(context);
+  const MeasuredNoise noise = measured_noise(context);
+  const LiftMap lifts = lift_map(context, kSeed);
   const Criterion criterion = criterion_of(lifts, 0, 4);
   const std::vector<Bound> list = bounds(noise);
   const Table thickness = fit_table("thickness_fit", "m", noise.thickness, printed_thickness());

@@ -41,7 +41,7 @@ Table force_table(const std::string& name, const Trace& trace) {
 
 }  // namespace
 
-Figure figure_eq4_15(const Laboratory& laboratory) {
+Figure figure_eq4_15(const FigureContext& context) {
   Figure figure{"eq4.15",
                 "Force between updates",
                 "A noise-free plane rises at 0.1 m/s under a HIP that keeps its depth, so the true force "
@@ -54,8 +54,8 @@ Figure figure_eq4_15(const Laboratory& laboratory) {
   const std::pair<const char*, const char*> readings[] = {
       {"plus", "plus (as printed)"}, {"none", "no term"}, {"minus", "minus (used)"}};
   for (const auto& [sign, label] : readings) {
-    const Trace trace = settled(laboratory.run(steady_rise(sign)));
-    jump.push_back(largest_force_jump_N(trace));
+    const Trace trace = settled(context.run(steady_rise(sign)));
+    jump.push_back(max_force_jump_N(trace));
     figure.tables.push_back(force_table(sign, trace));
     figure.panels[0].curves.push_back({sign, "time", "force", CurveStyle::line, label});
   }

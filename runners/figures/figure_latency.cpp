@@ -19,18 +19,18 @@ constexpr double kSettled_s = 1.5;
 // How deep the contact point of the slave, sent to the proxy, is at most inside the region of the surface as
 // it is at that moment.
 struct Violation {
-  double largest_m = 0;  // of the whole run
+  double max_m = 0;      // of the whole run
   double settled_m = 0;  // of its last part
 };
 
 Violation violation(const Trace& trace) {
-  double least = std::numeric_limits<double>::infinity(), settled = least;
+  double min = std::numeric_limits<double>::infinity(), settled = min;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const double distance = trace.slave_distance_m[i];
-    least = std::min(least, distance);
+    min = std::min(min, distance);
     if (trace.time_s[i] >= kSettled_s) settled = std::min(settled, distance);
   }
-  return {kFixtureRadius_m + kContactRadius_m - least, kFixtureRadius_m + kContactRadius_m - settled};
+  return {kFixtureRadius_m + kContactRadius_m - min, kFixtureRadius_m + kContactRadius_m - settled};
 }
 
 // A frame shows the surface as it was; until the next one comes it is older by a frame's interval.
@@ -55,12 +55,12 @@ struct Measured {
   }
 };
 
-Measured measured(const Laboratory& laboratory, const std::string& name) {
+Measured measured(const FigureContext& context, const std::string& name) {
   // Frames get older here than the default lets a prediction be trusted.
-  const std::string horizon = "renderer.longest_prediction_s=0.4";
+  const std::string horizon = "renderer.max_prediction_s=0.4";
   const Sweep plain = Sweep::load(name, {horizon});
   const Sweep ahead = Sweep::load(name, {horizon, "renderer.slave_prediction=true"});
-  return {plain.plan(), laboratory.measure(plain, violation), laboratory.measure(ahead, violation)};
+  return {plain.plan(), context.measure(plain, violation), context.measure(ahead, violation)};
 }
 
 std::vector<double> times(const std::vector<double>& values, double factor) {
@@ -71,15 +71,15 @@ std::vector<double> times(const std::vector<double>& values, double factor) {
 
 Table map_table(const Measured& m) {
   const auto latency = m.axis_of_runs(0), speed = m.axis_of_runs(1);
-  std::vector<double> largest, predicted, settled;
+  std::vector<double> max, predicted, settled;
   for (std::size_t i = 0; i < m.plain.size(); ++i) {
-    largest.push_back(1e3 * m.plain[i].largest_m), settled.push_back(1e3 * m.ahead[i].settled_m);
+    max.push_back(1e3 * m.plain[i].max_m), settled.push_back(1e3 * m.ahead[i].settled_m);
     predicted.push_back(1e3 * predicted_m(speed[i], latency[i]));
   }
   Table table{"delay_and_speed", "violation of a fixture on a surface that rises evenly"};
   table.add("latency", "ms", "from capture to arrival", times(latency, 1e3));
   table.add("speed", "m/s", "of the surface", speed);
-  table.add("violation", "mm", "largest depth of the slave in the region", largest);
+  table.add("violation", "mm", "largest depth of the slave in the region", max);
   table.add("predicted", "mm", "speed times (latency + one frame interval)", predicted);
   table.add("with_prediction", "mm", "depth with the slave sent ahead, from 1.5 s on", settled);
   return table;
@@ -101,21 +101,21 @@ Table tissue_table() {
 // Replicates as mean and largest; one row for each value of the only axis.
 Table spread_table(const std::string& axis, const std::string& unit, double scale, const Measured& m) {
   const auto replicates = static_cast<std::size_t>(m.plan.replicates);
-  std::vector<double> place, mean, largest, mean_ahead;
+  std::vector<double> place, mean, max, mean_ahead;
   for (std::size_t cell = 0; cell < m.plan.cell_count(); ++cell) {
-    double sum = 0, sum_ahead = 0, most = 0;
+    double sum = 0, sum_ahead = 0, max = 0;
     for (std::size_t run = cell * replicates; run < (cell + 1) * replicates; ++run) {
-      sum += m.plain[run].largest_m, sum_ahead += m.ahead[run].settled_m;
-      most = std::max(most, m.plain[run].largest_m);
+      sum += m.plain[run].max_m, sum_ahead += m.ahead[run].settled_m;
+      max = std::max(max, m.plain[run].max_m);
     }
     place.push_back(scale * m.axis(0)[cell]);
-    mean.push_back(1e3 * sum / m.plan.replicates), largest.push_back(1e3 * most);
+    mean.push_back(1e3 * sum / m.plan.replicates), max.push_back(1e3 * max);
     mean_ahead.push_back(1e3 * sum_ahead / m.plan.replicates);
   }
   Table table{axis, "violation over 20 runs"};
   table.add(axis, unit, m.plan.axes[0].long_name, place);
   table.add("mean", "mm", "mean of the runs' largest depths", mean);
-  table.add("largest", "mm", "largest of them", largest);
+  table.add("largest", "mm", "largest of them", max);
   table.add("with_prediction", "mm", "mean with the slave sent ahead, from 1.5 s on", mean_ahead);
   return table;
 }
@@ -184,15 +184,15 @@ std::vector<Panel> panels() {
 
 // In the cells where the predicted violation is below the limit.
 template <class Error>
-double largest_error(const Table& map, double limit_mm, Error&& error) {
+double max_error(const Table& map, double limit_mm, Error&& error) {
   const auto& predicted = numbers(map, "predicted");
-  double largest = 0;
+  double max = 0;
   for (std::size_t i = 0; i < predicted.size(); ++i)
-    if (predicted[i] < limit_mm) largest = std::max(largest, error(i));
-  return largest;
+    if (predicted[i] < limit_mm) max = std::max(max, error(i));
+  return max;
 }
 
-double share_told(const Table& map) {
+double fraction_known(const Table& map) {
   const auto &measured = numbers(map, "violation"), &predicted = numbers(map, "predicted");
   double agree = 0;
   for (std::size_t i = 0; i < measured.size(); ++i)
@@ -201,22 +201,22 @@ double share_told(const Table& map) {
 }
 
 // How far outside its bounds any jittered run is.
-double largest_outside(const Table& jitter) {
-  double largest = 0;
+double max_outside(const Table& jitter) {
+  double max = 0;
   for (std::size_t i = 0; i < numbers(jitter, "largest").size(); ++i)
-    largest = std::max({largest, numbers(jitter, "largest")[i] - numbers(jitter, "all_late")[i],
-                        numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]});
-  return largest;
+    max = std::max({max, numbers(jitter, "largest")[i] - numbers(jitter, "all_late")[i],
+                    numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]});
+  return max;
 }
 
 }  // namespace
 
-Figure figure_latency(const Laboratory& laboratory) {
-  const Table map = map_table(measured(laboratory, "fixture-latency"));
-  Table jitter = spread_table("jitter", "ms", 1e3, measured(laboratory, "fixture-jitter"));
+Figure figure_latency(const FigureContext& context) {
+  const Table map = map_table(measured(context, "fixture-latency"));
+  Table jitter = spread_table("jitter", "ms", 1e3, measured(context, "fixture-jitter"));
   add_jitter_bounds(jitter);
-  const Table drops = spread_table("drops", "1", 1, measured(laboratory, "fixture-drops"));
-  const Table heart = heart_table(measured(laboratory, "heart-latency"));
+  const Table drops = spread_table("drops", "1", 1, measured(context, "fixture-drops"));
+  const Table heart = heart_table(measured(context, "heart-latency"));
   const auto &violation = numbers(map, "violation"), &predicted = numbers(map, "predicted"),
              &settled = numbers(map, "with_prediction");
 
@@ -232,16 +232,16 @@ Figure figure_latency(const Laboratory& laboratory) {
       {map, tissue_table(), jitter, drops, heart},
       panels()};
   figure.claims = {
-      claim_at_most(
-          "latency", "violation against speed x (latency + frame interval), where that is below r_f", "-",
-          largest_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }), 0.2,
-          "mm"),
+      claim_at_most("latency",
+                    "violation against speed x (latency + frame interval), where that is below r_f", "-",
+                    max_error(map, 20, [&](std::size_t i) { return std::abs(violation[i] - predicted[i]); }),
+                    0.2, "mm"),
       claim_at_least("latency", "cells in which the same rule tells whether the slave reaches the surface",
-                     "-", share_told(map), 0.99, "share"),
+                     "-", fraction_known(map), 0.99, "fraction"),
       claim_at_most("latency", "violation with the slave sent ahead, settled, where it was below r_f", "-",
-                    largest_error(map, 20, [&](std::size_t i) { return settled[i]; }), 0.5, "mm"),
+                    max_error(map, 20, [&](std::size_t i) { return settled[i]; }), 0.5, "mm"),
       claim_at_most("latency", "jittered runs: how far outside the bounds for all early and all late", "-",
-                    largest_outside(jitter), 0.2, "mm"),
+                    max_outside(jitter), 0.2, "mm"),
       claim_at_least("latency", "lost frames: mean violation at a loss of 0.3 over that at 0", "-",
                      numbers(drops, "mean")[6] / numbers(drops, "mean")[0], 1.5, "1"),
   };

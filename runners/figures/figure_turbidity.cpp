@@ -50,11 +50,11 @@ void draw_mask(const std::vector<char>& picked, const std::vector<char>& is, std
   }
 }
 
-Level measure_level(const Laboratory& laboratory, double turbidity_per_m) {
+Level measure_level(const FigureContext& context, double turbidity_per_m) {
   const Experiment experiment =
       Experiment::load("turbidity", {"scenario.turbidity_per_m=" + std::to_string(turbidity_per_m)});
-  laboratory.uses(experiment);
-  const auto scenario = experiment.build_scenario(laboratory.kernels());
+  context.uses(experiment);
+  const auto scenario = experiment.build_scenario(context.kernels());
   const std::vector<Valve> truth = dynamic_cast<const ValveTank&>(*scenario).truth();
   const auto rules = rules_of(experiment);
   Level level{turbidity_per_m, {}, {}, scenario->cloud(0)};
@@ -79,7 +79,7 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
     const auto [recall_low, recall_high] = s.recall_interval();
     const auto [precision_low, precision_high] = s.precision_interval();
     rows.push_back({level.turbidity_per_m, s.recall(), recall_low, recall_high, s.precision(), precision_low,
-                    precision_high, s.depth_share(), s.right / double{kFrames}, s.missed / double{kFrames},
+                    precision_high, s.depth_fraction(), s.right / double{kFrames}, s.missed / double{kFrames},
                     s.wrong / double{kFrames}, s.of_class_without_depth / double{kFrames}});
   }
   return table_of(kNames[k],
@@ -91,7 +91,7 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
                    {"precision", "1", "precision: share of the picked pixels that are its"},
                    {"precision_low", "1", "95 % interval, lower end"},
                    {"precision_high", "1", "95 % interval, upper end"},
-                   {"depth_share", "1", "share of its pixels that have a depth"},
+                   {"depth_fraction", "1", "share of its pixels that have a depth"},
                    {"right", "1", "its pixels that are picked, a frame"},
                    {"missed", "1", "its pixels with depth that are not picked, a frame"},
                    {"wrong", "1", "other pixels that are picked, a frame"},
@@ -99,8 +99,8 @@ Table score_table(const std::vector<Level>& levels, std::size_t k) {
                   rows);
 }
 
-Panel share_panel(const std::string& title, const std::string& value, int column) {
-  Panel panel{title, "turbidity (1/m)", "share"};
+Panel fraction_panel(const std::string& title, const std::string& value, int column) {
+  Panel panel{title, "turbidity (1/m)", "fraction"};
   for (const char* name : kNames)
     panel.curves.push_back({name, "turbidity", value, CurveStyle::line, name + std::string(" valve")});
   panel.x_range = std::pair(0.0, 3.0);
@@ -129,19 +129,19 @@ void add_pictures(Figure& figure, const std::vector<Level>& levels) {
 }
 
 // From each level to the next. 0 where it never rises.
-double largest_rise(const std::vector<Level>& levels, std::size_t k,
-                    double (SegmentationScore::*share)() const) {
+double max_rise(const std::vector<Level>& levels, std::size_t k,
+                double (SegmentationScore::*fraction)() const) {
   double rise = 0;
   for (std::size_t i = 1; i < levels.size(); ++i)
-    rise = std::max(rise, (levels[i].score[k].*share)() - (levels[i - 1].score[k].*share)());
+    rise = std::max(rise, (levels[i].score[k].*fraction)() - (levels[i - 1].score[k].*fraction)());
   return rise;
 }
 
-double least_precision(const std::vector<Level>& levels, std::size_t k) {
-  double least = 1;
+double min_precision(const std::vector<Level>& levels, std::size_t k) {
+  double min = 1;
   for (const Level& level : levels)
-    if (level.score[k].picked() >= kEnoughPicked) least = std::min(least, level.score[k].precision());
-  return least;
+    if (level.score[k].picked() >= kEnoughPicked) min = std::min(min, level.score[k].precision());
+  return min;
 }
 
 // The lowest level at which most of the valve is missed; infinite where there is none.
@@ -161,20 +161,20 @@ void add_claims(Figure& figure, const std::vector<Level>& levels) {
                           [&](const Level& level) { return level.turbidity_per_m == per_m; })
           ->score[k];
     };
-    claim(claim_at_least(n, valve + " valve in clear water: recall", "-", at(0).recall(), 0.99, "share"));
-    claim(
-        claim_at_least(n, valve + " valve in clear water: precision", "-", at(0).precision(), 0.99, "share"));
+    claim(claim_at_least(n, valve + " valve in clear water: recall", "-", at(0).recall(), 0.99, "fraction"));
+    claim(claim_at_least(n, valve + " valve in clear water: precision", "-", at(0).precision(), 0.99,
+                         "fraction"));
     claim(claim_at_least(n, valve + " valve at 0.6 per metre: recall", "-", at(kDefault_per_m).recall(), 0.95,
-                         "share"));
+                         "fraction"));
     claim(claim_at_least(n, valve + " valve at 0.6 per metre: precision", "-", at(kDefault_per_m).precision(),
-                         0.95, "share"));
+                         0.95, "fraction"));
     claim(claim_at_most(n, valve + " valve: largest rise of recall from a level to the next", "-",
-                        largest_rise(levels, k, &SegmentationScore::recall), 0.01, "share"));
+                        max_rise(levels, k, &SegmentationScore::recall), 0.01, "fraction"));
     claim(claim_at_most(n, valve + " valve: largest rise of the share with depth from a level to the next",
-                        "-", largest_rise(levels, k, &SegmentationScore::depth_share), 0.01, "share"));
+                        "-", max_rise(levels, k, &SegmentationScore::depth_fraction), 0.01, "fraction"));
     claim(claim_at_least(n, valve + " valve: least precision where 100 pixels or more are picked", "-",
-                         least_precision(levels, k), 0.95, "share"));
-    claim(claim_at_most(n, valve + " valve at 3 per metre: recall", "-", at(3).recall(), 0.05, "share"));
+                         min_precision(levels, k), 0.95, "fraction"));
+    claim(claim_at_most(n, valve + " valve at 3 per metre: recall", "-", at(3).recall(), 0.05, "fraction"));
   }
   claim(claim_at_most(n, "level at which most of yellow is missed - the same of red", "-",
                       lost_at_per_m(levels, 1) - lost_at_per_m(levels, 0), 0, "1/m"));
@@ -182,9 +182,9 @@ void add_claims(Figure& figure, const std::vector<Level>& levels) {
 
 }  // namespace
 
-Figure figure_turbidity(const Laboratory& laboratory) {
+Figure figure_turbidity(const FigureContext& context) {
   std::vector<Level> levels;
-  for (const double per_m : kLevels_per_m) levels.push_back(measure_level(laboratory, per_m));
+  for (const double per_m : kLevels_per_m) levels.push_back(measure_level(context, per_m));
   Figure figure{
       "turbidity", "Two valves found by hue in turbid water",
       "A simulated camera looks at a red and a yellow valve, 0.9 m away in water whose every channel is "
@@ -198,9 +198,9 @@ Figure figure_turbidity(const Laboratory& laboratory) {
       "what it shows."};
   for (std::size_t k = 0; k < 2; ++k) figure.tables.push_back(score_table(levels, k));
   add_pictures(figure, levels);
-  figure.panels.push_back(share_panel("Recall", "recall", 0));
-  figure.panels.push_back(share_panel("Precision", "precision", 1));
-  figure.panels.push_back(share_panel("Pixels of a valve that have depth", "depth_share", 2));
+  figure.panels.push_back(fraction_panel("Recall", "recall", 0));
+  figure.panels.push_back(fraction_panel("Precision", "precision", 1));
+  figure.panels.push_back(fraction_panel("Pixels of a valve that have depth", "depth_fraction", 2));
   add_claims(figure, levels);
   return figure;
 }

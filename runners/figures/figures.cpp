@@ -46,13 +46,13 @@ std::span<const FigureEntry> figures() {
   return kFigures;
 }
 
-Trace Laboratory::run(const Experiment& experiment) const {
+Trace FigureContext::run(const Experiment& experiment) const {
   note(experiment.to_json());
   inputs_.add(experiment.inputs());
   return simulated(experiment, progress_);
 }
 
-std::vector<Trace> Laboratory::run(const std::vector<Experiment>& experiments) const {
+std::vector<Trace> FigureContext::run(const std::vector<Experiment>& experiments) const {
   for (const Experiment& experiment : experiments) {
     note(experiment.to_json());
     inputs_.add(experiment.inputs());
@@ -60,14 +60,14 @@ std::vector<Trace> Laboratory::run(const std::vector<Experiment>& experiments) c
   return collect(experiments.size(), [&](std::size_t i) { return simulated(experiments[i]); });
 }
 
-std::string Laboratory::configurations() const {
+std::string FigureContext::configurations() const {
   std::string list;
   for (const std::string& configuration : configurations_)
     list += (list.empty() ? "[" : ", ") + configuration;
   return list.empty() ? "[]" : list + "]";
 }
 
-Trace Laboratory::simulated(const Experiment& experiment, std::function<void(double)> progress) const {
+Trace FigureContext::simulated(const Experiment& experiment, std::function<void(double)> progress) const {
   SimulationOptions options;
   options.kernels = &kernels_;
   options.stop = stop_;
@@ -75,7 +75,7 @@ Trace Laboratory::simulated(const Experiment& experiment, std::function<void(dou
   return simulate(experiment, options);
 }
 
-void Laboratory::for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
+void FigureContext::for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
   std::vector<std::exception_ptr> failures(count);
   std::size_t done = 0;
   // Run i writes slot i; an exception must not leave the loop, it would end the program.
@@ -86,21 +86,21 @@ void Laboratory::for_each(std::size_t count, const std::function<void(std::size_
     } catch (...) {
       failures[i] = std::current_exception();
     }
-#pragma omp critical(laboratory_progress)
+#pragma omp critical(context_progress)
     progress_(static_cast<double>(++done) / static_cast<double>(count));
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
 }
 
-Sweep Laboratory::map(const std::string& name, const std::vector<std::string>& overrides) const {
+Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) const {
   const Sweep whole = Sweep::load(name, overrides);
   if (coarse_ <= 1) return whole;
   has_coarse_map_ = true;
   return whole.thinned(coarse_);
 }
 
-SweepResult Laboratory::sweep(const Sweep& sweep) const {
+SweepResult FigureContext::sweep(const Sweep& sweep) const {
   note(sweep.to_json());
   inputs_.add(sweep.inputs());
   const double runs = static_cast<double>(sweep.plan().runs_in(RunState::pending).size());

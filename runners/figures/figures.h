@@ -17,11 +17,11 @@
 namespace remote_touch {
 
 // How a figure gets its traces. Independent runs go side by side; results do not depend on how many.
-class Laboratory {
+class FigureContext {
  public:
   // coarse: every so manieth value of the axes of maps, to look at; 1 for the whole.
-  Laboratory(const Kernels& kernels, const std::atomic<bool>* stop, std::function<void(double)> progress,
-             int coarse = 1)
+  FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, std::function<void(double)> progress,
+                int coarse = 1)
       : kernels_(kernels), stop_(stop), progress_(std::move(progress)), coarse_(coarse) {}
 
   Trace run(const Experiment& experiment) const;
@@ -86,32 +86,32 @@ class Laboratory {
 struct FigureEntry {
   const char* name;
   const char* summary;
-  Figure (*make)(const Laboratory& laboratory);
+  Figure (*make)(const FigureContext& context);
 };
 std::span<const FigureEntry> figures();
 
-Figure figure_4_11(const Laboratory& laboratory);
-Figure figure_4_12(const Laboratory& laboratory);
-Figure figure_4_13(const Laboratory& laboratory);
-Figure figure_4_13_replicated(const Laboratory& laboratory);
-Figure figure_4_13_tracked(const Laboratory& laboratory);
-Figure figure_4_14(const Laboratory& laboratory);
-Figure figure_4_16(const Laboratory& laboratory);
-Figure figure_4_16_recorded(const Laboratory& laboratory);
-Figure figure_5_5(const Laboratory& laboratory);
-Figure figure_5_6(const Laboratory& laboratory);
-Figure figure_latency(const Laboratory& laboratory);
-Figure figure_5_8(const Laboratory& laboratory);
-Figure figure_5_8_recorded(const Laboratory& laboratory);
-Figure figure_6_2(const Laboratory& laboratory);
-Figure figure_6_3(const Laboratory& laboratory);
-Figure figure_6_4(const Laboratory& laboratory);
-Figure figure_7_1_recorded(const Laboratory& laboratory);
-Figure figure_7_4(const Laboratory& laboratory);
-Figure figure_7_5(const Laboratory& laboratory);
-Figure figure_7_5_recorded(const Laboratory& laboratory);
-Figure figure_bounds(const Laboratory& laboratory);
-Figure figure_eq4_15(const Laboratory& laboratory);
-Figure figure_turbidity(const Laboratory& laboratory);
+Figure figure_4_11(const FigureContext& context);
+Figure figure_4_12(const FigureContext& context);
+Figure figure_4_13(const FigureContext& context);
+Figure figure_4_13_replicated(const FigureContext& context);
+Figure figure_4_13_tracked(const FigureContext& context);
+Figure figure_4_14(const FigureContext& context);
+Figure figure_4_16(const FigureContext& context);
+Figure figure_4_16_recorded(const FigureContext& context);
+Figure figure_5_5(const FigureContext& context);
+Figure figure_5_6(const FigureContext& context);
+Figure figure_latency(const FigureContext& context);
+Figure figure_5_8(const FigureContext& context);
+Figure figure_5_8_recorded(const FigureContext& context);
+Figure figure_6_2(const FigureContext& context);
+Figure figure_6_3(const FigureContext& context);
+Figure figure_6_4(const FigureContext& context);
+Figure figure_7_1_recorded(const FigureContext& context);
+Figure figure_7_4(const FigureContext& context);
+Figure figure_7_5(const FigureContext& context);
+Figure figure_7_5_recorded(const FigureContext& context);
+Figure figure_bounds(const FigureContext& context);
+Figure figure_eq4_15(const FigureContext& context);
+Figure figure_turbidity(const FigureContext& context);
 
 }  // namespace remote_touch

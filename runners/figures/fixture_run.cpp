@@ -27,9 +27,9 @@ std::vector<double> radii(const Experiment& experiment, const Trace& trace, cons
 
 }  // namespace
 
-std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
+std::vector<FixtureRun> run_fixtures(const FigureContext& context,
                                      const std::vector<Experiment>& experiments) {
-  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<Trace> traces = context.run(experiments);
   std::vector<FixtureRun> runs;
   for (std::size_t r = 0; r < experiments.size(); ++r) {
     auto scenario = experiments[r].build_scenario(kernels_for(Isa::x86_64));
@@ -41,21 +41,21 @@ std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
 
 namespace {
 
-void claim_none(Figure& figure, const std::string& what, double share) {
-  figure.claims.push_back(claim_at_most(figure.name, what, "none", share, 0, "share"));
+void claim_none(Figure& figure, const std::string& what, double fraction) {
+  figure.claims.push_back(claim_at_most(figure.name, what, "none", fraction, 0, "fraction"));
 }
 
 }  // namespace
 
 void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& run) {
   claim_none(figure, where + ": ticks with the proxy on the wrong side of the surface",
-             wrong_side_share(run.trace));
+             wrong_side_fraction(run.trace));
 }
 
 void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run) {
-  claim_none(figure, where + ": ticks with a number that is not finite", non_finite_share(run.trace));
+  claim_none(figure, where + ": ticks with a number that is not finite", non_finite_fraction(run.trace));
   claim_none(figure, where + ": ticks in which the HIP was held back without force",
-             share_without_force(run.trace, kProxyContactRadius_m));
+             no_force_fraction(run.trace, kProxyContactRadius_m));
 }
 
 Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,

@@ -17,13 +17,13 @@ struct FixtureRun {
   std::vector<double> radius_m;        // of each tick: r_f as the frame in use brought it
 
   // When the frame that the renderer has in tick i was captured.
-  double seen_s(std::size_t i) const { return scenario->captured_s(trace.frame_index[i]); }
+  double frame_captured_s(std::size_t i) const { return scenario->captured_s(trace.frame_index[i]); }
   // Where the proxy's centre belongs: r_f + r_c from the surface.
   double boundary_m(std::size_t i) const { return radius_m[i] + kProxyContactRadius_m; }
 };
 
 // Side by side. pre: every point has the same r_f, and no scene ends before its run.
-std::vector<FixtureRun> run_fixtures(const Laboratory& laboratory,
+std::vector<FixtureRun> run_fixtures(const FigureContext& context,
                                      const std::vector<Experiment>& experiments);
 
 // Nowhere behind the surface.

@@ -12,16 +12,16 @@ std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment)
   std::vector<std::unique_ptr<FixtureRule>> rules;
   const Json resolved = parse_json(experiment.to_json(), "experiment");
   for (const Json& part : resolved.at("fixtures")) {
-    const auto blueprint = find_entry(fixtures(), part.at("name").get<std::string>(), "fixture").make();
-    read_parameters(part, blueprint->settings(), "fixtures", /*skip_name=*/true);
-    rules.push_back(blueprint->build());
+    const auto factory = find_entry(fixtures(), part.at("name").get<std::string>(), "fixture").make();
+    read_parameters(part, factory->settings(), "fixtures", /*skip_name=*/true);
+    rules.push_back(factory->build());
   }
   return rules;
 }
 
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud) {
   std::vector<char> picked;
-  for (const double share : rule.shares(cloud)) picked.push_back(share > 0);
+  for (const double fraction : rule.weights(cloud)) picked.push_back(fraction > 0);
   return picked;
 }
 

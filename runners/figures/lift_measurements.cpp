@@ -17,7 +17,7 @@ LiftUpdates updates_of(const Trace& trace) {
   return lift_updates(trace, Vec3(0, 1, 0), kLift.r1_m, kLift.frame_rate_hz);
 }
 
-std::vector<double> popped_over_phases(const Laboratory& laboratory,
+std::vector<double> popped_over_phases(const FigureContext& context,
                                        const std::vector<double>& acceleration) {
   std::vector<Experiment> lifts;
   for (std::size_t i = 0; i < acceleration.size(); ++i)
@@ -26,20 +26,20 @@ std::vector<double> popped_over_phases(const Laboratory& laboratory,
         {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=" + std::to_string(acceleration[i]),
          "scenario.phase_x=" + std::to_string(0.125 * static_cast<double>(i / 8)),
          "scenario.phase_z=" + std::to_string(0.125 * static_cast<double>(i % 8))}));
-  return laboratory.measure(lifts, popped_through);
+  return context.measure(lifts, popped_through);
 }
 
 }  // namespace
 
-Phases critical_over_phases(const Laboratory& laboratory) {
+Phases critical_over_phases(const FigureContext& context) {
   constexpr std::size_t kCount = 64;
   Phases phases;
   std::vector<double> low(kCount, Phases::kSurvives), high(kCount, Phases::kPops), middle(kCount), x, z;
-  phases.survived_low = 1 - mean(popped_over_phases(laboratory, low));
-  phases.survived_high = 1 - mean(popped_over_phases(laboratory, high));
+  phases.survived_low = 1 - mean(popped_over_phases(context, low));
+  phases.survived_high = 1 - mean(popped_over_phases(context, high));
   for (int halving = 0; halving < 10; ++halving) {
     for (std::size_t i = 0; i < kCount; ++i) middle[i] = 0.5 * (low[i] + high[i]);
-    const std::vector<double> popped = popped_over_phases(laboratory, middle);
+    const std::vector<double> popped = popped_over_phases(context, middle);
     for (std::size_t i = 0; i < kCount; ++i) (popped[i] > 0.5 ? high : low)[i] = middle[i];
   }
   for (std::size_t i = 0; i < kCount; ++i)
@@ -64,10 +64,10 @@ NoiseEffect MeasuredNoise::at(double noise_m) const {
           between(&NoiseEffect::margin_sd_m),           between(&NoiseEffect::gain)};
 }
 
-MeasuredNoise measured_noise(const Laboratory& laboratory) {
+MeasuredNoise measured_noise(const FigureContext& context) {
   const Sweep sweep = Sweep::load("steady-lifts");
   const SweepResult plan = sweep.plan();
-  const std::vector<LiftUpdates> lifts = laboratory.measure(sweep, updates_of);
+  const std::vector<LiftUpdates> lifts = context.measure(sweep, updates_of);
   MeasuredNoise noise;
   noise.sigma_m = std::get<std::vector<double>>(plan.axes.at(0).values);
   std::vector<double> x, thickness, normal_error;
@@ -109,11 +109,11 @@ Table effect_table(const MeasuredNoise& noise) {
   return table;
 }
 
-LiftMap lift_map(const Laboratory& laboratory, int seed) {
-  const Sweep sweep = laboratory.map("fig4.13", {"seed=" + std::to_string(seed)});
+LiftMap lift_map(const FigureContext& context, int seed) {
+  const Sweep sweep = context.map("fig4.13", {"seed=" + std::to_string(seed)});
   const SweepResult plan = sweep.plan();
   LiftMap result;
-  result.updates = laboratory.measure(sweep, updates_of);
+  result.updates = context.measure(sweep, updates_of);
   std::vector<double> noise, acceleration, survived;
   for (std::size_t cell = 0; cell < plan.cell_count(); ++cell) {
     const auto place = plan.place(cell);

@@ -34,7 +34,7 @@ Pixel pixel_of(const Vec3& p, const CameraIntrinsics& camera) {
           static_cast<int>(std::floor(camera.fy * p.y() / p.z() + camera.cy + 0.5))};
 }
 
-double nearest_m(const Vec3& p, const PointCloud& cloud) {
+double nearest_distance_m(const Vec3& p, const PointCloud& cloud) {
   double squared = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double d = (cloud.point(i) - p).squaredNorm();
@@ -52,7 +52,7 @@ double hidden_m(const Vec3& p, const PointCloud& cloud) {
 
 // From one place of the recording to the next.
 struct Motion {
-  double camera_m = 0, surface_m = 0;
+  double camera_position_m = 0, surface_m = 0;
 };
 
 Motion motion(const PointCloud& before, const PointCloud& after, Pixel pressed) {
@@ -61,11 +61,11 @@ Motion motion(const PointCloud& before, const PointCloud& after, Pixel pressed) 
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const std::size_t i = static_cast<std::size_t>(v) * camera.width + u;
-      const Vec3 way = after.point(i) - before.point(i);
-      if (!way.allFinite()) continue;
-      everywhere.push_back(way.norm());
+      const Vec3 displacement = after.point(i) - before.point(i);
+      if (!displacement.allFinite()) continue;
+      everywhere.push_back(displacement.norm());
       if (std::abs(u - pressed.u) <= kAround_px && std::abs(v - pressed.v) <= kAround_px)
-        here.push_back(-way.z());
+        here.push_back(-displacement.z());
     }
   }
   return {median(std::move(everywhere)), median(std::move(here))};
@@ -100,7 +100,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
           motion(before, cloud, pixel_of(trace.hip(0), cloud.image->camera));
     for (FrameOutcome& outcome : outcomes) {
       if (place_of(trace.frame_index[outcome.tick], count) != place) continue;
-      outcome.nearest_m = nearest_m(trace.proxy(outcome.tick), cloud);
+      outcome.nearest_distance_m = nearest_distance_m(trace.proxy(outcome.tick), cloud);
       outcome.hidden_m = hidden_m(trace.proxy(outcome.tick), cloud);
     }
     before = std::move(cloud);
@@ -110,7 +110,7 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
     if (frame == 0) continue;
     const int now = place_of(frame, count), last = place_of(frame - 1, count);
     const Motion& step = to[static_cast<std::size_t>(std::max(now, last))];
-    outcome.camera_motion_m = step.camera_m;
+    outcome.camera_motion_m = step.camera_position_m;
     outcome.surface_motion_m = now > last ? step.surface_m : -step.surface_m;  // played backwards
   }
   return outcomes;
@@ -129,7 +129,7 @@ std::vector<PopThrough> pop_throughs(const FixtureRun& run) {
       if (trace.frame_update(i) && !std::isnan(trace.signed_distance_m[i - 1]))
         pop.surface_motion_m =
             trace.signed_distance_m[i - 1] -
-            run.scenario->signed_distance(trace.proxy(i - 1) + trace.carried(i), trace.time_s[i]);
+            run.scenario->signed_distance(trace.proxy(i - 1) + trace.frame_correction(i), trace.time_s[i]);
       found.push_back(pop);
     }
     known_m = distance_m;

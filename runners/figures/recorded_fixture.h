@@ -11,10 +11,10 @@ namespace remote_touch {
 // The last tick before the next frame came in, and that frame.
 struct FrameOutcome {
   std::size_t tick = 0;
-  double nearest_m = 0;         // from the proxy to the nearest measured point
-  double hidden_m = 0;          // how far the proxy lies behind what its own pixel measured; NaN at a hole
-  double camera_motion_m = 0;   // median over the image: how far a pixel's point moved since the last frame
-  double surface_motion_m = 0;  // around the pixel that the HIP presses: towards the camera since then
+  double nearest_distance_m = 0;  // from the proxy to the nearest measured point
+  double hidden_m = 0;            // how far the proxy lies behind what its own pixel measured; NaN at a hole
+  double camera_motion_m = 0;     // median over the image: how far a pixel's point moved since the last frame
+  double surface_motion_m = 0;    // around the pixel that the HIP presses: towards the camera since then
 };
 
 // pre: the experiment plays a part of a recording to and fro, and every frame arrives.

@@ -28,7 +28,7 @@ Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
 }
 
 // How far a ray from a place in the regions goes before it leaves them all.
-double way_out_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
+double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
   double out = 0, before = -1;
   while (out > before) {
     before = out;
@@ -51,7 +51,7 @@ std::vector<Vec3> boundary(const SphereTree& regions) {
       const auto [sine, cosine] = sin_cos(golden * i);
       const Vec3 along(r * cosine, y, r * sine);
       const Vec3& from = regions.leaves()[leaf].centre;
-      const Vec3 place = from + way_out_m(regions, from, along) * along;
+      const Vec3 place = from + exit_distance_m(regions, from, along) * along;
       if (place.z() > 0) places.push_back(place);
     }
   return places;
@@ -76,14 +76,14 @@ std::size_t tick_of(const Trace& trace, double time_s) {
   return std::min(static_cast<std::size_t>(at - trace.time_s.begin()), trace.length() - 1);
 }
 
-std::vector<ValveTask> run_tasks(const Laboratory& laboratory, const std::vector<NamedTask>& tasks) {
+std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks) {
   std::vector<Experiment> experiments;
   for (const NamedTask& task : tasks)
     experiments.push_back(Experiment::load(task.experiment, task.overrides));
-  std::vector<Trace> traces = laboratory.run(experiments);
+  std::vector<Trace> traces = context.run(experiments);
   std::vector<ValveTask> runs;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    std::shared_ptr<const Scenario> scenario = experiments[i].build_scenario(laboratory.kernels());
+    std::shared_ptr<const Scenario> scenario = experiments[i].build_scenario(context.kernels());
     std::shared_ptr<const VoxelTool> tool = tool_of(experiments[i]);
     runs.push_back({tasks[i].name, tasks[i].words, std::move(experiments[i]), std::move(traces[i]),
                     std::dynamic_pointer_cast<const ValveTank>(scenario), std::move(tool)});
@@ -92,27 +92,27 @@ std::vector<ValveTask> run_tasks(const Laboratory& laboratory, const std::vector
 }
 
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto look = [&](const Vec3& p_T) {
-    least = std::min(least, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
+  double min = std::numeric_limits<double>::infinity();
+  const auto measure = [&](const Vec3& p_T) {
+    min = std::min(min, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
   };
   const TriangleMesh& mesh = task.tool->mesh;
-  for (const Vec3& vertex : mesh.vertices) look(vertex);
+  for (const Vec3& vertex : mesh.vertices) measure(vertex);
   for (const auto& [a, b, c] : mesh.triangles)
-    look((mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)] +
-          mesh.vertices[static_cast<std::size_t>(c)]) /
-         3);
-  return least;
+    measure((mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)] +
+             mesh.vertices[static_cast<std::size_t>(c)]) /
+            3);
+  return min;
 }
 
-double least_clearance_m(const ValveTask& task, Valve valve) {
-  double least = std::numeric_limits<double>::infinity();
+double min_clearance_m(const ValveTask& task, Valve valve) {
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < task.trace.length(); i += kClearanceEvery) {
     // No place of the tool can be nearer than this.
     const double bound_m = task.tank->distance_to_valve(valve, task.trace.proxy(i)) - task.tool->reach_m;
-    if (bound_m < least) least = std::min(least, clearance_m(task, valve, i));
+    if (bound_m < min) min = std::min(min, clearance_m(task, valve, i));
   }
-  return least;
+  return min;
 }
 
 Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W) {
@@ -127,7 +127,7 @@ Table task_table(const ValveTask& task) {
     rows.push_back({t.time_s[i], t.force(i).norm(), t.torque(i).norm(), torque_T.x(), torque_T.y(),
                     torque_T.z(), device_T.x(), t.device_force(i).norm(), lag_m(t, i),
                     (t.intended(i) - t.hip(i)).norm(), double(t.contact_count[i]),
-                    double(t.contact_clusters[i]), double(t.active_constraints[i]), t.penetration_m[i],
+                    double(t.contact_clusters[i]), double(t.active_constraints[i]), t.tool_penetration_m[i],
                     double(t.detections[i]), double(t.budget_exhausted[i])});
   }
   const std::vector<ColumnName> columns = {
@@ -164,9 +164,9 @@ Table sequence_table(const ValveTask& task) {
   return table_of(task.name + "_steps", "steps of the task: " + task.words, columns, rows);
 }
 
-void add_task_picture_tables(Figure& figure, const Laboratory& laboratory, const ValveTask& task,
+void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
                              const std::vector<std::size_t>& ticks) {
-  PointCloud cloud = processed_cloud(task.experiment, laboratory.kernels(), 0);
+  PointCloud cloud = processed_cloud(task.experiment, context.kernels(), 0);
   figure.tables.push_back(
       cloud_table(task.name + "_cloud", "points of the first frame", cloud, shown_points(cloud)));
   task.experiment.build_fixtures().assign(cloud, 0);
@@ -199,10 +199,10 @@ void add_task_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   claim(claim_at_most(figure.name, task.words + ": ticks with a number that is not finite", "-",
-                      non_finite_share(t), 0, "share"));
-  claim(claim_at_most(figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick",
-                      "very small", *std::max_element(t.penetration_m.begin(), t.penetration_m.end()),
-                      kSettled_m, "m"));
+                      non_finite_fraction(t), 0, "fraction"));
+  claim(claim_at_most(
+      figure.name, task.words + ": deepest leaf of the tool in a region at the end of a tick", "very small",
+      *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()), kSettled_m, "m"));
 }
 
 }  // namespace remote_touch

@@ -25,14 +25,14 @@ struct NamedTask {
 };
 
 // Side by side. Without a tank where the scenario is another.
-std::vector<ValveTask> run_tasks(const Laboratory& laboratory, const std::vector<NamedTask>& tasks);
+std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks);
 
 // Distance from the tool's mesh to the true surface of a valve: at the vertices and the middles of the
 // triangles, so that it can be larger than the true one by a few hundredths of a millimetre. pre: there is a
 // tank; also for what follows.
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick);
 // The least of it over the ticks, of which every tenth is looked at.
-double least_clearance_m(const ValveTask& task, Valve valve);
+double min_clearance_m(const ValveTask& task, Valve valve);
 
 // Torques about the handle's own axes, which are those of the tool.
 Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W);
@@ -44,7 +44,7 @@ Table sequence_table(const ValveTask& task);
 
 // Tables NAME_cloud, NAME_regions (places on the boundary of the regions), NAME_vertices, NAME_triangles and
 // NAME_poses, of the first frame and the ticks.
-void add_task_picture_tables(Figure& figure, const Laboratory& laboratory, const ValveTask& task,
+void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
                              const std::vector<std::size_t>& ticks);
 // The tank from beside the camera with the tool at the instant'th of the ticks.
 Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row, int column);

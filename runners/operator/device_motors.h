@@ -10,20 +10,20 @@
 namespace remote_touch {
 
 struct MotorSettings {
-  bool moves_x = true, moves_y = true, moves_z = true;
-  bool turns_x = true, turns_y = true, turns_z = true;
-  double largest_force_N = 0;
-  double largest_torque_Nm = 0;
+  bool force_x = true, force_y = true, force_z = true;
+  bool torque_x = true, torque_y = true, torque_z = true;
+  double max_force_N = 0;
+  double max_torque_Nm = 0;
 };
 
 Parameters parameters(MotorSettings& s);
-inline std::string conflict(const MotorSettings&) {
+inline std::string validate(const MotorSettings&) {
   return {};
 }
 
 // What the device exerts on the hand of a wrench that it is told to: forces along the base axes and torques
 // about the axes of the handle, which are those of the tool, as far as there are motors; the rest is cut to
 // its largest length.
-Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& told);
+Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& commanded);
 
 }  // namespace remote_touch

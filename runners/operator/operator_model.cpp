@@ -6,7 +6,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kLongestTick_s = 0.01;  // of the haptic rates that an experiment may have
+constexpr double kMaxTick_s = 0.01;  // of the haptic rates that an experiment may have
 
 // The velocity a tick later of a mass with a damper of c towards a reference, under the rest of the force.
 Vec3 next_velocity(const Vec3& velocity, const Vec3& force, double mass, double c, const Vec3& reference,
@@ -23,10 +23,11 @@ Parameters parameters(OperatorSettings& s) {
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
        "of the spring from the intended place to the hand"},
       {"damping_Ns_per_m", &s.damping_Ns_per_m, 0, 1000, "of the damper beside it"},
-      {"turn_stiffness_Nm_per_rad", &s.turn_stiffness_Nm_per_rad, 0, 1000,
+      {"rotational_stiffness_Nm_per_rad", &s.rotational_stiffness_Nm_per_rad, 0, 1000,
        "of the spring from the intended orientation to the hand's"},
-      {"turn_damping_Nms_per_rad", &s.turn_damping_Nms_per_rad, 0, 100, "of the damper beside it"},
-      {"grip", Rows{{"time_s", "share"}, &s.grip}, 0, 86400,
+      {"rotational_damping_Nms_per_rad", &s.rotational_damping_Nms_per_rad, 0, 100,
+       "of the damper beside it"},
+      {"grip", Rows{{"time_s", "fraction"}, &s.grip}, 0, 86400,
        "how much of the springs is there, 0 to 1: even between rows; 0 lets the device lead the hand; none: "
        "always 1"},
       {"presses", Rows{{"time_s", "button", "duration_s"}, &s.presses}, 0, 86400,
@@ -34,19 +35,19 @@ Parameters parameters(OperatorSettings& s) {
   };
 }
 
-std::string conflict(const OperatorSettings& s) {
-  const double t2 = kLongestTick_s * kLongestTick_s;
+std::string validate(const OperatorSettings& s) {
+  const double t2 = kMaxTick_s * kMaxTick_s;
   if (s.stiffness_N_per_m * t2 >= 4 * s.mass_kg)
     return "stiffness_N_per_m = " + std::to_string(s.stiffness_N_per_m) + ": allowed below " +
            std::to_string(4 * s.mass_kg / t2) + " for this mass";
-  if (s.turn_stiffness_Nm_per_rad * t2 >= 4 * s.inertia_kg_m2)
-    return "turn_stiffness_Nm_per_rad = " + std::to_string(s.turn_stiffness_Nm_per_rad) + ": allowed below " +
-           std::to_string(4 * s.inertia_kg_m2 / t2) + " for this inertia";
-  if (const std::string wrong = schedule_conflict(s.grip, "grip", "share"); !wrong.empty()) return wrong;
+  if (s.rotational_stiffness_Nm_per_rad * t2 >= 4 * s.inertia_kg_m2)
+    return "rotational_stiffness_Nm_per_rad = " + std::to_string(s.rotational_stiffness_Nm_per_rad) +
+           ": allowed below " + std::to_string(4 * s.inertia_kg_m2 / t2) + " for this inertia";
+  if (const std::string wrong = validate_schedule(s.grip, "grip", "fraction"); !wrong.empty()) return wrong;
   for (std::size_t i = 0; i < s.presses.size(); i += 3) {
     if (const double button = s.presses[i + 1]; button > 31 || button != static_cast<int>(button))
-      return "presses: button " + std::to_string(button) + ": allowed whole numbers 0 to 31";
-    if (s.presses[i + 2] < kLongestTick_s)  // no tick might see it
+      return "presses: button " + std::to_string(button) + ": allowed integers 0 to 31";
+    if (s.presses[i + 2] < kMaxTick_s)  // no tick might see it
       return "presses: duration " + std::to_string(s.presses[i + 2]) + ": allowed 0.01 or more";
   }
   return {};
@@ -63,22 +64,22 @@ std::uint32_t OperatorModel::buttons(double time_s) const {
   return down;
 }
 
-DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wrench& felt) {
+DeviceState OperatorModel::move(const DeviceState& path, double time_s, const Wrench& device_wrench) {
   const ToolPose intended{path.position_W, path.orientation_W};
   if (!placed_) pose_ = intended_ = intended, placed_ = true;
   const double g = scheduled(s_.grip, time_s);
   const Vector6 path_velocity = displacement(intended_, intended) / tick_s_;
   const Vector6 apart = displacement(pose_, intended_);
-  velocity_ = next_velocity(velocity_, felt.force_N + g * s_.stiffness_N_per_m * apart.head<3>(), s_.mass_kg,
-                            s_.damping_Ns_per_m, g * path_velocity.head<3>(), tick_s_);
-  turning_ =
-      next_velocity(turning_, felt.torque_Nm + g * s_.turn_stiffness_Nm_per_rad * apart.tail<3>(),
-                    s_.inertia_kg_m2, s_.turn_damping_Nms_per_rad, g * path_velocity.tail<3>(), tick_s_);
-  Vector6 way;
-  way << tick_s_ * velocity_, tick_s_ * turning_;
+  velocity_ = next_velocity(velocity_, device_wrench.force_N + g * s_.stiffness_N_per_m * apart.head<3>(),
+                            s_.mass_kg, s_.damping_Ns_per_m, g * path_velocity.head<3>(), tick_s_);
+  angular_velocity_ = next_velocity(
+      angular_velocity_, device_wrench.torque_Nm + g * s_.rotational_stiffness_Nm_per_rad * apart.tail<3>(),
+      s_.inertia_kg_m2, s_.rotational_damping_Nms_per_rad, g * path_velocity.tail<3>(), tick_s_);
+  Vector6 motion;
+  motion << tick_s_ * velocity_, tick_s_ * angular_velocity_;
   const Eigen::Quaterniond before = pose_.q_WT;
-  pose_ = moved(pose_, way);
-  if (turning_.isZero(0)) pose_.q_WT = before;  // to which rounding would add
+  pose_ = moved(pose_, motion);
+  if (angular_velocity_.isZero(0)) pose_.q_WT = before;  // to which rounding would add
   intended_ = intended;
   return {pose_.p_W, pose_.q_WT, buttons(time_s)};
 }

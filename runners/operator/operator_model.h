@@ -17,18 +17,18 @@ struct OperatorSettings {
   double inertia_kg_m2 = 1e-3;
   double stiffness_N_per_m = 300;
   double damping_Ns_per_m = 15;
-  double turn_stiffness_Nm_per_rad = 1;
-  double turn_damping_Nms_per_rad = 0.05;
+  double rotational_stiffness_Nm_per_rad = 1;
+  double rotational_damping_Nms_per_rad = 0.05;
   std::vector<double> grip{};
   std::vector<double> presses{};
 };
 
 Parameters parameters(OperatorSettings& s);
-std::string conflict(const OperatorSettings& s);
+std::string validate(const OperatorSettings& s);
 
 // m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended place and g the
 // grip; turns alike, with the inertia of a ball of the hand's. Semi-implicit steps of one tick, with the
-// springs of its beginning and the damper of its end: stable for k tick^2 < 4 m, which conflict() asks for at
+// springs of its beginning and the damper of its end: stable for k tick^2 < 4 m, which validate() asks for at
 // 100 ticks a second.
 class OperatorModel {
  public:
@@ -36,7 +36,7 @@ class OperatorModel {
 
   // One tick on: where the hand is at time_s, when the path wants it at `intended` and the device exerted
   // `felt` since the last tick. The first call puts it onto the path. Buttons are the settings'.
-  DeviceState move(const DeviceState& intended, double time_s, const Wrench& felt);
+  DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
 
  private:
   std::uint32_t buttons(double time_s) const;
@@ -45,7 +45,7 @@ class OperatorModel {
   const double tick_s_;
   bool placed_ = false;
   ToolPose pose_, intended_;  // intended_: one tick ago
-  Vec3 velocity_ = Vec3::Zero(), turning_ = Vec3::Zero();
+  Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
 };
 
 }  // namespace remote_touch

@@ -26,11 +26,11 @@ TextAttributes provenance(const std::string& config, const std::string& command,
                          {"version", REMOTE_TOUCH_VERSION},
                          {"git_commit", REMOTE_TOUCH_GIT_COMMIT},
                          {"git_dirty", REMOTE_TOUCH_GIT_DIRTY},
-                         {"sources", REMOTE_TOUCH_SOURCES},
+                         {"source_digest", REMOTE_TOUCH_SOURCES},
                          {"compiler", REMOTE_TOUCH_COMPILER},
                          {"flags", REMOTE_TOUCH_FLAGS}};
   if (!isa.empty()) list.emplace_back("isa", isa);
-  if (!inputs.empty()) list.emplace_back("inputs", inputs);
+  if (!inputs.empty()) list.emplace_back("input_digests", inputs);
   return list;
 }
 

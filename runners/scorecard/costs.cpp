@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "runners/provenance/provenance.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
@@ -26,23 +26,23 @@ Json number(double value) {
 
 }  // namespace
 
-Cost measured_cost(const ContestSweep& sweep, const std::string& scene, const std::string& contender,
+Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {
   constexpr std::size_t kLevel = 3;
   const std::size_t cell = std::min(kLevel, sweep.sweep.plan().cell_count() - 1);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Cost best{scene, contender, kNone, kNone};
+  Cost best{scene, method, kNone, kNone};
   try {
     for (int round = 0; round < 2; ++round) {
       std::vector<double> ticks, frames;
       SimulationOptions options;
-      options.kernels = &kernels, options.stop = stop, options.made_points = true;
+      options.kernels = &kernels, options.stop = stop, options.generate_all_points = true;
       options.step_duration_s = &ticks, options.frame_duration_s = &frames;
       simulate(sweep.sweep.experiment(cell, 0), options);
       if (!(mean(ticks) >= best.tick_s)) best.tick_s = mean(ticks), best.frame_s = mean(frames);
     }
   } catch (const std::exception&) {
-    return {scene, contender, kNone, kNone};  // the error is in the sweep's file
+    return {scene, method, kNone, kNone};  // the error is in the sweep's file
   }
   return best;
 }
@@ -59,14 +59,14 @@ void write_costs(const std::filesystem::path& file, const std::vector<Cost>& cos
   Json list = Json::array();
   for (const Cost& cost : costs)
     list.push_back({{"scene", cost.scene},
-                    {"contender", cost.contender},
+                    {"method", cost.method},
                     {"tick_s", number(cost.tick_s)},
                     {"frame_s", number(cost.frame_s)}});
   Json all = Json::object();
   for (const auto& [name, value] : origin) all[name] = value;
   all["costs"] = list;
   const std::string text = all.dump(1) + "\n";
-  write_whole_file(file, text.data(), text.size());
+  write_file_atomically(file, text.data(), text.size());
 }
 
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
@@ -74,7 +74,7 @@ std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttrib
   const Json all = Json::parse(in, nullptr, false);
   std::vector<Cost> costs;
   if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
-  for (const char* name : {"sources", "isa", "cpu"})
+  for (const char* name : {"source_digest", "isa", "cpu"})
     if (all.value(name, Json()) != attribute(origin, name)) return costs;
   const Json& list = all["costs"];
   const auto seconds = [](const Json& value) {
@@ -82,18 +82,17 @@ std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttrib
   };
   for (const Json& item : list) {
     if (!item.is_object() || !item.value("scene", Json()).is_string() ||
-        !item.value("contender", Json()).is_string())
+        !item.value("method", Json()).is_string())
       return {};
-    costs.push_back({item["scene"].get<std::string>(), item["contender"].get<std::string>(),
+    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(),
                      seconds(item.value("tick_s", Json())), seconds(item.value("frame_s", Json()))});
   }
   return costs;
 }
 
-const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene,
-                      const std::string& contender) {
+const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& method) {
   for (const Cost& cost : costs)
-    if (cost.scene == scene && cost.contender == contender) return &cost;
+    if (cost.scene == scene && cost.method == method) return &cost;
   return nullptr;
 }
 

@@ -9,15 +9,15 @@ namespace remote_touch {
 
 namespace {
 
-std::vector<StoredSweep> read_all(const std::vector<ContestSweep>& sweeps) {
+std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
   std::vector<StoredSweep> stored;
-  for (const ContestSweep& sweep : sweeps) stored.push_back(read_sweep(sweep.file));
+  for (const BenchmarkSweep& sweep : sweeps) stored.push_back(read_sweep(sweep.file));
   return stored;
 }
 
-SceneScore score_of(const ContestScene& scene, const std::vector<StoredSweep>& stored) {
+SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>& stored) {
   SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}};
-  for (const ContestScene::Judged& judged : scene.measures)
+  for (const BenchmarkScene::Judged& judged : scene.measures)
     rules.measures.emplace_back(judged.measure, judged.better);
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
@@ -26,20 +26,20 @@ SceneScore score_of(const ContestScene& scene, const std::vector<StoredSweep>& s
 }
 
 // The audit is about all runs, those that are not passive first of all.
-ContestScene reported(ContestScene scene) {
-  for (ContestScene::Judged& judged : scene.measures) judged.better = Better::reported;
+BenchmarkScene reported(BenchmarkScene scene) {
+  for (BenchmarkScene::Judged& judged : scene.measures) judged.better = Better::reported;
   return scene;
 }
 
-Scorecard empty_card(const std::vector<Contender>& contenders) {
+Scorecard empty_card(const std::vector<Method>& methods) {
   Scorecard card;
-  for (const Contender& contender : contenders)
-    card.contenders.push_back(contender.name), card.contender_titles.push_back(contender.title);
+  for (const Method& method : methods)
+    card.methods.push_back(method.name), card.method_titles.push_back(method.title);
   return card;
 }
 
 // Costs that an earlier call measured stay as they are; written scene by scene.
-std::vector<Cost> costs_of(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                            const std::filesystem::path& file) {
   const TextAttributes origin = cost_origin(kernels);
   std::vector<Cost> costs = read_costs(file, origin);
@@ -48,9 +48,9 @@ std::vector<Cost> costs_of(const ContestPlan& plan, const Kernels& kernels, cons
   for (const ScenePlan& one : plan.scenes) {
     const std::size_t before = costs.size();
     for (std::size_t c = 0; c < one.sweeps.size(); ++c) {
-      const std::string& contender = plan.contest.contenders[c].name;
-      if (find_cost(costs, one.scene.name, contender)) continue;
-      costs.push_back(measured_cost(one.sweeps[c], one.scene.name, contender, kernels, stop));
+      const std::string& method = plan.benchmark.methods[c].name;
+      if (find_cost(costs, one.scene.name, method)) continue;
+      costs.push_back(measured_cost(one.sweeps[c], one.scene.name, method, kernels, stop));
     }
     if (costs.size() > before) write_costs(file, costs, origin);
   }
@@ -60,11 +60,11 @@ std::vector<Cost> costs_of(const ContestPlan& plan, const Kernels& kernels, cons
 
 }  // namespace
 
-ScorecardPage evaluate(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+ScorecardPage evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                        const std::function<void(std::size_t, std::size_t)>& progress) {
-  const std::filesystem::path& folder = plan.contest.folder;
+  const std::filesystem::path& folder = plan.benchmark.folder;
   ScorecardPage page{
-      empty_card(plan.contest.contenders), plan.contest.replicates, {}, plan.skipped, {}, {}, {}};
+      empty_card(plan.benchmark.methods), plan.benchmark.replicates, {}, plan.skipped, {}, {}, {}};
   for (const ScenePlan& one : plan.scenes) {
     progress(page.card.scenes.size(), plan.scenes.size());
     const std::vector<StoredSweep> stored = read_all(one.sweeps);

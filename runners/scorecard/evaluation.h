@@ -5,14 +5,14 @@
 #include <functional>
 
 #include "core/kernels/kernels.h"
-#include "runners/scorecard/contest_plan.h"
+#include "runners/scorecard/benchmark_plan.h"
 #include "runners/scorecard/page.h"
 
 namespace remote_touch {
 
 // Reads all runs, scores them, traces typical failures and measures the costs that no earlier call did.
 // progress: scenes done and in all. Throws Interrupted. pre: do_sweeps() has done them.
-ScorecardPage evaluate(const ContestPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+ScorecardPage evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                        const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace remote_touch

@@ -16,7 +16,7 @@ bool is_there(const std::filesystem::path& file, const Experiment& experiment, c
     const Hdf5Reader reader(file);
     const TextAttributes attributes = reader.attributes();
     return attribute(attributes, "config") == experiment.to_json() &&
-           attribute(attributes, "sources") == attribute(stored.attributes, "sources");
+           attribute(attributes, "source_digest") == attribute(stored.attributes, "source_digest");
   } catch (const InputError&) {
     return false;  // damaged: written anew
   }
@@ -24,7 +24,7 @@ bool is_there(const std::filesystem::path& file, const Experiment& experiment, c
 
 }  // namespace
 
-std::optional<FailureTrace> trace_failure(const ContestSweep& sweep, const StoredSweep& stored,
+std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,
                                           const std::atomic<bool>* stop) {

@@ -1,4 +1,4 @@
-// A typical failure of each contender in each scene, run again as a full trace.
+// A typical failure of each method in each scene, run again as a full trace.
 #pragma once
 
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/kernels/kernels.h"
-#include "runners/scorecard/contest_run.h"
+#include "runners/scorecard/benchmark_run.h"
 
 namespace remote_touch {
 
@@ -22,7 +22,7 @@ struct FailureTrace {
 // Of the failures at the lowest noise level that has some, the one in the middle, replayed into
 // FOLDER/traces/NAME.h5 unless it is there. An error where that is what is typical. None where every run
 // succeeded.
-std::optional<FailureTrace> trace_failure(const ContestSweep& sweep, const StoredSweep& stored,
+std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,
                                           const std::atomic<bool>* stop);

@@ -24,10 +24,10 @@ svg{width:420px;height:190px;font-size:11px}svg text{fill:#555}.grid{stroke:#e4e
 .line{fill:none;stroke-width:1.4;opacity:.75}.bar{stroke-width:1;opacity:.55;fill:none}
 )";
 
-std::string colours(std::size_t contenders) {
+std::string colours(std::size_t methods) {
   std::string css;
-  for (std::size_t c = 0; c < contenders; ++c) {
-    const std::string n = std::to_string(c), colour = contender_colour(c);
+  for (std::size_t c = 0; c < methods; ++c) {
+    const std::string n = std::to_string(c), colour = method_colour(c);
     css += ".c" + n + " path{stroke:" + colour + "}.c" + n + " circle{fill:" + colour + "}.k" + n +
            "{background:" + colour + "}\n";
   }
@@ -37,16 +37,16 @@ std::string colours(std::size_t contenders) {
 // What has to be known to read the tables.
 std::string how_to_read(const ScorecardPage& page) {
   const std::string runs = std::to_string(page.replicates), seed = std::to_string(kScorecardSeed),
-                    tuned = std::to_string(kLastTunedSeed), pairs = std::to_string(kLeastPairs);
-  return "<p>Each contender ran each scene " + runs +
+                    tuned = std::to_string(kLastTunedSeed), pairs = std::to_string(kMinPairs);
+  return "<p>Each method ran each scene " + runs +
          " times at each noise level, in units of the contact radius r_c = 5 mm (own: the scene has its own "
          "noise). Noise is keyed by seed " +
          seed +
-         ", level and number of the run, not by contender: all met the same points in the same frames. The "
+         ", level and number of the run, not by method: all met the same points in the same frames. The "
          "parameters of the tracked sheet were fixed with seeds 1 to " +
          tuned +
          ", which no run here has. Lines are shares of successful runs with Wilson's 95 % intervals. Where "
-         "there is no noise and all runs of a contender have the same numbers to the last bit, they count as one "
+         "there is no noise and all runs of a method have the same numbers to the last bit, they count as one "
          "run, in every share and mean, and in a comparison where that is so of both.</p>"
          "<p><b>Success.</b> A surface counts as held while the proxy is no deeper than 0.5 r_c below it; popped "
          "through means lost to the other side. This does not ask the same of all: a proxy that is a ball rests "
@@ -70,7 +70,7 @@ std::string scene_section(const ScorecardPage& page, std::size_t number) {
   return "<h2 id=\"" + escaped(scene.name) + "\">" + escaped(scene.name) + "</h2>\n<p>" +
          escaped(scene.title) + ".<br>Success is " + escaped(scene.meaning) + ". <b>" +
          escaped(verdict(page.card, scene)) + "</b></p>\n<div class=\"scene\">" +
-         noise_plot(scene, page.card.contenders) + "<div>" + measure_table(page, number) + "</div></div>\n" +
+         noise_plot(scene, page.card.methods) + "<div>" + measure_table(page, number) + "</div></div>\n" +
          success_table(page, number) + level_tables(page, number) + "\n";
 }
 
@@ -134,7 +134,7 @@ std::string escaped(const std::string& text) {
 std::string html(const ScorecardPage& page) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Scorecard</title><style>" +
-      std::string(kStyle) + colours(page.card.contenders.size()) +
+      std::string(kStyle) + colours(page.card.methods.size()) +
       "</style></head><body>\n<h1>Scorecard of 3-DOF renderers</h1>\n" + how_to_read(page) + "\n";
   text += skipped_section(page) + overview_table(page) + "\n" + contents(page) + "\n";
   for (std::size_t i = 0; i < page.card.scenes.size(); ++i) text += scene_section(page, i);

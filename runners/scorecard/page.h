@@ -17,9 +17,9 @@ struct ScorecardPage {
   std::string origin;  // program and commit
   // Scenes that could not be run here, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
-  std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and contender
+  std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and method
   std::vector<Cost> costs;
-  // The passivity scene with every force law, where it was run; its contenders are the laws.
+  // The passivity scene with every force law, where it was run; its methods are the laws.
   std::optional<Scorecard> audit;
   std::string cpu = {};  // that the costs were measured on
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runners/scorecard/formed.h"
+#include "runners/scorecard/formatted.h"
 #include "runners/scorecard/noise_plot.h"
 #include "runners/scorecard/passivity.h"
 
@@ -20,16 +20,16 @@ std::string head(const std::string& text) {
   return "<th>" + escaped(text) + "</th>";
 }
 
-std::string contender_cell(const Scorecard& card, std::size_t c) {
-  return "<th class=\"name\" title=\"" + escaped(card.contender_titles[c]) +
-         formed("\"><i class=\"k%zu\"></i>", c) + escaped(card.contenders[c]) + "</th>";
+std::string method_cell(const Scorecard& card, std::size_t c) {
+  return "<th class=\"name\" title=\"" + escaped(card.method_titles[c]) +
+         formatted("\"><i class=\"k%zu\"></i>", c) + escaped(card.methods[c]) + "</th>";
 }
 
-// Best, worst or neither, of a contender.
-const char* mark(const Standing& standing, std::size_t contender) {
-  if (standing.order.empty()) return "";
-  if (standing.has_best && standing.order.front() == contender) return "best";
-  if (standing.has_worst && standing.order[standing.placed - 1] == contender) return "worst";
+// Best, worst or neither, of a method.
+const char* mark(const Ranking& ranking, std::size_t method) {
+  if (ranking.order.empty()) return "";
+  if (ranking.has_best && ranking.order.front() == method) return "best";
+  if (ranking.has_worst && ranking.order[ranking.ranked - 1] == method) return "worst";
   return "";
 }
 
@@ -46,7 +46,7 @@ Scale scale_of(const std::string& units) {
 }
 
 std::string number(double value) {
-  return std::isnan(value) ? "-" : formed("%.3g", value);
+  return std::isnan(value) ? "-" : formatted("%.3g", value);
 }
 
 std::string with_interval(const MeanDifference& mean, double factor) {
@@ -71,8 +71,8 @@ const char* better_text(Better better) {
   return "not judged, all runs";
 }
 
-std::string share_text(const Share& share) {
-  return formed("%.2f <small>%.2f .. %.2f</small>", share.share, share.low, share.high);
+std::string fraction_text(const Proportion& fraction) {
+  return formatted("%.2f <small>%.2f .. %.2f</small>", fraction.fraction, fraction.low, fraction.high);
 }
 
 double median(std::vector<double> values) {
@@ -101,19 +101,19 @@ std::string failure_link(const FailureTrace& failure, const SceneScore& scene) {
 std::string overview_table(const ScorecardPage& page) {
   std::string table = "<table><tr>" + head("") + head("scenes held in more than 90 % of the runs") +
                       head("best alone") + head("worst alone") + head("mean share of successes") + "</tr>";
-  for (std::size_t c = 0; c < page.card.contenders.size(); ++c) {
+  for (std::size_t c = 0; c < page.card.methods.size(); ++c) {
     int held = 0, best = 0, worst = 0;
     double sum = 0;
     for (const SceneScore& scene : page.card.scenes) {
-      const std::string place = mark(scene.standing, c);
-      held += scene.success_overall[c].share > 0.9;
+      const std::string place = mark(scene.ranking, c);
+      held += scene.success_overall[c].fraction > 0.9;
       best += place == "best", worst += place == "worst";
-      sum += scene.success_overall[c].share;
+      sum += scene.success_overall[c].fraction;
     }
     const auto scenes = static_cast<double>(std::max<std::size_t>(1, page.card.scenes.size()));
-    table += "<tr>" + contender_cell(page.card, c) +
-             cell(formed("%d of %zu", held, page.card.scenes.size())) + cell(std::to_string(best)) +
-             cell(std::to_string(worst)) + cell(formed("%.2f", sum / scenes)) + "</tr>";
+    table += "<tr>" + method_cell(page.card, c) +
+             cell(formatted("%d of %zu", held, page.card.scenes.size())) + cell(std::to_string(best)) +
+             cell(std::to_string(worst)) + cell(formatted("%.2f", sum / scenes)) + "</tr>";
   }
   return table + "</table>";
 }
@@ -123,13 +123,13 @@ std::string success_table(const ScorecardPage& page, std::size_t number_of_scene
   std::string table = "<table><tr>" + head("noise / r_c");
   for (const double noise : scene.noise_m) table += head(level_text(noise));
   table += head("all, 95 % interval") + head("a typical failure, at the lowest noise that has one") + "</tr>";
-  for (std::size_t c = 0; c < page.card.contenders.size(); ++c) {
-    table += "<tr>" + contender_cell(page.card, c);
-    for (const Share& share : scene.success[c]) {
-      const char* kind = share.events == share.runs ? "all" : share.events == 0 ? "none" : "some";
-      table += cell(formed("%d/%d", share.events, share.runs), kind);
+  for (std::size_t c = 0; c < page.card.methods.size(); ++c) {
+    table += "<tr>" + method_cell(page.card, c);
+    for (const Proportion& fraction : scene.success[c]) {
+      const char* kind = fraction.events == fraction.runs ? "all" : fraction.events == 0 ? "none" : "some";
+      table += cell(formatted("%d/%d", fraction.events, fraction.runs), kind);
     }
-    table += cell(share_text(scene.success_overall[c]), mark(scene.standing, c));
+    table += cell(fraction_text(scene.success_overall[c]), mark(scene.ranking, c));
     const auto& failure = page.failures[number_of_scene][c];
     table += cell(failure ? failure_link(*failure, scene) : std::string("none"), "left") + "</tr>";
   }
@@ -143,12 +143,12 @@ std::string measure_table(const ScorecardPage& page, std::size_t number_of_scene
     table += "<th>" + escaped(measure.name) + " " + scale_of(measure.units).units + "<br><small>" +
              better_text(measure.better) + "</small></th>";
   table += "</tr>";
-  for (std::size_t c = 0; c < page.card.contenders.size(); ++c) {
-    table += "<tr>" + contender_cell(page.card, c);
+  for (std::size_t c = 0; c < page.card.methods.size(); ++c) {
+    table += "<tr>" + method_cell(page.card, c);
     for (const JudgedMeasure& measure : scene.measures) {
       const bool is_judged = measure.better != Better::reported;
-      table += cell(with_interval(measure.standing.mean[c], scale_of(measure.units).factor),
-                    is_judged ? mark(measure.standing, c) : "");
+      table += cell(with_interval(measure.ranking.mean[c], scale_of(measure.units).factor),
+                    is_judged ? mark(measure.ranking, c) : "");
     }
     table += "</tr>";
   }
@@ -163,8 +163,8 @@ std::string level_tables(const ScorecardPage& page, std::size_t number_of_scene)
     text += "<table><tr><th>" + escaped(measure.name) + " " + scale_of(measure.units).units + "</th>";
     for (const double noise : scene.noise_m) text += head(level_text(noise));
     text += "</tr>";
-    for (std::size_t c = 0; c < page.card.contenders.size(); ++c) {
-      text += "<tr>" + contender_cell(page.card, c);
+    for (std::size_t c = 0; c < page.card.methods.size(); ++c) {
+      text += "<tr>" + method_cell(page.card, c);
       for (const MeanDifference& mean : measure.at_level[c])
         text += cell(with_interval(mean, scale_of(measure.units).factor));
       text += "</tr>";
@@ -175,25 +175,25 @@ std::string level_tables(const ScorecardPage& page, std::size_t number_of_scene)
 }
 
 std::string verdict(const Scorecard& card, const SceneScore& scene) {
-  const Standing& standing = scene.standing;
-  if (standing.placed < 2) return "";
+  const Ranking& ranking = scene.ranking;
+  if (ranking.ranked < 2) return "";
   std::string text;
-  if (standing.has_best) {
-    text = "Best: " + card.contenders[standing.order.front()] + ".";
-  } else if (standing.at_the_top.size() == standing.placed) {
+  if (ranking.has_best) {
+    text = "Best: " + card.methods[ranking.order.front()] + ".";
+  } else if (ranking.top_group.size() == ranking.ranked) {
     text = "No difference between any.";
   } else {
     text = "No difference at the top:";
-    for (const std::size_t c : standing.at_the_top)
-      text += (c == standing.at_the_top.front() ? " " : ", ") + card.contenders[c];
+    for (const std::size_t c : ranking.top_group)
+      text += (c == ranking.top_group.front() ? " " : ", ") + card.methods[c];
     text += ".";
   }
-  if (standing.has_worst) text += " Worst: " + card.contenders[standing.order[standing.placed - 1]] + ".";
+  if (ranking.has_worst) text += " Worst: " + card.methods[ranking.order[ranking.ranked - 1]] + ".";
   return text;
 }
 
 std::string cost_table(const ScorecardPage& page) {
-  const auto& names = page.card.contenders;
+  const auto& names = page.card.methods;
   const auto proxy = std::find(names.begin(), names.end(), "proxy");
   const std::string reference = proxy != names.end() ? *proxy : names.front();
   std::string table = "<table><tr>" + head("") + head("tick / " + reference + "'s") +
@@ -207,7 +207,7 @@ std::string cost_table(const ScorecardPage& page) {
       add_cost(own->tick_s, other->tick_s, tick_ratio, tick);
       add_cost(own->frame_s, other->frame_s, frame_ratio, frame);
     }
-    table += "<tr>" + contender_cell(page.card, c) + cell(number(median(tick_ratio))) +
+    table += "<tr>" + method_cell(page.card, c) + cell(number(median(tick_ratio))) +
              cell(number(median(frame_ratio))) + cell(number(median(tick))) + cell(number(median(frame))) +
              "</tr>";
   }
@@ -225,9 +225,9 @@ std::string audit_table(const Scorecard& audit) {
   std::string table = "<table><tr>" + head("noise / r_c");
   for (const double noise : scene.noise_m) table += head(level_text(noise));
   table += head("runs that are passive and felt") + "</tr>";
-  for (std::size_t c = 0; c < audit.contenders.size(); ++c) {
-    table += "<tr><th class=\"name\" title=\"" + escaped(audit.contender_titles[c]) + "\">" +
-             escaped(audit.contenders[c]) + "</th>";
+  for (std::size_t c = 0; c < audit.methods.size(); ++c) {
+    table += "<tr><th class=\"name\" title=\"" + escaped(audit.method_titles[c]) + "\">" +
+             escaped(audit.methods[c]) + "</th>";
     for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
       const MeanDifference& all = cycles->at_level[c][i];
       // The interval excludes zero: energy for certain, or none for certain.
@@ -236,7 +236,7 @@ std::string audit_table(const Scorecard& audit) {
                         number(1e3 * updates->at_level[c][i].mean) + "</small>",
                     kind);
     }
-    table += cell(share_text(scene.success_overall[c])) + "</tr>";
+    table += cell(fraction_text(scene.success_overall[c])) + "</tr>";
   }
   return table + "</table>";
 }

@@ -7,14 +7,14 @@
 
 namespace remote_touch {
 
-// Successes of all scenes together, and how often each contender stands out.
+// Successes of all scenes together, and how often each method stands out.
 std::string overview_table(const ScorecardPage& page);
 // Successes at each noise level, and the measures over all of them.
 std::string success_table(const ScorecardPage& page, std::size_t scene);
 std::string measure_table(const ScorecardPage& page, std::size_t scene);
 // The measures at each noise level, folded away.
 std::string level_tables(const ScorecardPage& page, std::size_t scene);
-// Of ticks and frames in units of the chapter 4 proxy's, or of the first contender's.
+// Of ticks and frames in units of the chapter 4 proxy's, or of the first method's.
 std::string cost_table(const ScorecardPage& page);
 std::string audit_table(const Scorecard& audit);
 // A sentence: who is best and worst by successes, or that nobody is told apart.

@@ -13,38 +13,35 @@ constexpr double kDamper_Ns_per_m = 3;
 
 // All parameters of the renderer, those left out with their defaults.
 Json complete(const Json& renderer) {
-  auto blueprint = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
-  read_parameters(renderer, blueprint->settings(), "renderer", true);
+  auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
+  read_parameters(renderer, factory->settings(), "renderer", true);
   Json all = {{"name", renderer.at("name")}};
-  write_parameters(blueprint->settings(), all);
+  write_parameters(factory->settings(), all);
   return all;
 }
 
-// The contender with one parameter changed; itself where that is its value already.
-Contender with(const Contender& contender, const char* parameter, const Json& value,
-               const std::string& mark) {
-  Json renderer = parse_json(contender.renderer, contender.name);
-  if (complete(renderer).at(parameter) == value) return contender;
+// The method with one parameter changed; itself where that is its value already.
+Method with(const Method& method, const char* parameter, const Json& value, const std::string& mark) {
+  Json renderer = parse_json(method.renderer, method.name);
+  if (complete(renderer).at(parameter) == value) return method;
   renderer[parameter] = value;
-  return {contender.name + "+" + mark, contender.title + ", " + parameter + " = " + value.dump(),
-          renderer.dump()};
+  return {method.name + "+" + mark, method.title + ", " + parameter + " = " + value.dump(), renderer.dump()};
 }
 
 }  // namespace
 
-std::vector<Contender> force_laws_of(const Contender& contender) {
-  const Json own = complete(parse_json(contender.renderer, contender.name));
-  std::vector<Contender> laws = {contender};
+std::vector<Method> force_laws_of(const Method& method) {
+  const Json own = complete(parse_json(method.renderer, method.name));
+  std::vector<Method> laws = {method};
   // Without an estimate the term is zero, whatever its sign.
   if (own.contains("velocity_force") && own.value("velocity_estimate", true))
     for (const char* sign : {"plus", "none"})
-      laws.push_back(with(contender, "velocity_force", sign, std::string("v_") + sign));
+      laws.push_back(with(method, "velocity_force", sign, std::string("v_") + sign));
   if (!own.contains("damping_Ns_per_m")) return laws;
-  const std::vector<Contender> undamped = laws;
-  for (const Contender& law : undamped)
-    laws.push_back(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
+  const std::vector<Method> undamped = laws;
+  for (const Method& law : undamped) laws.push_back(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
   if (!own.contains("damping_sign")) return laws;
-  for (const Contender& law : undamped)
+  for (const Method& law : undamped)
     laws.push_back(
         with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", "minus", "k_d_minus"));
   return laws;

@@ -4,17 +4,17 @@
 
 #include <vector>
 
-#include "runners/scorecard/contest.h"
+#include "runners/scorecard/benchmark.h"
 
 namespace remote_touch {
 
 inline constexpr const char* kPassivityScene = "passivity";
 inline constexpr int kPassivityCycles = 3;  // in a run of that scene
 
-// The contender with each combination of those of its renderer's parameters that decide about energy: without
+// The method with each combination of those of its renderer's parameters that decide about energy: without
 // and with a damper k_d (4.16), its sign where there is one, and the sign of the velocity term of (4.15)
-// where a velocity is estimated. Named CONTENDER, then what differs from the contender's own:
-// "proxy+v_plus+k_d3". The contender itself is the first.
-std::vector<Contender> force_laws_of(const Contender& contender);
+// where a velocity is estimated. Named CONTENDER, then what differs from the method's own:
+// "proxy+v_plus+k_d3". The method itself is the first.
+std::vector<Method> force_laws_of(const Method& method);
 
 }  // namespace remote_touch

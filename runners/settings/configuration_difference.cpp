@@ -9,9 +9,9 @@ namespace remote_touch {
 namespace {
 
 std::string text(const Json* value) {
-  constexpr std::size_t kLongest = 60;
+  constexpr std::size_t kMaxLength = 60;
   const std::string all = value ? value->dump() : "absent";
-  return all.size() <= kLongest ? all : all.substr(0, kLongest - 3) + "...";
+  return all.size() <= kMaxLength ? all : all.substr(0, kMaxLength - 3) + "...";
 }
 
 void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {

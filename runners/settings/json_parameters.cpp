@@ -116,8 +116,8 @@ struct Writer {
 struct Allowed {
   const Parameter& p;
   std::string operator()(const double*) const { return range_text(p); }
-  std::string operator()(const int*) const { return "whole numbers " + range_text(p); }
-  std::string operator()(const std::uint64_t*) const { return "whole numbers " + range_text(p); }
+  std::string operator()(const int*) const { return "integers " + range_text(p); }
+  std::string operator()(const std::uint64_t*) const { return "integers " + range_text(p); }
   std::string operator()(const bool*) const { return "true, false"; }
   std::string operator()(const std::string*) const { return "UTF-8 text"; }
   std::string operator()(const Vec3*) const { return "three numbers, each " + range_text(p); }
@@ -156,9 +156,9 @@ std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const st
 
 // As JSON, for a message: shortened, and safe to print whatever the value holds.
 std::string shown(const Json& value) {
-  constexpr std::size_t kLongest = 160;
+  constexpr std::size_t kMaxLength = 160;
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > kLongest) text.replace(kLongest, std::string::npos, "...");
+  if (text.size() > kMaxLength) text.replace(kMaxLength, std::string::npos, "...");
   return text;
 }
 

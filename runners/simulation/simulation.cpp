@@ -25,13 +25,13 @@ std::size_t tick_count(const Experiment& experiment, const Trajectory& trajector
 
 Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s,
                    std::uint64_t frame_hash) {
-  const double proxy_m = scenario.signed_distance(out.proxy_W, time_s);
-  double slave_m = proxy_m;
+  const double proxy_position_m = scenario.signed_distance(out.proxy_W, time_s);
+  double slave_command_m = proxy_position_m;
   if (!out.slave_W.allFinite())
-    slave_m = std::numeric_limits<double>::quiet_NaN();
+    slave_command_m = std::numeric_limits<double>::quiet_NaN();
   else if (out.slave_W != out.proxy_W)
-    slave_m = scenario.signed_distance(out.slave_W, time_s);
-  return {proxy_m, slave_m, frame_hash};
+    slave_command_m = scenario.signed_distance(out.slave_W, time_s);
+  return {proxy_position_m, slave_command_m, frame_hash};
 }
 
 class StopWatch {
@@ -75,8 +75,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const auto switches = std::make_shared<FixtureSwitches>();
   const auto renderer = experiment.build_renderer(kernels, switches);
   FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
-                     experiment.settings().delivery, experiment.settings().key, options.hash_frames,
-                     options.made_points);
+                     experiment.settings().transport, experiment.settings().key, options.hash_frames,
+                     options.generate_all_points);
   TimedFrames timed(*renderer, options.frame_duration_s);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
@@ -94,7 +94,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    hand.feel(device, out);
+    hand.apply(device, out);
     trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()), hand.state());
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));

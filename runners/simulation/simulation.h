@@ -14,10 +14,11 @@ namespace remote_touch {
 struct SimulationOptions {
   const Kernels* kernels = nullptr;                 // null: the machine's best
   const std::atomic<bool>* stop = nullptr;          // when set, the run ends with Interrupted
-  std::function<void(double share)> progress;       // called about a hundred times
+  std::function<void(double fraction)> progress;    // called about a hundred times
   std::vector<double>* step_duration_s = nullptr;   // wall clock of each tick, where wanted
   std::vector<double>* frame_duration_s = nullptr;  // and of what the renderer does with each frame
-  bool made_points = false;  // frames come with every point made: durations without the making of noise
+  bool generate_all_points =
+      false;                 // frames come with every point made: durations without the making of noise
   bool hash_frames = false;  // make every point of every frame for the trace's frame_hash, else 0
 };
 

@@ -10,9 +10,9 @@ namespace remote_touch {
 Parameters parameters(RefineSettings& r) {
   return {
       {"measure", &r.measure, 0, 0, "the measure whose probability is wanted"},
-      {"above", &r.above, -1e12, 1e12, "the event: the measure is above this"},
+      {"threshold", &r.threshold, -1e12, 1e12, "the event: the measure is above this"},
       {"budget", &r.budget, 1, 1e7, "runs in all, the first round included"},
-      {"most_replicates", &r.most_replicates, 1, 100000, "runs of a cell at most"},
+      {"max_replicates", &r.max_replicates, 1, 100000, "runs of a cell at most"},
       {"levels", &r.levels, 0, 10, "how often the steps of the axes may be halved"},
   };
 }
@@ -27,8 +27,8 @@ std::optional<RefineSettings> read_refine(const Json& json, const std::vector<Me
   if (std::none_of(chosen.begin(), chosen.end(), is_it))
     throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",
                      "allowed one of the sweep's measures");
-  if (refine.most_replicates < replicates)
-    throw InputError(label + ": refine.most_replicates", "allowed at least replicates");
+  if (refine.max_replicates < replicates)
+    throw InputError(label + ": refine.max_replicates", "allowed at least replicates");
   return refine;
 }
 

@@ -13,9 +13,9 @@ namespace remote_touch {
 
 struct RefineSettings {
   std::string measure = "popped_through";
-  double above = 0.5;
+  double threshold = 0.5;
   std::uint64_t budget = 10000;
-  int most_replicates = 20;
+  int max_replicates = 20;
   int levels = 0;
 };
 

@@ -9,28 +9,27 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMostShards = 1000000;
+constexpr int kMaxShards = 1000000;
 
-std::optional<int> whole_number(const std::string& text) {
+std::optional<int> integer_value(const std::string& text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
-// The variable as a whole number; otherwise where it is not set.
+// The variable as an integer; otherwise where it is not set.
 std::optional<int> variable(const char* name, std::optional<int> otherwise = std::nullopt) {
   const char* text = std::getenv(name);
   if (text == nullptr || *text == '\0') return otherwise;
-  const auto value = whole_number(text);
-  if (!value || *value < 0)
-    throw InputError(std::string(name) + " = " + text, "allowed whole numbers from 0");
+  const auto value = integer_value(text);
+  if (!value || *value < 0) throw InputError(std::string(name) + " = " + text, "allowed integers from 0");
   return value;
 }
 
 Shard checked(int index, int count, const std::string& source) {
-  if (count < 1 || count > kMostShards || index < 1 || index > count)
-    throw InputError(source, "allowed i/N with 1 <= i <= N <= " + std::to_string(kMostShards));
+  if (count < 1 || count > kMaxShards || index < 1 || index > count)
+    throw InputError(source, "allowed i/N with 1 <= i <= N <= " + std::to_string(kMaxShards));
   return {index, count};
 }
 
@@ -38,8 +37,8 @@ Shard checked(int index, int count, const std::string& source) {
 
 Shard parse_shard(const std::string& text) {
   const auto slash = text.find('/');
-  const auto index = whole_number(text.substr(0, slash));
-  const auto count = slash == std::string::npos ? std::nullopt : whole_number(text.substr(slash + 1));
+  const auto index = integer_value(text.substr(0, slash));
+  const auto count = slash == std::string::npos ? std::nullopt : integer_value(text.substr(slash + 1));
   return checked(index.value_or(0), count.value_or(0), "--shard " + text);
 }
 

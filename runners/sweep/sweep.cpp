@@ -15,7 +15,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMostRuns = 10000000;
+constexpr std::size_t kMaxRuns = 10000000;
 
 }  // namespace
 
@@ -133,7 +133,7 @@ Json Sweep::Definition::cell(std::size_t number) const {
 void Sweep::Definition::check_axes(const std::string& label) const {
   std::set<std::string> names = {"replicate", "state", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
-  std::size_t runs = static_cast<std::size_t>(refine ? refine->most_replicates : replicates);
+  std::size_t runs = static_cast<std::size_t>(refine ? refine->max_replicates : replicates);
   for (const SweepAxis& axis : axes) {
     if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
       throw InputError(label + ": axis " + axis.parameter,
@@ -142,9 +142,9 @@ void Sweep::Definition::check_axes(const std::string& label) const {
       throw InputError(label + ": axis " + axis.parameter,
                        "its name " + axis.name() + " is taken; allowed once");
     runs *= axis.values.size();
-    if (runs > kMostRuns)
-      throw InputError(
-          label, "more than " + std::to_string(kMostRuns) + " runs; allowed fewer values or replicates");
+    if (runs > kMaxRuns)
+      throw InputError(label,
+                       "more than " + std::to_string(kMaxRuns) + " runs; allowed fewer values or replicates");
   }
 }
 
@@ -219,7 +219,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
 }
 
 Sweep Sweep::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
-  return from_json(stored_or_file(stored_sweeps(), name_or_file, "a sweep's"), name_or_file, overrides);
+  return from_json(embedded_or_file(embedded_sweeps(), name_or_file, "a sweep's"), name_or_file, overrides);
 }
 
 const std::string& Sweep::title() const {
@@ -228,7 +228,7 @@ const std::string& Sweep::title() const {
 
 SweepResult Sweep::plan(const Shard& shard) const {
   SweepResult result = definition_->grid;
-  result.replicates = definition_->refine ? definition_->refine->most_replicates : definition_->replicates;
+  result.replicates = definition_->refine ? definition_->refine->max_replicates : definition_->replicates;
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
   result.start(definition_->refine.has_value());
@@ -265,7 +265,7 @@ const std::vector<Measure>& Sweep::measures() const {
 std::optional<RefinementRule> Sweep::refinement() const {
   if (!definition_->refine) return std::nullopt;
   const RefineSettings& refine = *definition_->refine;
-  RefinementRule rule{refine.measure, refine.above, refine.budget, definition_->replicates, {}};
+  RefinementRule rule{refine.measure, refine.threshold, refine.budget, definition_->replicates, {}};
   for (const SweepAxis& axis : definition_->axes) rule.strides.push_back(axis.stride);
   return rule;
 }

@@ -13,8 +13,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kLargestValue = 1e12;
-constexpr int kMostValues = 100000;
+constexpr double kMaxValue = 1e12;
+constexpr int kMaxValues = 100000;
 
 enum class Scale { linear, log };
 
@@ -28,9 +28,9 @@ struct RangeAxis {
 Parameters parameters(RangeAxis& axis) {
   return {
       {"parameter", &axis.parameter, 0, 0, "path of the parameter, for example scenario.noise_sigma_m"},
-      {"from", &axis.from, -kLargestValue, kLargestValue, "first value"},
-      {"to", &axis.to, -kLargestValue, kLargestValue, "last value"},
-      {"count", &axis.count, 1, kMostValues, "number of values"},
+      {"from", &axis.from, -kMaxValue, kMaxValue, "first value"},
+      {"to", &axis.to, -kMaxValue, kMaxValue, "last value"},
+      {"count", &axis.count, 1, kMaxValues, "number of values"},
       {"scale", choice(axis.scale, {"linear", "log"}), 0, 0, "equal steps or equal ratios"},
   };
 }
@@ -51,7 +51,7 @@ Json value_of(const RangeAxis& axis, std::size_t i, std::size_t count) {
     value = axis.scale == Scale::linear
                 ? (axis.from * (last - place) + axis.to * place) / last
                 : rounded(std::exp(std::log(axis.from) + std::log(axis.to / axis.from) * (place / last)));
-  // A whole number may be meant for a parameter that takes nothing else.
+  // A integer may be meant for a parameter that takes nothing else.
   if (value == std::floor(value) && value >= 0) return static_cast<std::uint64_t>(value);
   return value;
 }
@@ -68,9 +68,9 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
     throw InputError(label + ".scale = \"log\"", "allowed for from and to above 0");
   SweepAxis result{axis.parameter, {}, std::size_t{1} << levels, {}};
   const std::size_t count = static_cast<std::size_t>(axis.count - 1) * result.stride + 1;
-  if (count > kMostValues)
+  if (count > kMaxValues)
     throw InputError(label + ".count",
-                     "more than " + std::to_string(kMostValues) + " values after refinement");
+                     "more than " + std::to_string(kMaxValues) + " values after refinement");
   for (std::size_t i = 0; i < count; ++i) {
     result.values.push_back(value_of(axis, i, count));
     if (i > 0 && result.values[i] == result.values[i - 1])
@@ -94,8 +94,8 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   const Parameters known = {{"parameter", &parameter, 0, 0, "path of the parameter"}};
   read_parameters(rest, known, label, false);
   const Json& values = json["values"];
-  if (!values.is_array() || values.empty() || values.size() > kMostValues)
-    throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMostValues) + " values");
+  if (!values.is_array() || values.empty() || values.size() > kMaxValues)
+    throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMaxValues) + " values");
   std::set<std::string> different;  // as they are named in a result
   for (const Json& value : values)
     if (text_of(value).empty() || !different.insert(text_of(value)).second)

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kLongestError = 300;  // every run has room for the longest
+constexpr std::size_t kMaxError = 300;  // every run has room for the longest
 
 // One run into its own slots of the result.
 void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
@@ -24,7 +24,7 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
       std::get<std::vector<double>>(result.measures[i].values)[run] = sweep.measures()[i].of(trace);
     result.state[run] = RunState::done;
   } catch (const std::exception& error) {
-    result.error[run] = std::string(error.what()).substr(0, kLongestError);
+    result.error[run] = std::string(error.what()).substr(0, kMaxError);
     std::replace(result.error[run].begin(), result.error[run].end(), '\n', ' ');
     result.state[run] = RunState::failed;
   }

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "core/parameters/input_error.h"
 #include "runners/provenance/input_hashes.h"
@@ -73,14 +73,14 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
   StoredSweep stored = read_sweep(file);
   require_same(file, stored.attributes, attributes);
   take_over(std::move(stored.result), file, plan.result);
-  const std::string inputs = attribute(attributes, "inputs");
-  const auto changed = changed_inputs(attribute(stored.attributes, "inputs"), inputs);
+  const std::string inputs = attribute(attributes, "input_digests");
+  const auto changed = changed_inputs(attribute(stored.attributes, "input_digests"), inputs);
   require_same_inputs(file, sweep, plan.result, changed);
   const auto failed = plan.result.runs_in(RunState::failed);
   for (const std::size_t run : failed)
     plan.result.state[run] = RunState::pending, plan.result.error[run].clear();
   plan.attributes = std::move(stored.attributes);
-  set_attribute(plan.attributes, "inputs", inputs);
+  set_attribute(plan.attributes, "input_digests", inputs);
   const bool is_same = failed.empty() && changed.empty();
   plan.in_progress = stored.in_progress && is_same;
   plan.is_finished = !stored.in_progress && is_same;
@@ -92,7 +92,7 @@ SweepSession::SweepSession(const Sweep& sweep, const Shard& shard, const TextAtt
                            const std::filesystem::path& file)
     : sweep_(sweep),
       shard_(shard),
-      file_(linked(file)),
+      file_(resolved(file)),
       lock_(file_),
       plan_(plan_in_file(sweep, shard, attributes, file_)) {}
 

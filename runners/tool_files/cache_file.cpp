@@ -50,17 +50,17 @@ class MappedFile {
 
 }  // namespace
 
-void Packing::bytes(const void* data, std::size_t size) {
+void CacheWriter::bytes(const void* data, std::size_t size) {
   hash_.add(data, size);
   write(static_cast<const char*>(data), size);
 }
 
-void Packing::end_with_hash() {
+void CacheWriter::end_with_hash() {
   const std::string end = hex();
   write(end.data(), end.size());
 }
 
-void Packing::write(const char* data, std::size_t size) {
+void CacheWriter::write(const char* data, std::size_t size) {
   while (good_ && file_ >= 0 && size > 0) {
     const ssize_t part = ::write(file_, data, size);
     if (part < 0 && errno == EINTR) continue;
@@ -70,7 +70,7 @@ void Packing::write(const char* data, std::size_t size) {
 }
 
 bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
-                     const std::function<void(Unpacking&)>& take) {
+                     const std::function<void(CacheReader&)>& take) {
   if (folder.empty()) return false;
   const MappedFile file(folder / (key + "." + kind.name));
   const std::string_view bytes = file.bytes();
@@ -80,7 +80,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
   Sha256 hash;
   hash.add(content.data(), content.size());
   if (hash.hex() != bytes.substr(content.size())) return false;
-  Unpacking unpack(content.data() + line.size(), content.data() + content.size());
+  CacheReader unpack(content.data() + line.size(), content.data() + content.size());
   std::string stored_key;
   unpack.text(stored_key);
   take(unpack);
@@ -88,7 +88,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
 }
 
 bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
-                      const std::function<void(Packing&)>& put) {
+                      const std::function<void(CacheWriter&)>& put) {
   if (folder.empty()) return false;
   std::error_code failure;  // then no file can be made there either
   fs::create_directories(folder, failure);
@@ -96,7 +96,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   std::string temporary = (folder / (key + ".partial-XXXXXX")).string();
   const int file = ::mkstemp(temporary.data());
   if (file < 0) return false;
-  Packing pack(file);
+  CacheWriter pack(file);
   const std::string line = first_line(kind);
   pack.bytes(line.data(), line.size());
   pack.text(key);

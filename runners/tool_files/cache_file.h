@@ -14,9 +14,9 @@
 namespace remote_touch {
 
 // Values one after the other, into a hash and into a file where there is one.
-class Packing {
+class CacheWriter {
  public:
-  explicit Packing(int file = -1) : file_(file) {}
+  explicit CacheWriter(int file = -1) : file_(file) {}
   bool good() const { return good_; }
   void bytes(const void* data, std::size_t size);
   template <class Value>
@@ -45,9 +45,9 @@ class Packing {
 };
 
 // Takes from bytes; once something is missing, all that follows stays as it was.
-class Unpacking {
+class CacheReader {
  public:
-  Unpacking(const char* begin, const char* end) : at_(begin), end_(end) {}
+  CacheReader(const char* begin, const char* end) : at_(begin), end_(end) {}
   bool done() const { return good_ && at_ == end_; }  // nothing was missing, nothing is left
   template <class Value>
   void value(Value& v) {
@@ -85,11 +85,11 @@ struct CacheKind {
 
 // Whether the folder has a whole file of that kind and key, and take() used up all its fields.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
-                     const std::function<void(Unpacking&)>& take);
+                     const std::function<void(CacheReader&)>& take);
 
 // Writes to a name of its own and renames, so that others see the whole file or none; makes the folder. Where
 // nothing can be written that is no error: false then.
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
-                      const std::function<void(Packing&)>& put);
+                      const std::function<void(CacheWriter&)>& put);
 
 }  // namespace remote_touch

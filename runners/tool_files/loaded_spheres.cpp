@@ -4,19 +4,18 @@ namespace remote_touch {
 
 Parameters parameters(LoadedSpheres::Settings& s) {
   Parameters all = parameters(s.tool);
-  all.push_back({"tool_leaves", &s.leaves, kFewestLeaves, kMostLeaves,
+  all.push_back({"max_tool_leaves", &s.leaves, kMinLeaves, kMaxLeaves,
                  "spheres of the tool at most, 7.4: fewer stand farther out of its surface"});
   for (Parameter& p : region_parameters(s.motion)) all.push_back(std::move(p));
   return all;
 }
 
-std::string conflict(const LoadedSpheres::Settings& s) {
-  if (const std::string tool = conflict(s.tool); !tool.empty()) return tool;
+std::string validate(const LoadedSpheres::Settings& s) {
+  if (const std::string tool = validate(s.tool); !tool.empty()) return tool;
   // PairChoice lets go what no motion of half the look-ahead can run into.
-  if (2 * s.motion.longest_step_m > s.motion.look_ahead_m)
-    return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) +
-           ": allowed twice longest_step_m or more";
-  return conflict(s.motion);
+  if (2 * s.motion.max_step_m > s.motion.look_ahead_m)
+    return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) + ": allowed twice max_step_m or more";
+  return validate(s.motion);
 }
 
 std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s) {

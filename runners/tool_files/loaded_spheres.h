@@ -16,7 +16,7 @@ class LoadedSpheres final : public Renderer {
     // Regions are round: the motion nears its end by a share at a time, and a hundredth of a millimetre is
     // less than a hand can feel. Out of a frame that swallowed the tool about ten detections lead; the ticks
     // that want many more slide along creases, and can go on in the next one.
-    ToolParameters motion{.detections_per_tick = 30, .at_rest_m = 1e-5};
+    ToolParameters motion{.detections_per_tick = 30, .rest_threshold_m = 1e-5};
   };
 
   // Throws InputError when the tool cannot be made.
@@ -35,7 +35,7 @@ class LoadedSpheres final : public Renderer {
 };
 
 Parameters parameters(LoadedSpheres::Settings& s);
-std::string conflict(const LoadedSpheres::Settings& s);
+std::string validate(const LoadedSpheres::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
 
 }  // namespace remote_touch

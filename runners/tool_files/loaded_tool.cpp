@@ -8,9 +8,9 @@ Parameters parameters(LoadedTool::Settings& s) {
   return all;
 }
 
-std::string conflict(const LoadedTool::Settings& s) {
-  const std::string tool = conflict(s.tool);
-  return tool.empty() ? conflict(s.motion) : tool;
+std::string validate(const LoadedTool::Settings& s) {
+  const std::string tool = validate(s.tool);
+  return tool.empty() ? validate(s.motion) : tool;
 }
 
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {

@@ -29,7 +29,7 @@ class LoadedTool final : public Renderer {
 };
 
 Parameters parameters(LoadedTool::Settings& s);
-std::string conflict(const LoadedTool::Settings& s);
+std::string validate(const LoadedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
 
 }  // namespace remote_touch

@@ -111,7 +111,7 @@ TriangleMesh mesh_in_child(const std::filesystem::path& file) {
     return packed(mesh.vertices) + packed(mesh.triangles);
   });
   TriangleMesh mesh;
-  Unpacking unpack(bytes.data(), bytes.data() + bytes.size());
+  CacheReader unpack(bytes.data(), bytes.data() + bytes.size());
   unpack.list(mesh.vertices), unpack.list(mesh.triangles);
   if (!unpack.done()) throw std::runtime_error("its reader gave half an answer");
   return mesh;

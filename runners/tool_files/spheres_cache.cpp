@@ -43,30 +43,30 @@ bool grow(const FlatTree& flat, SphereTree& tree) {
 template <class Direction, class Tree, class Spheres>
 void visit(Direction& pack, Tree& tree, Spheres& spheres) {
   pack.list(tree.leaves), pack.list(tree.counts);
-  pack.value(spheres.growth_m), pack.value(spheres.outside_m), pack.value(spheres.inside_m);
+  pack.value(spheres.inflation_m), pack.value(spheres.outside_m), pack.value(spheres.inside_m);
 }
 
 }  // namespace
 
-std::string spheres_key(const std::string& tool_key, int most_leaves) {
-  Packing pack;
+std::string spheres_key(const std::string& tool_key, int max_leaves) {
+  CacheWriter pack;
   pack.value(kSpheresFormat);
   pack.text(tool_key);
-  pack.value(most_leaves);
+  pack.value(max_leaves);
   return pack.hex();
 }
 
 std::optional<ToolSpheres> read_spheres(const fs::path& folder, const std::string& key) {
   ToolSpheres spheres;
   FlatTree tree;
-  const auto take = [&](Unpacking& unpack) { visit(unpack, tree, spheres); };
+  const auto take = [&](CacheReader& unpack) { visit(unpack, tree, spheres); };
   if (!read_cache_file(folder, kKind, key, take) || !grow(tree, spheres.spheres)) return {};
   return spheres;
 }
 
 bool write_spheres(const fs::path& folder, const std::string& key, const ToolSpheres& spheres) {
   const FlatTree tree = flat(spheres.spheres);
-  return write_cache_file(folder, kKind, key, [&](Packing& pack) { visit(pack, tree, spheres); });
+  return write_cache_file(folder, kKind, key, [&](CacheWriter& pack) { visit(pack, tree, spheres); });
 }
 
 }  // namespace remote_touch

@@ -13,7 +13,7 @@ namespace remote_touch {
 inline constexpr int kSpheresFormat = 1;
 
 // From the key of the tool in its cache.
-std::string spheres_key(const std::string& tool_key, int most_leaves);
+std::string spheres_key(const std::string& tool_key, int max_leaves);
 
 // As read_tool() and write_tool().
 std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);

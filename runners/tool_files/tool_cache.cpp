@@ -44,14 +44,14 @@ fs::path tool_cache_folder() {
 }
 
 std::string sha256_of_mesh(const TriangleMesh& mesh) {
-  Packing pack;
+  CacheWriter pack;
   pack.list(mesh.vertices);
   pack.list(mesh.triangles);
   return pack.hex();
 }
 
 std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
-  Packing pack;
+  CacheWriter pack;
   pack.value(kToolFormat);
   pack.text(mesh_sha256);
   pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
@@ -60,7 +60,7 @@ std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& se
 
 std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
   StoredTool stored;
-  if (!read_cache_file(folder, kKind, key, [&](Unpacking& unpack) { visit(unpack, stored); })) return {};
+  if (!read_cache_file(folder, kKind, key, [&](CacheReader& unpack) { visit(unpack, stored); })) return {};
   const VoxelGrid& grid = stored.tool.grid;
   if (stored.tool.voxels.size() != grid.cell_count() || stored.tool.distance_m.size() != grid.node_count())
     return {};
@@ -68,7 +68,7 @@ std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& k
 }
 
 bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
-  return write_cache_file(folder, kKind, key, [&](Packing& pack) { visit(pack, stored); });
+  return write_cache_file(folder, kKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
 }
 
 }  // namespace remote_touch

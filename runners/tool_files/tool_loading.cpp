@@ -45,7 +45,7 @@ Parameters parameters(ToolSettings& s) {
   };
 }
 
-std::string conflict(const ToolSettings& s) {
+std::string validate(const ToolSettings& s) {
   if (s.mesh.empty())
     return "tool_mesh = \"\": allowed " + names_of_built_in() + ", or an OBJ, PLY or STL file";
   if (find_generated_tool(s.mesh) == nullptr && !is_mesh_file(s.mesh))
@@ -68,7 +68,7 @@ struct KeyedTool {
   StoredTool stored;
 };
 
-KeyedTool made_or_stored(const ToolSettings& s) {
+KeyedTool built_or_cached(const ToolSettings& s) {
   const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair};
   const GeneratedTool* built_in = find_generated_tool(s.mesh);
   const fs::path file = built_in != nullptr ? fs::path() : find_mesh(s.mesh);
@@ -93,19 +93,19 @@ KeyedTool made_or_stored(const ToolSettings& s) {
 }  // namespace
 
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* report) {
-  KeyedTool made = made_or_stored(s);
+  KeyedTool made = built_or_cached(s);
   if (report != nullptr) *report = made.stored.report;
   return std::make_shared<const VoxelTool>(std::move(made.stored.tool));
 }
 
-ToolOfSpheres load_tool_of_spheres(const ToolSettings& s, int most_leaves, std::string* report) {
-  KeyedTool made = made_or_stored(s);
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& s, int max_leaves, std::string* report) {
+  KeyedTool made = built_or_cached(s);
   const auto tool = std::make_shared<const VoxelTool>(std::move(made.stored.tool));
   const fs::path folder = tool_cache_folder();
-  const std::string key = spheres_key(made.key, most_leaves);
+  const std::string key = spheres_key(made.key, max_leaves);
   std::optional<ToolSpheres> spheres = read_spheres(folder, key);
   if (!spheres) {
-    spheres = make_tool_spheres(*tool, most_leaves);
+    spheres = make_tool_spheres(*tool, max_leaves);
     write_spheres(folder, key, *spheres);
   }
   if (report != nullptr) *report = made.stored.report + "\n" + text(*spheres);

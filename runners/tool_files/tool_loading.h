@@ -20,7 +20,7 @@ struct ToolSettings {
 };
 
 Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_voxel_m, tool_repair
-std::string conflict(const ToolSettings& settings);
+std::string validate(const ToolSettings& settings);
 
 // The mesh file that the result depends on; none for a built-in tool.
 std::vector<RecordingPart> input_files(const ToolSettings& settings);
@@ -35,7 +35,7 @@ struct ToolOfSpheres {
   std::shared_ptr<const VoxelTool> tool;
   std::shared_ptr<const ToolSpheres> spheres;
 };
-ToolOfSpheres load_tool_of_spheres(const ToolSettings& settings, int most_leaves,
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& settings, int max_leaves,
                                    std::string* report = nullptr);
 
 }  // namespace remote_touch

@@ -27,7 +27,7 @@ Parameters parameters(FollowSurface::Settings& s) {
   };
 }
 
-std::string conflict(const FollowSurface::Settings& s) {
+std::string validate(const FollowSurface::Settings& s) {
   return s.from_m == s.to_m ? "to_m: allowed different from from_m" : "";
 }
 
@@ -66,19 +66,19 @@ std::vector<double> step_tops(const std::vector<double>& heights, double spacing
 }  // namespace
 
 FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path_(s.from_m) {
-  const Vec3 way(s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z());
-  const int pieces = static_cast<int>(std::ceil(way.norm() / kSampling_m));
+  const Vec3 path(s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z());
+  const int pieces = static_cast<int>(std::ceil(path.norm() / kSampling_m));
   std::vector<double> heights;
   std::vector<Vec3> places;
   for (int i = 0; i <= pieces; ++i) {
-    places.push_back(s.from_m + (static_cast<double>(i) / pieces) * way);
+    places.push_back(s.from_m + (static_cast<double>(i) / pieces) * path);
     heights.push_back(scenario.surface_height(places.back().x(), places.back().z(), 0));
   }
   if (!std::isfinite(heights.front()))
     throw InputError("trajectory.name = follow-surface",
                      "the scenario has no surface height; allowed with a height field");
-  const std::vector<double> depths = inside(heights, way.norm() / pieces, s.depth_m);
-  const std::vector<double> tops = step_tops(heights, way.norm() / pieces, s);
+  const std::vector<double> depths = inside(heights, path.norm() / pieces, s.depth_m);
+  const std::vector<double> tops = step_tops(heights, path.norm() / pieces, s);
   const auto at_height = [&](std::size_t i, double y) { return Vec3(places[i].x(), y, places[i].z()); };
   path_ = PolylinePath(at_height(0, heights.front() + s.clearance_m));
   for (std::size_t i = 0; i < places.size(); ++i)

@@ -36,6 +36,6 @@ class FollowSurface final : public Trajectory {
 };
 
 Parameters parameters(FollowSurface::Settings& s);
-std::string conflict(const FollowSurface::Settings& s);
+std::string validate(const FollowSurface::Settings& s);
 
 }  // namespace remote_touch

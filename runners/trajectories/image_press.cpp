@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/parameters/input_error.h"
-#include "runners/trajectories/seen_object.h"
-#include "runners/trajectories/seen_surface.h"
+#include "runners/trajectories/nearest_object.h"
+#include "runners/trajectories/surface_support.h"
 
 namespace remote_touch {
 
@@ -31,23 +31,23 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
     throw InputError("trajectory.name = image-press",
                      "the frames are not organised images; allowed with a camera");
   image_ = *cloud.image;
-  const SeenObject object = nearest_large_object(depth_image(cloud), image_.camera);
+  const NearestObject object = nearest_large_object(depth_image(cloud), image_.camera);
   row_ = settings.row >= 0 ? settings.row : object.row;
   column_ = settings.column >= 0 ? settings.column : object.column;
   if (row_ >= image_.camera.height || column_ >= image_.camera.width)
     throw InputError("trajectory.row, column", "allowed below " + std::to_string(image_.camera.height) +
                                                    " and " + std::to_string(image_.camera.width));
-  if (std::isnan(seen_depth(0)))
+  if (std::isnan(surface_depth(0)))
     throw InputError(
         "trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
         "no surface without holes there in the first frame; allowed another pixel or a smaller margin_m");
 }
 
-double ImagePress::seen_depth(int frame) const {
-  const auto known = seen_.find(frame);
-  if (known != seen_.end()) return known->second;
+double ImagePress::surface_depth(int frame) const {
+  const auto known = depths_.find(frame);
+  if (known != depths_.end()) return known->second;
   const Support support{settings_.edge_jump_m, settings_.margin_m};
-  return seen_[frame] =
+  return depths_[frame] =
              supported_depth(depth_image(scenario_.cloud(frame)), column_, row_, image_.camera.fx, support);
 }
 
@@ -55,9 +55,9 @@ DeviceState ImagePress::at(double time_s) const {
   const double travelled = settings_.approach_m_per_s * std::max(0.0, time_s - settings_.press_at_s);
   double offset = std::min(travelled - settings_.clearance_m, settings_.depth_m);
   int frame = scenario_.newest_frame(time_s);
-  if (std::isnan(seen_depth(frame))) offset = -settings_.clearance_m;
-  while (std::isnan(seen_depth(frame))) --frame;  // ends at frame 0, which the constructor checked
-  return {image_.X_WC * unproject(image_.camera, column_, row_, seen_depth(frame) + offset)};
+  if (std::isnan(surface_depth(frame))) offset = -settings_.clearance_m;
+  while (std::isnan(surface_depth(frame))) --frame;  // ends at frame 0, which the constructor checked
+  return {image_.X_WC * unproject(image_.camera, column_, row_, surface_depth(frame) + offset)};
 }
 
 }  // namespace remote_touch

@@ -33,17 +33,17 @@ class ImagePress final : public Trajectory {
   double duration_s() const override { return 0; }
 
  private:
-  double seen_depth(int frame) const;
+  double surface_depth(int frame) const;
 
   const Settings settings_;
   const Scenario& scenario_;
   ImageLayout image_;
   int row_ = 0, column_ = 0;
-  mutable std::map<int, double> seen_;  // by frame: ticks ask for the same one many times
+  mutable std::map<int, double> depths_;  // by frame: ticks ask for the same one many times
 };
 
 Parameters parameters(ImagePress::Settings& s);
-inline std::string conflict(const ImagePress::Settings&) {
+inline std::string validate(const ImagePress::Settings&) {
   return {};
 }
 

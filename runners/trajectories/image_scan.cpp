@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/trajectories/seen_object.h"
-#include "runners/trajectories/seen_surface.h"
+#include "runners/trajectories/nearest_object.h"
+#include "runners/trajectories/surface_support.h"
 
 namespace remote_touch {
 
@@ -28,7 +28,7 @@ Parameters parameters(ImageScan::Settings& s) {
   };
 }
 
-std::string conflict(const ImageScan::Settings& s) {
+std::string validate(const ImageScan::Settings& s) {
   const bool reversed = s.first_column >= 0 && s.last_column >= 0 && s.first_column >= s.last_column;
   return reversed ? "first_column = " + std::to_string(s.first_column) + ": allowed below last_column" : "";
 }
@@ -71,7 +71,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
                      "the frames are not organised images; allowed with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   const DepthImage image = depth_image(cloud);
-  const SeenObject object = nearest_large_object(image, camera);
+  const NearestObject object = nearest_large_object(image, camera);
   row_ = s.row >= 0 ? s.row : object.row;
   if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
@@ -85,7 +85,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
     for (int u = 0; u < camera.width; ++u)
       depth.push_back(supported_depth(image, u, row_, camera.fx, {jump, s.margin_m}));
     const auto automatic = [&](int direction) {
-      return last_within_span(depth, object.column, direction, object.nearest_m, s.span_m);
+      return last_within_span(depth, object.column, direction, object.nearest_depth_m, s.span_m);
     };
     patches_ = supported_patches(depth, s.first_column >= 0 ? s.first_column : automatic(-1),
                                  s.last_column >= 0 ? s.last_column : automatic(+1), camera.fx, s.margin_m);

@@ -47,6 +47,6 @@ class ImageScan final : public Trajectory {
 };
 
 Parameters parameters(ImageScan::Settings& s);
-std::string conflict(const ImageScan::Settings& s);
+std::string validate(const ImageScan::Settings& s);
 
 }  // namespace remote_touch

@@ -21,8 +21,8 @@ Vec3 PolylinePath::at(double time_s) const {
   if (next == arrival_s_.end()) return points_.back();
   if (next == arrival_s_.begin()) return points_.front();
   const auto i = static_cast<std::size_t>(next - arrival_s_.begin());
-  const double share = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
-  return points_[i - 1] + share * (points_[i] - points_[i - 1]);
+  const double fraction = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
+  return points_[i - 1] + fraction * (points_[i] - points_[i - 1]);
 }
 
 }  // namespace remote_touch

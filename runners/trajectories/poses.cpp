@@ -9,13 +9,13 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kColumns = 7;
-constexpr double kHalfTurn_deg = 179.99;
+constexpr double kHalfRotation_deg = 179.99;
 
 DeviceState pose(const double* row) {
   return {{row[0], row[1], row[2]}, rotation(kRadiansPerDegree * Vec3(row[3], row[4], row[5]))};
 }
 
-Vec3 turn(const DeviceState& from, const DeviceState& to) {
+Vec3 rotation_to(const DeviceState& from, const DeviceState& to) {
   return rotation_vector(to.orientation_W * from.orientation_W.conjugate());
 }
 
@@ -30,13 +30,13 @@ Parameters parameters(Poses::Settings& s) {
        "the shorter way round: for more, put a pose between"}};
 }
 
-std::string conflict(const Poses::Settings& s) {
+std::string validate(const Poses::Settings& s) {
   if (s.poses.empty()) return "poses = []: allowed one row or more";
   for (std::size_t i = 0; i + kColumns <= s.poses.size(); i += kColumns) {
     const double* const row = s.poses.data() + i;
     if (row[6] < 0) return "poses: a duration of " + std::to_string(row[6]) + ": allowed 0 or more";
     if (i > 0 && row[6] > 0 &&
-        turn(pose(row - kColumns), pose(row)).norm() > kHalfTurn_deg * kRadiansPerDegree)
+        rotation_to(pose(row - kColumns), pose(row)).norm() > kHalfRotation_deg * kRadiansPerDegree)
       return "poses: row " + std::to_string(i / kColumns) +
              " is half a turn from the one before: allowed less, the way there is not unique";
   }
@@ -44,11 +44,11 @@ std::string conflict(const Poses::Settings& s) {
 }
 
 Poses::Poses(const Settings& settings, const Scenario&)
-    : poses_{pose(settings.poses.data())}, arrival_s_{0}, turn_W_{Vec3::Zero()} {
+    : poses_{pose(settings.poses.data())}, arrival_s_{0}, rotation_W_{Vec3::Zero()} {
   for (std::size_t i = kColumns; i + kColumns <= settings.poses.size(); i += kColumns) {
     const double* const row = settings.poses.data() + i;
     const DeviceState next = pose(row);
-    turn_W_.push_back(turn(poses_.back(), next));
+    rotation_W_.push_back(rotation_to(poses_.back(), next));
     arrival_s_.push_back(arrival_s_.back() + row[6]);
     poses_.push_back(next);
   }
@@ -60,10 +60,10 @@ DeviceState Poses::at(double time_s) const {
   if (next == arrival_s_.end()) return poses_.back();
   if (next == arrival_s_.begin()) return poses_.front();
   const auto i = static_cast<std::size_t>(next - arrival_s_.begin());
-  const double share = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
+  const double fraction = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
   const DeviceState &from = poses_[i - 1], &to = poses_[i];
-  return {from.position_W + share * (to.position_W - from.position_W),
-          (rotation(share * turn_W_[i]) * from.orientation_W).normalized()};
+  return {from.position_W + fraction * (to.position_W - from.position_W),
+          (rotation(fraction * rotation_W_[i]) * from.orientation_W).normalized()};
 }
 
 }  // namespace remote_touch

@@ -27,10 +27,10 @@ class Poses final : public Trajectory {
  private:
   std::vector<DeviceState> poses_;
   std::vector<double> arrival_s_;
-  std::vector<Vec3> turn_W_;  // rotation vector of the way to each pose
+  std::vector<Vec3> rotation_W_;  // rotation vector of the way to each pose
 };
 
 Parameters parameters(Poses::Settings& s);
-std::string conflict(const Poses::Settings& s);
+std::string validate(const Poses::Settings& s);
 
 }  // namespace remote_touch

@@ -29,7 +29,7 @@ class Press final : public Trajectory {
 };
 
 Parameters parameters(Press::Settings& s);
-inline std::string conflict(const Press::Settings&) {
+inline std::string validate(const Press::Settings&) {
   return {};
 }
 

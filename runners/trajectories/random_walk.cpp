@@ -11,17 +11,17 @@ namespace remote_touch {
 namespace {
 
 // Of the sines: shares of the extent, and rates whose ratios are not rational: the golden and the silver one.
-constexpr double kShare[] = {0.5, 0.3, 0.2};
+constexpr double kFraction[] = {0.5, 0.3, 0.2};
 constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
 // The axes run at different rates too, powers of two to twelfths and tenths, so that no two keep step.
 constexpr double kAxisRate[] = {
     1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
-constexpr double kTurn = 6.283185307179586;
+constexpr double kRotation = 6.283185307179586;
 
 // At which the sum of the largest speeds of all sines is the speed allowed; rad/s.
 double slowest_rate(const RandomWalk::Settings& s) {
   double of_all = 0;
-  for (int i = 0; i < 3; ++i) of_all += kShare[i] * kRate[i];
+  for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];
   const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
   return s.speed_m_per_s / of_axes.norm();
 }
@@ -32,14 +32,14 @@ Parameters parameters(RandomWalk::Settings& s) {
   return {
       {"centre_m", &s.centre_m, -100, 100, "middle of the box that the device stays in"},
       {"extent_m", &s.extent_m, 0, 100, "of the box, from its middle"},
-      {"turn_deg", &s.turn_deg, 0, 180, "the device turns by no more than this"},
+      {"max_rotation_deg", &s.max_rotation_deg, 0, 180, "the device turns by no more than this"},
       {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "the device is never faster"},
       {"seed", &s.seed, 0, 18446744073709551615.0, "another motion for every seed"},
       {"duration_s", &s.duration_s, 1e-3, 1e5, "the device then rests"},
   };
 }
 
-std::string conflict(const RandomWalk::Settings& s) {
+std::string validate(const RandomWalk::Settings& s) {
   if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: allowed above 0 along one axis or more";
   return slowest_rate(s) * s.duration_s < 1e5
              ? ""
@@ -51,7 +51,7 @@ RandomWalk::RandomWalk(const Settings& settings, const Scenario&)
   const NoiseStream stream = noise_stream({settings.seed}, NoiseUse::motion, 0);
   for (std::size_t axis = 0; axis < 6; ++axis) {
     const auto random = uniforms(stream, static_cast<std::uint32_t>(axis));
-    for (std::size_t i = 0; i < kSines; ++i) phase_[axis][i] = kTurn * random[i];
+    for (std::size_t i = 0; i < kSines; ++i) phase_[axis][i] = kRotation * random[i];
   }
 }
 
@@ -59,21 +59,21 @@ double RandomWalk::coordinate(int axis, double time_s) const {
   double sum = 0;
   for (int i = 0; i < kSines; ++i) {
     const double phase = phase_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
-    sum += kShare[i] * sin_cos(kRate[i] * kAxisRate[axis] * rate_ * time_s + phase).first;
+    sum += kFraction[i] * sin_cos(kRate[i] * kAxisRate[axis] * rate_ * time_s + phase).first;
   }
   return sum;
 }
 
 DeviceState RandomWalk::at(double time_s) const {
   const double t = std::clamp(time_s, 0.0, settings_.duration_s);
-  Vec3 place, turn;
+  Vec3 place, angles;
   for (int axis = 0; axis < 3; ++axis) {
     place[axis] = settings_.centre_m[axis] + settings_.extent_m[axis] * coordinate(axis, t);
-    turn[axis] = coordinate(axis + 3, t);
+    angles[axis] = coordinate(axis + 3, t);
   }
   // The corners of the cube of turns reach further than the largest turn by the root of three.
   constexpr double root_of_three = 1.7320508075688772;
-  return {place, rotation(settings_.turn_deg * kRadiansPerDegree / root_of_three * turn)};
+  return {place, rotation(settings_.max_rotation_deg * kRadiansPerDegree / root_of_three * angles)};
 }
 
 }  // namespace remote_touch

@@ -18,7 +18,7 @@ class RandomWalk final : public Trajectory {
   struct Settings {
     Vec3 centre_m = Vec3::Zero();
     Vec3 extent_m{0.05, 0.05, 0.05};
-    double turn_deg = 45;
+    double max_rotation_deg = 45;
     double speed_m_per_s = 0.1;
     std::uint64_t seed = 1;
     double duration_s = 10;
@@ -38,6 +38,6 @@ class RandomWalk final : public Trajectory {
 };
 
 Parameters parameters(RandomWalk::Settings& s);
-std::string conflict(const RandomWalk::Settings& s);
+std::string validate(const RandomWalk::Settings& s);
 
 }  // namespace remote_touch

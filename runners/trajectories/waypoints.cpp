@@ -9,7 +9,7 @@ Parameters parameters(Waypoints::Settings& s) {
        "starts: its speed is not used"}};
 }
 
-std::string conflict(const Waypoints::Settings& s) {
+std::string validate(const Waypoints::Settings& s) {
   for (std::size_t i = 3; i < s.waypoints.size(); i += 4)
     if (s.waypoints[i] < 0)
       return "waypoints: a speed of " + std::to_string(s.waypoints[i]) + ": allowed 0 or more";

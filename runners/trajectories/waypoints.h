@@ -28,6 +28,6 @@ class Waypoints final : public Trajectory {
 };
 
 Parameters parameters(Waypoints::Settings& s);
-std::string conflict(const Waypoints::Settings& s);
+std::string validate(const Waypoints::Settings& s);
 
 }  // namespace remote_touch

@@ -62,9 +62,9 @@ double BeatingHeart::contraction(double beats) {
 
 std::array<BeatingHeart::Lobe, 3> BeatingHeart::lobes(double time_s) const {
   const double beats = time_s * settings_.rate_per_min / 60;
-  const double largest = settings_.amplitude_m / kTopSemiAxis_m;
-  const double ventricles = 1 - largest * contraction(beats);
-  const double atrium = 1 - largest * contraction(beats + kAtriumLeads);
+  const double max = settings_.amplitude_m / kTopSemiAxis_m;
+  const double ventricles = 1 - max * contraction(beats);
+  const double atrium = 1 - max * contraction(beats + kAtriumLeads);
   return {{
       {Ellipsoid({0, 0.028, 0}, ventricles * Vec3(0.040, kTopSemiAxis_m, 0.034)), kLeftVentricle},
       {Ellipsoid({0.004, 0.020, 0.024}, ventricles * Vec3(0.036, 0.026, 0.026), turned()), kRightVentricle},

@@ -27,7 +27,7 @@ class BeatingHeart final : public Scenario {
     double frame_rate_hz = 30;
     double rate_per_min = 75;
     double amplitude_m = 0.0065;
-    DepthCameraSettings camera{.camera_m = {0, 0.55, 0}, .target_m = {0, 0, 0}};
+    DepthCameraSettings camera{.camera_position_m = {0, 0.55, 0}, .target_position_m = {0, 0, 0}};
   };
 
   BeatingHeart(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -57,8 +57,8 @@ class BeatingHeart final : public Scenario {
 };
 
 Parameters parameters(BeatingHeart::Settings& s);
-inline std::string conflict(const BeatingHeart::Settings& s) {
-  return conflict(s.camera);
+inline std::string validate(const BeatingHeart::Settings& s) {
+  return validate(s.camera);
 }
 
 }  // namespace remote_touch

@@ -17,7 +17,7 @@ class CameraScene final : public Scenario {
  public:
   struct Settings {
     double frame_rate_hz = 30;
-    DepthCameraSettings camera{.camera_m = {0.3, 0.6, -0.02}, .target_m = {0, 0.02, -0.02}};
+    DepthCameraSettings camera{.camera_position_m = {0.3, 0.6, -0.02}, .target_position_m = {0, 0.02, -0.02}};
   };
 
   CameraScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -42,8 +42,8 @@ class CameraScene final : public Scenario {
 };
 
 Parameters parameters(CameraScene::Settings& s);
-inline std::string conflict(const CameraScene::Settings& s) {
-  return conflict(s.camera);
+inline std::string validate(const CameraScene::Settings& s) {
+  return validate(s.camera);
 }
 
 }  // namespace remote_touch

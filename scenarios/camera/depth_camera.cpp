@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kFarthest_m = 3;
+constexpr double kMaxRange_m = 3;
 constexpr double kSamePlace_m = 1e-9;
 
 }  // namespace
@@ -19,8 +19,8 @@ Parameters parameters(DepthCameraSettings& s) {
       {"height", &s.height, 8, 4096, "image rows"},
       {"focal_px", &s.focal_px, 1, 10000,
        "focal length, both axes; the principal point is the image's middle"},
-      {"camera_m", &s.camera_m, -10, 10, "position of the camera"},
-      {"target_m", &s.target_m, -10, 10, "point that the optical axis passes through"},
+      {"camera_position_m", &s.camera_position_m, -10, 10, "position of the camera"},
+      {"target_position_m", &s.target_position_m, -10, 10, "point that the optical axis passes through"},
       {"noise_per_m", &s.noise_per_m, 0, 0.1, "depth noise: standard deviation = this times z^2"},
       {"quantisation_per_m", &s.quantisation_per_m, 0, 0.1, "depth step = this times z^2; 0 switches it off"},
       {"edge_jump_m", &s.edge_jump_m, 1e-4, 10, "a depth difference larger than this is an edge"},
@@ -28,9 +28,9 @@ Parameters parameters(DepthCameraSettings& s) {
   };
 }
 
-std::string conflict(const DepthCameraSettings& s) {
-  const bool same = (s.target_m - s.camera_m).norm() < kSamePlace_m;
-  return same ? "camera_m and target_m: allowed not to be equal" : "";
+std::string validate(const DepthCameraSettings& s) {
+  const bool same = (s.target_position_m - s.camera_position_m).norm() < kSamePlace_m;
+  return same ? "camera_position_m and target_position_m: allowed not to be equal" : "";
 }
 
 RigidTransform look_at(const Vec3& from, const Vec3& to) {
@@ -56,7 +56,7 @@ DepthCamera::DepthCamera(const DepthCameraSettings& settings, const NoiseKey& ke
                   settings.focal_px,
                   0.5 * (settings.width - 1),
                   0.5 * (settings.height - 1)},
-      X_WC_(look_at(settings.camera_m, settings.target_m)) {}
+      X_WC_(look_at(settings.camera_position_m, settings.target_position_m)) {}
 
 IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
   const int width = intrinsics_.width, height = intrinsics_.height;
@@ -71,7 +71,7 @@ IdealView DepthCamera::view(const RayCast& cast, bool coloured) const {
       const Vec3 ray = X_WC_.linear() * unproject(intrinsics_, u, v, 1);
       const RayHit hit = cast(origin, ray);
       const std::size_t i = static_cast<std::size_t>(v) * width + u;
-      view.depth.z_m[i] = hit.t <= kFarthest_m ? hit.t : std::numeric_limits<double>::quiet_NaN();
+      view.depth.z_m[i] = hit.t <= kMaxRange_m ? hit.t : std::numeric_limits<double>::quiet_NaN();
       if (coloured) view.colour[i] = hit.colour;
     }
   }

@@ -20,8 +20,8 @@ struct DepthCameraSettings {
   int width = 640;
   int height = 480;
   double focal_px = 525;
-  Vec3 camera_m{0, 0.6, 0};
-  Vec3 target_m{0, 0, 0};
+  Vec3 camera_position_m{0, 0.6, 0};
+  Vec3 target_position_m{0, 0, 0};
   double noise_per_m = 0.0012;
   double quantisation_per_m = 0.00285;
   double edge_jump_m = 0.02;
@@ -29,7 +29,7 @@ struct DepthCameraSettings {
 };
 
 Parameters parameters(DepthCameraSettings& s);
-std::string conflict(const DepthCameraSettings& s);
+std::string validate(const DepthCameraSettings& s);
 
 // Pose of a camera (x right, y down, z forward) that looks from `from` to `to` with the world's y up in the
 // image. Where it looks straight down or up no direction in the image is the world's up; its right is then
@@ -53,7 +53,7 @@ struct IdealView {
 
 class DepthCamera {
  public:
-  // Keeps a reference to the kernels. pre: conflict(settings) is empty.
+  // Keeps a reference to the kernels. pre: validate(settings) is empty.
   DepthCamera(const DepthCameraSettings& settings, const NoiseKey& key, const Kernels& kernels);
 
   const CameraIntrinsics& intrinsics() const { return intrinsics_; }

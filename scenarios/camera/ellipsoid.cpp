@@ -63,12 +63,12 @@ Vec3 Ellipsoid::closest(const Vec3& p) const {
 
   // Near the plane across the shortest axis, and deep enough inside, the root goes to 0: there the surface
   // over and the surface under the plane are equally close, and what the others leave is the shortest's.
-  const double least = 1e-20 * shortest * shortest;
+  const double min = 1e-20 * shortest * shortest;
   Vec3 unit;
-  if (problem.excess(least) > 0) {
-    unit = problem.unit(problem.root(least));
+  if (problem.excess(min) > 0) {
+    unit = problem.unit(problem.root(min));
   } else {
-    unit = problem.unit(least);
+    unit = problem.unit(min);
     unit[problem.shortest] = 0;
     unit[problem.shortest] = std::sqrt(1 - unit.squaredNorm());
   }
@@ -86,9 +86,9 @@ double Ellipsoid::signed_distance(const Vec3& p) const {
 // for a far origin as for a near one.
 Ellipsoid::Chord Ellipsoid::chord(const Vec3& origin, const Vec3& direction) const {
   // Most rays of a camera miss even the ball around the solid, which is told without a turn or a division.
-  const Vec3 way = centre_ - origin;
-  const double radius = 1.001 * semi_axes_.maxCoeff(), along = way.dot(direction);
-  if ((way.squaredNorm() - radius * radius) * direction.squaredNorm() > along * along)
+  const Vec3 displacement = centre_ - origin;
+  const double radius = 1.001 * semi_axes_.maxCoeff(), along = displacement.dot(direction);
+  if ((displacement.squaredNorm() - radius * radius) * direction.squaredNorm() > along * along)
     return {0, std::numeric_limits<double>::quiet_NaN()};
   const Vec3 o = to_unit_ball_ * (origin - centre_), d = to_unit_ball_ * direction;
   const double squared = d.squaredNorm(), middle = -o.dot(d) / squared;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kOnSurface_m = 1e-9;
 // A ray that passes so close that it takes more steps than this to get by is one that misses.
-constexpr int kMostSteps = 20000;
+constexpr int kMaxSteps = 20000;
 constexpr double kDifference_m = 1e-6;
 
 // Directions of the spokes, 120 degrees apart, as (x, y).
@@ -29,9 +29,9 @@ double to_ring(const Vec3& q, double ring_radius) {
 }
 
 // A capsule from the centre to the middle of the ring's tube.
-double to_spoke(const Vec3& q, const double (&way)[2], double ring_radius) {
-  const double along = std::clamp(q.x() * way[0] + q.y() * way[1], 0.0, ring_radius);
-  const double x = q.x() - along * way[0], y = q.y() - along * way[1];
+double to_spoke(const Vec3& q, const double (&displacement)[2], double ring_radius) {
+  const double along = std::clamp(q.x() * displacement[0] + q.y() * displacement[1], 0.0, ring_radius);
+  const double x = q.x() - along * displacement[0], y = q.y() - along * displacement[1];
   return std::sqrt(x * x + y * y + q.z() * q.z()) - Handwheel::kSpokeRadius_m;
 }
 
@@ -54,7 +54,8 @@ Handwheel::Handwheel(const Vec3& centre_m, double ring_radius_m)
 double Handwheel::signed_distance(const Vec3& p) const {
   const Vec3 q = p - centre_;
   double distance = to_ring(q, ring_radius_);
-  for (const auto& way : kSpokes) distance = std::min(distance, to_spoke(q, way, ring_radius_));
+  for (const auto& displacement : kSpokes)
+    distance = std::min(distance, to_spoke(q, displacement, ring_radius_));
   distance = std::min(distance, to_cylinder(q, kHubRadius_m, -kHubHalfLength_m, kHubHalfLength_m));
   return std::min(distance, to_cylinder(q, kStemRadius_m, -centre_.z(), 0));
 }
@@ -69,7 +70,7 @@ double Handwheel::cast(const Vec3& origin, const Vec3& direction) const {
   if (!(left >= 0)) return std::numeric_limits<double>::infinity();
   const double half = std::sqrt(left) / length;
   double t = std::max(0.0, middle - half);
-  for (int step = 0; step < kMostSteps && t <= middle + half; ++step) {
+  for (int step = 0; step < kMaxSteps && t <= middle + half; ++step) {
     const double distance = signed_distance(origin + t * direction);
     if (distance <= kOnSurface_m) return t;
     t += distance / length;

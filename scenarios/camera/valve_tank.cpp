@@ -32,8 +32,9 @@ std::uint32_t channel(double value) {
 Parameters parameters(ValveTank::Settings& s) {
   Parameters list = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
-      {"left_m", &s.left_m, -2, 2, "centre of the left valve's wheel; z from the wall"},
-      {"right_m", &s.right_m, -2, 2, "centre of the right valve's wheel"},
+      {"left_valve_position_m", &s.left_valve_position_m, -2, 2,
+       "centre of the left valve's wheel; z from the wall"},
+      {"right_valve_position_m", &s.right_valve_position_m, -2, 2, "centre of the right valve's wheel"},
       {"ring_radius_m", &s.ring_radius_m, 0.02, 0.2,
        "radius of the wheels' rings, to the middle of the tube"},
       {"left_hue_deg", &s.left_hue_deg, 0, 360, "hue of the left valve's paint: 0 red"},
@@ -41,27 +42,29 @@ Parameters parameters(ValveTank::Settings& s) {
        "hue of the right valve's paint: 46 yellow, which turns towards green in the water"},
       {"turbidity_per_m", &s.turbidity_per_m, 0, 20, "attenuation of light in the water, beta; 0: clear"},
       {"colour_noise", &s.colour_noise, 0, 128, "standard deviation of each colour channel, 0 to 255"},
-      {"dropout", &s.dropout, 0, 1, "probability that a pixel has no depth in clear water"},
+      {"dropout_probability", &s.dropout_probability, 0, 1,
+       "probability that a pixel has no depth in clear water"},
   };
   const Parameters camera = parameters(s.camera);
   list.insert(list.end(), camera.begin(), camera.end());
   return list;
 }
 
-std::string conflict(const ValveTank::Settings& s) {
-  if (std::min(s.left_m.z(), s.right_m.z()) <= Handwheel::kHubHalfLength_m)
-    return "left_m and right_m: allowed with z above " + std::to_string(Handwheel::kHubHalfLength_m) +
-           ", in front of the wall";
-  if (s.camera.camera_m.z() <= 0) return "camera_m: allowed with z above 0, in front of the wall";
-  return conflict(s.camera);
+std::string validate(const ValveTank::Settings& s) {
+  if (std::min(s.left_valve_position_m.z(), s.right_valve_position_m.z()) <= Handwheel::kHubHalfLength_m)
+    return "left_valve_position_m and right_valve_position_m: allowed with z above " +
+           std::to_string(Handwheel::kHubHalfLength_m) + ", in front of the wall";
+  if (s.camera.camera_position_m.z() <= 0)
+    return "camera_position_m: allowed with z above 0, in front of the wall";
+  return validate(s.camera);
 }
 
 ValveTank::ValveTank(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings),
       key_(key),
       kernels_(kernels),
-      wheels_{Handwheel(settings.left_m, settings.ring_radius_m),
-              Handwheel(settings.right_m, settings.ring_radius_m)},
+      wheels_{Handwheel(settings.left_valve_position_m, settings.ring_radius_m),
+              Handwheel(settings.right_valve_position_m, settings.ring_radius_m)},
       paint_{rgb(kWall), rgb({settings.left_hue_deg, kPaintSaturation, kPaintLightness}),
              rgb({settings.right_hue_deg, kPaintSaturation, kPaintLightness})},
       camera_(settings.camera, key, kernels),
@@ -71,8 +74,8 @@ ValveTank::ValveTank(const Settings& settings, const NoiseKey& key, const Kernel
 }
 
 int ValveTank::frame_count() const {
-  const bool varies =
-      camera_.noisy() || settings_.colour_noise > 0 || settings_.dropout > 0 || settings_.turbidity_per_m > 0;
+  const bool varies = camera_.noisy() || settings_.colour_noise > 0 || settings_.dropout_probability > 0 ||
+                      settings_.turbidity_per_m > 0;
   return varies ? std::numeric_limits<int>::max() : 1;
 }
 
@@ -107,7 +110,7 @@ void ValveTank::fill_with_water() {
       const double distance =
           std::isnan(z) ? std::numeric_limits<double>::infinity() : unproject(camera, u, v, z).norm();
       colour_[i] = water.seen(view_.colour[i], distance);
-      lost_[i] = water.lost(settings_.dropout, distance);
+      lost_[i] = water.lost(settings_.dropout_probability, distance);
       view_.depth_noise_factor[i] = water.depth_noise_factor(distance);
     }
 }

@@ -26,15 +26,16 @@ class ValveTank final : public Scenario {
  public:
   struct Settings {
     double frame_rate_hz = 30;
-    Vec3 left_m{-0.11, 0, 0.06};
-    Vec3 right_m{0.11, 0, 0.06};
+    Vec3 left_valve_position_m{-0.11, 0, 0.06};
+    Vec3 right_valve_position_m{0.11, 0, 0.06};
     double ring_radius_m = 0.045;
     double left_hue_deg = 0;
     double right_hue_deg = 46;
     double turbidity_per_m = 0.6;
     double colour_noise = 3;
-    double dropout = 0.02;
-    DepthCameraSettings camera{.camera_m = {0, 0.3, 0.9}, .target_m = {0, 0, 0.04}, .hole_px = 1};
+    double dropout_probability = 0.02;
+    DepthCameraSettings camera{
+        .camera_position_m = {0, 0.3, 0.9}, .target_position_m = {0, 0, 0.04}, .hole_px = 1};
   };
 
   ValveTank(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
@@ -74,6 +75,6 @@ class ValveTank final : public Scenario {
 };
 
 Parameters parameters(ValveTank::Settings& s);
-std::string conflict(const ValveTank::Settings& s);
+std::string validate(const ValveTank::Settings& s);
 
 }  // namespace remote_touch

@@ -33,8 +33,8 @@ std::array<double, 3> Water::seen(std::uint32_t rgb, double distance_m) const {
   return channels;
 }
 
-double Water::lost(double dropout, double distance_m) const {
-  return 1 - (1 - dropout) * decay(kDepthLoss * turbidity_per_m_ * std::min(distance_m, kFar_m));
+double Water::lost(double dropout_probability, double distance_m) const {
+  return 1 - (1 - dropout_probability) * decay(kDepthLoss * turbidity_per_m_ * std::min(distance_m, kFar_m));
 }
 
 double Water::depth_noise_factor(double distance_m) const {

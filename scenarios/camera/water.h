@@ -26,7 +26,7 @@ class Water {
 
   // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), where dropout is that of clear
   // water.
-  double lost(double dropout, double distance_m) const;
+  double lost(double dropout_probability, double distance_m) const;
   // What the standard deviation of depth is multiplied by, 1 + beta d: the sensor's pattern comes back
   // fainter.
   double depth_noise_factor(double distance_m) const;

@@ -35,64 +35,72 @@ void move(PointCloud& cloud, std::size_t i, const Vec3& to) {
 // When the row of a point is read, as a share of the time for all: from the first row of the image to the
 // last, or from the smallest z to the largest.
 std::vector<double> readout(const PointCloud& cloud) {
-  std::vector<double> share(cloud.size(), 1);
+  std::vector<double> fraction(cloud.size(), 1);
   if (cloud.image) {
     const auto width = static_cast<std::size_t>(cloud.image->camera.width);
     const double last = cloud.image->camera.height - 1;
-    for (std::size_t i = 0; last > 0 && i < share.size(); ++i)
-      share[i] = static_cast<double>(i / width) / last;
-    return share;
+    for (std::size_t i = 0; last > 0 && i < fraction.size(); ++i)
+      fraction[i] = static_cast<double>(i / width) / last;
+    return fraction;
   }
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double z : cloud.z) low = z < low ? z : low, high = z > high ? z : high;  // NaN is neither
-  for (std::size_t i = 0; high > low && i < share.size(); ++i) share[i] = (cloud.z[i] - low) / (high - low);
-  return share;
+  for (std::size_t i = 0; high > low && i < fraction.size(); ++i)
+    fraction[i] = (cloud.z[i] - low) / (high - low);
+  return fraction;
 }
 
 }  // namespace
 
 Parameters parameters(SensorFaults& s) {
   return {
-      {"view", &s.view, -1, 1, "the way the sensor looks; of an image the ray of each pixel counts instead"},
-      {"repeat_share", &s.repeat_share, 0, 1, "of the frames, which show what the one before them showed"},
-      {"shear_s", &s.shear_s, 0, 10,
+      {"view_direction", &s.view_direction, -1, 1,
+       "the way the sensor looks; of an image the ray of each pixel counts instead"},
+      {"repeat_probability", &s.repeat_probability, 0, 1,
+       "of the frames, which show what the one before them showed"},
+      {"rolling_shutter_s", &s.rolling_shutter_s, 0, 10,
        "time in which rows along z (of an image: its rows) are read, the last at the capture; moves points by "
        "the change of the true distance, so only where a truth is known that moves between frames"},
-      {"flying_share", &s.flying_share, 0, 1, "of the points, which are moved along the view"},
-      {"flying_m", &s.flying_m, 0, 100, "how far at most, either way, evenly spread"},
-      {"outlier_share", &s.outlier_share, 0, 1, "of the points, which are put anywhere along the view"},
-      {"outlier_reach_m", &s.outlier_reach_m, 0, 100, "within this of their place, evenly spread"},
+      {"flying_probability", &s.flying_probability, 0, 1, "of the points, which are moved along the view"},
+      {"max_flying_distance_m", &s.max_flying_distance_m, 0, 100,
+       "how far at most, either way, evenly spread"},
+      {"outlier_probability", &s.outlier_probability, 0, 1,
+       "of the points, which are put anywhere along the view"},
+      {"max_outlier_distance_m", &s.max_outlier_distance_m, 0, 100,
+       "within this of their place, evenly spread"},
       {"quantisation_m", &s.quantisation_m, 0, 1,
        "the coordinate along the view is a multiple of this; 0: any"},
-      {"hole_share", &s.hole_share, 0, 1,
+      {"hole_fraction", &s.hole_fraction, 0, 1,
        "of the points, which are lost in round holes, elsewhere in each frame"},
       {"hole_radius_m", &s.hole_radius_m, 1e-4, 10,
        "of a hole, across the view (of an image: at its middle)"},
-      {"dropout_share", &s.dropout_share, 0, 1, "of the points, which are lost one by one"},
-      {"late_share", &s.late_share, 0, 1, "of the frames, which come late and may be overtaken"},
-      {"late_s", &s.late_s, 0, 100, "how late they are"},
+      {"dropout_probability", &s.dropout_probability, 0, 1, "of the points, which are lost one by one"},
+      {"late_probability", &s.late_probability, 0, 1, "of the frames, which come late and may be overtaken"},
+      {"late_delay_s", &s.late_delay_s, 0, 100, "how late they are"},
   };
 }
 
-std::string conflict(const SensorFaults& s) {
-  return s.view.norm() < 0.001 ? "view: allowed 0.001 or longer" : "";
+std::string validate(const SensorFaults& s) {
+  return s.view_direction.norm() < 0.001 ? "view_direction: allowed 0.001 or longer" : "";
 }
 
 FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,
                            const NoiseKey& key, const Kernels& kernels)
     : scenario_(std::move(scenario)), settings_(settings), key_(key), kernels_(kernels) {
-  if (!conflict(settings).empty()) throw std::invalid_argument(conflict(settings));
+  if (!validate(settings).empty()) throw std::invalid_argument(validate(settings));
 }
 
 bool FaultySensor::moves_points() const {
-  return settings_.flying_share > 0 || settings_.outlier_share > 0 || settings_.quantisation_m > 0;
+  return settings_.flying_probability > 0 || settings_.outlier_probability > 0 ||
+         settings_.quantisation_m > 0;
 }
 
 int FaultySensor::frame_count() const {
   const SensorFaults& s = settings_;
-  const bool change = s.repeat_share > 0 || s.shear_s > 0 || s.flying_share > 0 || s.outlier_share > 0;
-  const bool goes_on = !ends() && (change || loses_points());
-  return goes_on ? std::numeric_limits<int>::max() : scenario_->frame_count();
+  const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
+                      s.outlier_probability > 0;
+  const bool continues = !ends() && (change || loses_points());
+  return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }
 
 int FaultySensor::seen(int frame) const {
@@ -100,7 +108,7 @@ int FaultySensor::seen(int frame) const {
 }
 
 int FaultySensor::shown(int frame) const {
-  while (frame > 0 && uniforms(of_frame(key_, frame), 0)[repeats] < settings_.repeat_share) --frame;
+  while (frame > 0 && uniforms(of_frame(key_, frame), 0)[repeats] < settings_.repeat_probability) --frame;
   return frame;
 }
 
@@ -112,37 +120,37 @@ double FaultySensor::captured_s(int frame) const {
 std::optional<double> FaultySensor::arrives_s(int frame) const {
   std::optional<double> out_s;
   if (frame == seen(frame)) out_s = scenario_->arrives_s(frame);
-  if (!(uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_share)) return out_s;
-  return out_s.value_or(captured_s(frame)) + settings_.late_s;
+  if (!(uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_probability)) return out_s;
+  return out_s.value_or(captured_s(frame)) + settings_.late_delay_s;
 }
 
 std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {
-  if (moves_points() || loses_points() || settings_.shear_s > 0) return make_search(cloud(frame));
+  if (moves_points() || loses_points() || settings_.rolling_shutter_s > 0) return make_search(cloud(frame));
   return scenario_->points(seen(shown(frame)));
 }
 
 PointCloud FaultySensor::cloud(int frame) const {
   const int content = shown(frame);
   PointCloud cloud = scenario_->cloud(seen(content));
-  Seen without_faults;
-  if (settings_.hole_share > 0) without_faults = across_the_view(cloud);
-  if (settings_.shear_s > 0) shear(cloud, captured_s(content));
+  ViewCoordinates without_faults;
+  if (settings_.hole_fraction > 0) without_faults = across_the_view(cloud);
+  if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
   if (moves_points()) displace(cloud, content);
-  if (settings_.hole_share > 0) cut_holes(cloud, without_faults, content);
-  if (settings_.dropout_share > 0) drop_points(cloud, content);
+  if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
+  if (settings_.dropout_probability > 0) drop_points(cloud, content);
   return cloud;
 }
 
 Vec3 FaultySensor::sight(const PointCloud& cloud, const Vec3& p_W) const {
-  return (cloud.image ? Vec3(p_W - cloud.image->X_WC.translation()) : settings_.view).normalized();
+  return (cloud.image ? Vec3(p_W - cloud.image->X_WC.translation()) : settings_.view_direction).normalized();
 }
 
 void FaultySensor::shear(PointCloud& cloud, double captured_s) const {
-  const std::vector<double> share = readout(cloud);
+  const std::vector<double> fraction = readout(cloud);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
     const Vec3 p_W = cloud.point(i), ray = sight(cloud, p_W);
-    const double then_s = captured_s - (1 - share[i]) * settings_.shear_s;
+    const double then_s = captured_s - (1 - fraction[i]) * settings_.rolling_shutter_s;
     move(cloud, i, as_it_was(p_W, captured_s, then_s, cloud.image ? &ray : nullptr));
   }
 }
@@ -165,13 +173,13 @@ Vec3 FaultySensor::normal_at(const Vec3& p_W, double time_s) const {
 // The place of the surface then that is the point's now: along the normal, by as much as the distance has
 // changed since. A pixel sees where its ray met the surface; NaN where that was too flat to tell.
 Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const {
-  constexpr double kLeastSlope = 0.1;
+  constexpr double kMinSlope = 0.1;
   const double change = scenario_->signed_distance(p_W, then_s) - scenario_->signed_distance(p_W, now_s);
   if (change == 0 || std::isnan(change)) return p_W;
   const Vec3 normal = normal_at(p_W, now_s);
   if (!ray) return p_W - change * normal;
   const double slope = normal.dot(*ray);
-  if (std::abs(slope) < kLeastSlope) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  if (std::abs(slope) < kMinSlope) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   return p_W - change / slope * *ray;
 }
 
@@ -185,10 +193,10 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
     const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
     const double place = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm() : p_W.dot(direction);
     double to = place;
-    if (draw[is_outlier] < s.outlier_share)
-      to += (2 * draw[how_far] - 1) * s.outlier_reach_m;
-    else if (draw[flies] < s.flying_share)
-      to += (2 * draw[how_far] - 1) * s.flying_m;
+    if (draw[is_outlier] < s.outlier_probability)
+      to += (2 * draw[how_far] - 1) * s.max_outlier_distance_m;
+    else if (draw[flies] < s.flying_probability)
+      to += (2 * draw[how_far] - 1) * s.max_flying_distance_m;
     if (s.quantisation_m > 0) to = std::round(to / s.quantisation_m) * s.quantisation_m;
     if (cloud.image && to <= 0)
       lose(cloud, i);
@@ -199,10 +207,11 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
 
 // Where points lie for the sensor, as x and z: across the view in metres, or in the image at depth 1. And how
 // large a hole around each is there.
-FaultySensor::Seen FaultySensor::across_the_view(const PointCloud& cloud) const {
-  const Vec3 view = settings_.view.normalized(), across = view.unitOrthogonal(), other = view.cross(across);
+FaultySensor::ViewCoordinates FaultySensor::across_the_view(const PointCloud& cloud) const {
+  const Vec3 view_direction = settings_.view_direction.normalized(), across = view_direction.unitOrthogonal(),
+             other = view_direction.cross(across);
   const RigidTransform X_CW = cloud.image ? cloud.image->X_WC.inverse() : RigidTransform::Identity();
-  Seen seen;
+  ViewCoordinates seen;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p = X_CW * cloud.point(i);
     if (cloud.image)
@@ -217,7 +226,7 @@ FaultySensor::Seen FaultySensor::across_the_view(const PointCloud& cloud) const 
 }
 
 // Around points drawn one after the other, also around those that are lost already, until the share is gone.
-void FaultySensor::cut_holes(PointCloud& cloud, const Seen& seen, int frame) const {
+void FaultySensor::cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const {
   if (seen.measured.empty()) return;
   const double count = static_cast<double>(seen.measured.size());
   const UniformGridSearch search(seen.places, seen.hole_radius[seen.measured.front()]);
@@ -225,7 +234,7 @@ void FaultySensor::cut_holes(PointCloud& cloud, const Seen& seen, int frame) con
   inside.reserve(cloud.size(), false, false);
   std::vector<bool> gone(cloud.size());
   double lost = 0;
-  for (std::uint32_t hole = 1; lost < settings_.hole_share * count; ++hole) {
+  for (std::uint32_t hole = 1; lost < settings_.hole_fraction * count; ++hole) {
     const double drawn = uniforms(of_frame(key_, frame), hole)[0] * count;
     const std::uint32_t middle = seen.measured[static_cast<std::size_t>(drawn)];
     inside.clear();
@@ -242,7 +251,8 @@ void FaultySensor::cut_holes(PointCloud& cloud, const Seen& seen, int frame) con
 void FaultySensor::drop_points(PointCloud& cloud, int frame) const {
   const NoiseStream stream = of_points(key_, frame);
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (uniforms(stream, static_cast<std::uint32_t>(i))[drops] < settings_.dropout_share) lose(cloud, i);
+    if (uniforms(stream, static_cast<std::uint32_t>(i))[drops] < settings_.dropout_probability)
+      lose(cloud, i);
 }
 
 }  // namespace remote_touch

@@ -16,26 +16,26 @@ namespace remote_touch {
 // direction for all points; in a cloud with an image layout along the ray of each, as a distance from the
 // camera.
 struct SensorFaults {
-  Vec3 view{0, -1, 0};      // the way the sensor looks; any length
-  double repeat_share = 0;  // frames that show the one before them
-  double shear_s = 0;       // time in which the rows of a frame are read
-  double flying_share = 0, flying_m = 0.02;
-  double outlier_share = 0, outlier_reach_m = 0.05;
+  Vec3 view_direction{0, -1, 0};  // the way the sensor looks; any length
+  double repeat_probability = 0;  // frames that show the one before them
+  double rolling_shutter_s = 0;   // time in which the rows of a frame are read
+  double flying_probability = 0, max_flying_distance_m = 0.02;
+  double outlier_probability = 0, max_outlier_distance_m = 0.05;
   double quantisation_m = 0;
-  double hole_share = 0, hole_radius_m = 0.005;
-  double dropout_share = 0;
-  double late_share = 0, late_s = 0.05;
+  double hole_fraction = 0, hole_radius_m = 0.005;
+  double dropout_probability = 0;
+  double late_probability = 0, late_delay_s = 0.05;
 };
 
 Parameters parameters(SensorFaults& s);
-std::string conflict(const SensorFaults& s);
+std::string validate(const SensorFaults& s);
 
 // Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
 // fault at 0 they are the scenario's bit for bit. A point that is lost becomes NaN in all three coordinates,
 // so that the number of each stays. Truth, and what else there is to know, stays that of the scenario.
 class FaultySensor final : public Scenario {
  public:
-  // Throws std::invalid_argument for settings with a conflict.
+  // Throws std::invalid_argument for settings that validate() refuses.
   FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings, const NoiseKey& key,
                const Kernels& kernels);
 
@@ -60,7 +60,7 @@ class FaultySensor final : public Scenario {
   }
 
  private:
-  struct Seen {  // a cloud flat as the sensor sees it
+  struct ViewCoordinates {  // a cloud flat as the sensor sees it
     PointCloud places;
     std::vector<double> hole_radius;
     std::vector<std::uint32_t> measured;
@@ -68,14 +68,14 @@ class FaultySensor final : public Scenario {
   int shown(int frame) const;  // the frame whose content this one has
   int seen(int frame) const;   // the scenario's frame for it
   bool moves_points() const;
-  bool loses_points() const { return settings_.hole_share > 0 || settings_.dropout_share > 0; }
+  bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
   Vec3 sight(const PointCloud& cloud, const Vec3& p_W) const;
   void shear(PointCloud& cloud, double captured_s) const;
   Vec3 normal_at(const Vec3& p_W, double time_s) const;
   Vec3 as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
   void displace(PointCloud& cloud, int frame) const;
-  Seen across_the_view(const PointCloud& cloud) const;
-  void cut_holes(PointCloud& cloud, const Seen& seen, int frame) const;
+  ViewCoordinates across_the_view(const PointCloud& cloud) const;
+  void cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const;
   void drop_points(PointCloud& cloud, int frame) const;
 
   const std::unique_ptr<const Scenario> scenario_;

@@ -13,9 +13,9 @@ Parameters parameters(ImageMask::Settings& s) {
   return list;
 }
 
-std::string conflict(const ImageMask::Settings& s) {
+std::string validate(const ImageMask::Settings& s) {
   if (s.path.empty()) return "path = \"\": allowed a PNG file";
-  return conflict(s.values);
+  return validate(s.values);
 }
 
 RecordingPart input_files(const ImageMask::Settings& s) {
@@ -27,17 +27,17 @@ ImageMask::ImageMask(const Settings& settings)
       path_(settings.path),
       mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
 
-std::vector<double> ImageMask::shares(const PointCloud& cloud) const {
+std::vector<double> ImageMask::weights(const PointCloud& cloud) const {
   if (!cloud.image) throw InputError("image-mask", "the frame is no image; allowed with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   if (camera.width != width_ || camera.height != height_)
     throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +
                                 " pixels; allowed as many as the frames: " + std::to_string(camera.width) +
                                 " x " + std::to_string(camera.height));
-  std::vector<double> shares(cloud.size());
+  std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    shares[i] = cloud.point(i).allFinite() && (mask_[i] & 0xFFFFFF) != 0 ? 1 : 0;
-  return shares;
+    weights[i] = cloud.point(i).allFinite() && (mask_[i] & 0xFFFFFF) != 0 ? 1 : 0;
+  return weights;
 }
 
 }  // namespace remote_touch

@@ -16,7 +16,7 @@ class ImageMask final : public FixtureRule {
   // not black picks its point. Throws InputError when it cannot be read.
   explicit ImageMask(const Settings& settings);
   // Throws InputError when the cloud is no image, or of another size.
-  std::vector<double> shares(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:
   std::string path_;
@@ -25,7 +25,7 @@ class ImageMask final : public FixtureRule {
 };
 
 Parameters parameters(ImageMask::Settings& s);
-std::string conflict(const ImageMask::Settings& s);
+std::string validate(const ImageMask::Settings& s);
 RecordingPart input_files(const ImageMask::Settings& s);
 
 }  // namespace remote_touch

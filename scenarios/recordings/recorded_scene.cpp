@@ -9,7 +9,7 @@
 namespace remote_touch {
 
 namespace {
-constexpr std::size_t kMostKept = 8;  // 12 MB each
+constexpr std::size_t kMaxCached = 8;  // 12 MB each
 }  // namespace
 
 Parameters parameters(RecordedScene::Settings& s) {
@@ -19,15 +19,16 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
       {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0, "what follows the last frame"},
       {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
-      {"farthest_m", &s.farthest_m, 0.01, 100, "depth beyond which a measurement is discarded"},
+      {"max_depth_m", &s.max_depth_m, 0.01, 100, "depth beyond which a measurement is discarded"},
       {"truth_radius_m", &s.truth_radius_m, 1e-4, 1, "size of the patch that stands for the true surface"},
-      {"camera_m", &s.camera_m, -100, 100, "where the camera is in the base frame: its registration, 6.2.1"},
-      {"camera_turn_deg", &s.camera_turn_deg, -360, 360,
+      {"camera_position_m", &s.camera_position_m, -100, 100,
+       "where the camera is in the base frame: its registration, 6.2.1"},
+      {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
        "rotation vector of the camera in the base frame; zero: x right, y down, z forward"},
   };
 }
 
-std::string conflict(const RecordedScene::Settings& s) {
+std::string validate(const RecordedScene::Settings& s) {
   if (s.path.empty()) return "path = \"\": allowed a recording folder or a PCD file";
   if (s.last_frame >= 0 && s.last_frame < s.first_frame)
     return "last_frame = " + std::to_string(s.last_frame) +
@@ -41,7 +42,8 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
 
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings),
-      X_WC_(Eigen::Translation3d(settings.camera_m) * rotation(kRadiansPerDegree * settings.camera_turn_deg)),
+      X_WC_(Eigen::Translation3d(settings.camera_position_m) *
+            rotation(kRadiansPerDegree * settings.camera_rotation_deg)),
       recording_(index_recording(find_recording(settings.path))) {
   const FrameRange frames = frames_of(input_files(settings), recording_);
   first_ = frames.first, count_ = frames.last - frames.first + 1;
@@ -81,7 +83,7 @@ std::size_t RecordedScene::source_frame(int frame) const {
 
 // A frame in the base frame. Without a registration the bits stay as they were read.
 PointCloud RecordedScene::registered(std::size_t source) const {
-  PointCloud cloud = read_frame(recording_, source, settings_.farthest_m);
+  PointCloud cloud = read_frame(recording_, source, settings_.max_depth_m);
   if (X_WC_.matrix().isIdentity(0)) return cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Vec3 p_W = X_WC_ * cloud.point(i);
@@ -94,14 +96,14 @@ PointCloud RecordedScene::registered(std::size_t source) const {
 std::shared_ptr<const NeighbourSearch> RecordedScene::measured(int frame) const {
   const std::size_t source = source_frame(frame);
   const auto found =
-      std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.source == source; });
-  if (found != kept_.end()) {
-    std::rotate(kept_.begin(), found, found + 1);
+      std::find_if(cache_.begin(), cache_.end(), [&](const CachedFrame& k) { return k.source == source; });
+  if (found != cache_.end()) {
+    std::rotate(cache_.begin(), found, found + 1);
   } else {
-    if (kept_.size() == kMostKept) kept_.pop_back();
-    kept_.insert(kept_.begin(), {source, make_search(registered(source))});
+    if (cache_.size() == kMaxCached) cache_.pop_back();
+    cache_.insert(cache_.begin(), {source, make_search(registered(source))});
   }
-  return kept_.front().points;
+  return cache_.front().points;
 }
 
 std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
@@ -129,22 +131,22 @@ struct Patch {
 };
 
 Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v, int half,
-                   double widest_m) {
+                   double max_width_m) {
   Patch patch;
   if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
   Vec3 across = Vec3::Zero(), down = Vec3::Zero();
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  double nearest = std::numeric_limits<double>::infinity(), max_distance = 0;
   for (int y = -half; y <= half; ++y) {
     for (int x = -half; x <= half; ++x) {
       const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
       if (!p.allFinite()) return patch;
       patch.mean += p, across += x * p, down += y * p;
-      nearest = std::min(nearest, p.z()), farthest = std::max(farthest, p.z());
+      nearest = std::min(nearest, p.z()), max_distance = std::max(max_distance, p.z());
     }
   }
   patch.mean /= (2 * half + 1) * (2 * half + 1);
   patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
-  patch.usable = farthest - nearest <= widest_m && patch.normal.allFinite();
+  patch.usable = max_distance - nearest <= max_width_m && patch.normal.allFinite();
   return patch;
 }
 

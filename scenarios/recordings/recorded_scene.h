@@ -22,10 +22,10 @@ class RecordedScene final : public Scenario {
     int last_frame = -1;
     Playback playback = Playback::hold;
     double frame_rate_hz = 0;
-    double farthest_m = 3;
+    double max_depth_m = 3;
     double truth_radius_m = 0.006;
-    Vec3 camera_m = Vec3::Zero();  // place and rotation vector of the camera in the base frame
-    Vec3 camera_turn_deg = Vec3::Zero();
+    Vec3 camera_position_m = Vec3::Zero();  // place and rotation vector of the camera in the base frame
+    Vec3 camera_rotation_deg = Vec3::Zero();
   };
 
   // Throws InputError when the recording cannot be read.
@@ -52,15 +52,15 @@ class RecordedScene final : public Scenario {
   double rate_hz_ = 0;
   // The frames asked for last, the newest in front: renderer, trajectory and truth ask in turn, and a short
   // part is played many times.
-  struct Kept {
+  struct CachedFrame {
     std::size_t source;
     std::shared_ptr<const NeighbourSearch> points;
   };
-  mutable std::vector<Kept> kept_;
+  mutable std::vector<CachedFrame> cache_;
 };
 
 Parameters parameters(RecordedScene::Settings& s);
-std::string conflict(const RecordedScene::Settings& s);
+std::string validate(const RecordedScene::Settings& s);
 RecordingPart input_files(const RecordedScene::Settings& s);  // what the scene reads
 
 }  // namespace remote_touch

@@ -72,17 +72,17 @@ double number(const fs::path& file, const nlohmann::json& json, const std::strin
 
 // Up to 65535: more pixels a side than any depth camera has.
 int pixel_count(const fs::path& file, const nlohmann::json& json, const std::string& key) {
-  constexpr double kMost = 65535;
+  constexpr double kMaxCount = 65535;
   const double value = number(file, json, key, true);
-  if (value == std::floor(value) && value <= kMost) return static_cast<int>(value);
-  refuse(file, key + " = " + json[key].dump() + ": allowed a whole number from 1 to 65535");
+  if (value == std::floor(value) && value <= kMaxCount) return static_cast<int>(value);
+  refuse(file, key + " = " + json[key].dump() + ": allowed an integer from 1 to 65535");
 }
 
 // Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
 double frame_rate(const fs::path& file, const nlohmann::json& json) {
-  constexpr double kMost_hz = 10000;
+  constexpr double kMax_hz = 10000;
   const double value = number(file, json, "frame_rate_hz", true);
-  if (value <= kMost_hz) return value;
+  if (value <= kMax_hz) return value;
   refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": allowed above 0 to 10000");
 }
 
@@ -111,14 +111,14 @@ std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& 
   }
   const auto stem = [](const fs::path& file) { return file.stem().string(); };
   bool all_numbers = true;
-  std::size_t longest = 0;
+  std::size_t max_length = 0;
   for (const fs::path& file : files) {
     all_numbers &= stem(file).find_first_not_of("0123456789") == std::string::npos;
-    longest = std::max(longest, stem(file).size());
+    max_length = std::max(max_length, stem(file).size());
   }
   // Numbers padded to one length are in order where their texts are: 9.png comes before 10.png.
   const auto key = [&](const fs::path& file) {
-    const std::string padding(all_numbers ? longest - stem(file).size() : 0, '0');
+    const std::string padding(all_numbers ? max_length - stem(file).size() : 0, '0');
     return std::pair(padding + stem(file), file);
   };
   std::sort(files.begin(), files.end(),
@@ -242,18 +242,18 @@ RecordingIndex index_recording(const fs::path& path) {
   return index;
 }
 
-PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double farthest_m) {
+PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m) {
   assert(frame < index.frames.size());
   const RecordedFrame& source = index.frames[frame];
   if (index.kind == RecordingIndex::Kind::pcd) {
     PointCloud cloud = read_pcd(source.depth).cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!(cloud.z[i] > farthest_m)) continue;
+      if (!(cloud.z[i] > max_depth_m)) continue;
       cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
     }
     return cloud;
   }
-  const DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, farthest_m);
+  const DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, max_depth_m);
   check_size(source.depth, depth.width, depth.height, index.camera);
   PointCloud cloud = cloud_from_depth(depth, index.camera, RigidTransform::Identity());
   if (!source.colour.empty()) {

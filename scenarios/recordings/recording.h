@@ -48,8 +48,8 @@ RecordingIndex index_recording(const std::filesystem::path& path);
 RecordingIndex list_recording(const std::filesystem::path& path);
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
-// What is missing or farther than farthest_m is NaN. A PCD file may also hold a cloud that is not organised.
+// What is missing or farther than max_depth_m is NaN. A PCD file may also hold a cloud that is not organised.
 // Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not of the camera's size.
-PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double farthest_m);
+PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m);
 
 }  // namespace remote_touch

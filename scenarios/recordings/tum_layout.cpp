@@ -52,11 +52,11 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
 
 std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
                                             const std::vector<StampedFile>& colour) {
-  constexpr double kFarthestStamp_s = 0.02;  // the tolerance of the benchmark's own association
+  constexpr double kMaxStamp_s = 0.02;  // the tolerance of the benchmark's own association
   std::vector<RecordedFrame> frames;
   for (const StampedFile& image : depth) {
     RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
-    double nearest_s = kFarthestStamp_s;
+    double nearest_s = kMaxStamp_s;
     for (const StampedFile& other : colour) {
       const double off_s = std::abs(other.stamp_s - image.stamp_s);
       if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other.file;

@@ -33,7 +33,7 @@ class FlatGrid final : public Scenario {
 };
 
 Parameters parameters(FlatGrid::Settings& s);
-inline std::string conflict(const FlatGrid::Settings&) {
+inline std::string validate(const FlatGrid::Settings&) {
   return {};
 }
 

@@ -12,7 +12,7 @@ Parameters parameters(ListedPoints::Settings& s) {
   };
 }
 
-std::string conflict(const ListedPoints::Settings& s) {
+std::string validate(const ListedPoints::Settings& s) {
   return s.points.empty() ? "points: allowed one or more" : "";
 }
 

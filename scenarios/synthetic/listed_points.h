@@ -30,6 +30,6 @@ class ListedPoints final : public Scenario {
 };
 
 Parameters parameters(ListedPoints::Settings& s);
-std::string conflict(const ListedPoints::Settings& s);
+std::string validate(const ListedPoints::Settings& s);
 
 }  // namespace remote_touch

@@ -47,7 +47,7 @@ class MovingLift final : public Scenario {
 };
 
 Parameters parameters(MovingLift::Settings& s);
-inline std::string conflict(const MovingLift::Settings&) {
+inline std::string validate(const MovingLift::Settings&) {
   return {};
 }
 

@@ -9,11 +9,11 @@ Parameters parameters(MovingPlane::Settings& s) {
   Parameters list = parameters(s.grid);
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
-      {"start_m", &s.start_m, -100, 100, "height of the plane while it waits"},
+      {"start_height_m", &s.start_height_m, -100, 100, "height of the plane while it waits"},
       {"wait_s", &s.wait_s, 0, 1e4, "how long it waits"},
       {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "of the rise, when it begins"},
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, 0, 1000, "of the rise"},
-      {"rise_m", &s.rise_m, 0, 100, "how far it rises; it then rests"},
+      {"rise_height_m", &s.rise_height_m, 0, 100, "how far it rises; it then rests"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
        "standard deviation of the noise on x, y and z, redrawn per frame"},
   };
@@ -21,27 +21,27 @@ Parameters parameters(MovingPlane::Settings& s) {
   return list;
 }
 
-std::string conflict(const MovingPlane::Settings& s) {
+std::string validate(const MovingPlane::Settings& s) {
   const bool moves = s.speed_m_per_s > 0 || s.acceleration_m_per_s2 > 0;
-  return moves || s.rise_m == 0
+  return moves || s.rise_height_m == 0
              ? ""
-             : "rise_m: a plane without speed_m_per_s and acceleration_m_per_s2 does not rise: allowed 0";
+             : "rise_height_m: a plane without speed_m_per_s and acceleration_m_per_s2 does not rise: allowed 0";
 }
 
 MovingPlane::MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings), key_(key), kernels_(kernels) {
-  if (settings.rise_m == 0) return;
+  if (settings.rise_height_m == 0) return;
   // The root of v t + a t^2 / 2 = rise, without cancellation and for a = 0 too.
   const double v = settings.speed_m_per_s, a = settings.acceleration_m_per_s2;
-  rising_s_ = 2 * settings.rise_m / (v + std::sqrt(v * v + 2 * a * settings.rise_m));
+  rising_s_ = 2 * settings.rise_height_m / (v + std::sqrt(v * v + 2 * a * settings.rise_height_m));
   frame_count_ += static_cast<int>(std::ceil((settings.wait_s + rising_s_) * settings.frame_rate_hz - 1e-6));
 }
 
 double MovingPlane::height(double time_s) const {
   const double t = time_s - settings_.wait_s;
-  if (t >= rising_s_) return settings_.start_m + settings_.rise_m;
-  if (t <= 0) return settings_.start_m;
-  return settings_.start_m + t * (settings_.speed_m_per_s + 0.5 * settings_.acceleration_m_per_s2 * t);
+  if (t >= rising_s_) return settings_.start_height_m + settings_.rise_height_m;
+  if (t <= 0) return settings_.start_height_m;
+  return settings_.start_height_m + t * (settings_.speed_m_per_s + 0.5 * settings_.acceleration_m_per_s2 * t);
 }
 
 std::shared_ptr<const NeighbourSearch> MovingPlane::points(int frame) const {

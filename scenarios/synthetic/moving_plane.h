@@ -14,11 +14,11 @@ class MovingPlane final : public Scenario {
   struct Settings {
     Grid grid{100, 100, 0.002, 0, 0};
     double frame_rate_hz = 30;
-    double start_m = -0.06;
+    double start_height_m = -0.06;
     double wait_s = 1;
     double speed_m_per_s = 0.1;
     double acceleration_m_per_s2 = 0;
-    double rise_m = 0.1;
+    double rise_height_m = 0.1;
     double noise_sigma_m = 0;
   };
 
@@ -44,6 +44,6 @@ class MovingPlane final : public Scenario {
 };
 
 Parameters parameters(MovingPlane::Settings& s);
-std::string conflict(const MovingPlane::Settings& s);
+std::string validate(const MovingPlane::Settings& s);
 
 }  // namespace remote_touch

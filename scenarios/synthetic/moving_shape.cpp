@@ -48,7 +48,7 @@ Parameters parameters(MovingShape::Settings& s) {
   return list;
 }
 
-std::string conflict(const MovingShape::Settings& s) {
+std::string validate(const MovingShape::Settings& s) {
   const double steepest = steepest_deg(s.shape) + std::abs(s.motion.tilt_deg) + s.motion.rock_deg;
   if (steepest < 89) return {};
   return "tilt_deg = " + std::to_string(s.motion.tilt_deg) +

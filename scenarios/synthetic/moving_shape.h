@@ -63,6 +63,6 @@ class MovingShape final : public Scenario {
 };
 
 Parameters parameters(MovingShape::Settings& s);
-std::string conflict(const MovingShape::Settings& s);
+std::string validate(const MovingShape::Settings& s);
 
 }  // namespace remote_touch

@@ -8,14 +8,14 @@ namespace remote_touch {
 namespace {
 // Made beyond what was asked for, so that the next queries of a moving proxy find their points ready; who
 // asks for more than a proxy needs asks once a frame.
-constexpr double kSpareMargin_m = 0.010, kLargestOfProxy_m = 0.025;
+constexpr double kSpareMargin_m = 0.010, kMaxOfProxy_m = 0.025;
 // Far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
 }  // namespace
 
 NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
     : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
-  index_.grow(size() + kLanes), x_asks_.grow(static_cast<std::size_t>(grid.columns));
+  index_.grow(size() + kLanes), x_bounds_.grow(static_cast<std::size_t>(grid.columns));
   x_.grow(size()), y_.grow(size()), z_.grow(size());
 }
 
@@ -35,24 +35,24 @@ NoisyGridSearch::Range NoisyGridSearch::within(double centre, double reach, doub
 
 // First the points that can come into the cylinder at all, by their random words; then their noise.
 void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) const {
-  const double inner = cylinder.radius_m + kRounding_m, reach = inner + kLargestNormal * sigma_m_;
+  const double inner = cylinder.radius_m + kRounding_m, reach = inner + kMaxNormal * sigma_m_;
   const Range columns = within(cylinder.x, reach, grid_.x(0), grid_.spacing_m, grid_.columns);
   const Range rows = within(cylinder.z, reach, grid_.z(0), grid_.spacing_m, grid_.rows);
   // Its noise must bring a point at this offset from the axis towards it.
-  const auto asks = [&](double offset) {
+  const auto bounds = [&](double offset) {
     const double outside = std::abs(offset) - inner;
-    return outside > 0 ? asks_of(outside / sigma_m_, -offset) : asks_of(0, 0);
+    return outside > 0 ? word_bounds(outside / sigma_m_, -offset) : word_bounds(0, 0);
   };
   const auto width = static_cast<std::size_t>(std::max(0, columns.last - columns.first + 1));
   for (std::size_t i = 0; i < width; ++i)
-    x_asks_[i] = asks(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x);
+    x_bounds_[i] = bounds(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x);
   std::size_t candidates = 0;
   for (int row = rows.first; row <= rows.last; ++row)
     candidates +=
         kernels.candidates(stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width,
-                           x_asks_.data(), asks(grid_.z(row) - cylinder.z), index_.data() + candidates);
+                           x_bounds_.data(), bounds(grid_.z(row) - cylinder.z), index_.data() + candidates);
   make_points(candidates, cylinder, kernels);
-  made_ = cylinder;
+  cached_cylinder_ = cylinder;
 }
 
 // The noisy points of the first indices; those outside the cylinder are dropped.
@@ -86,10 +86,10 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
 }
 
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
-  const double reach = ball.radius + kLargestNormal * sigma_m_ + kRounding_m;
+  const double reach = ball.radius + kMaxNormal * sigma_m_ + kRounding_m;
   if (std::abs(ball.centre.y() - height_m_) > reach) return;
-  const double spare_m = ball.radius <= kLargestOfProxy_m ? kSpareMargin_m : 0;
-  if (!made_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
+  const double spare_m = ball.radius <= kMaxOfProxy_m ? kSpareMargin_m : 0;
+  if (!cached_cylinder_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
   out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
 }
 

@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 // Points (x, height, z) of the grid, each coordinate plus sigma times a standard normal. The result is
-// bit-identical to making every point: a normal has a hard bound (kLargestNormal), so points that start too
+// bit-identical to making every point: a normal has a hard bound (kMaxNormal), so points that start too
 // far away cannot come near; of the others only those are made whose random words let them move far enough.
 // Keeps the points made around the last place asked for, so it serves one reader at a time.
 class NoisyGridSearch final : public NeighbourSearch {
@@ -35,11 +35,11 @@ class NoisyGridSearch final : public NeighbourSearch {
   const double height_m_, sigma_m_;
   const NoiseStream stream_;
   // Room for all points, so that a query never allocates.
-  mutable Cylinder made_;
+  mutable Cylinder cached_cylinder_;
   mutable std::size_t count_ = 0;
-  mutable Room<std::uint32_t> index_;
-  mutable Room<std::uint64_t> x_asks_;
-  mutable Room<double> x_, y_, z_;
+  mutable Buffer<std::uint32_t> index_;
+  mutable Buffer<std::uint64_t> x_bounds_;
+  mutable Buffer<double> x_, y_, z_;
 };
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kFullTurn = 360 * kRadiansPerDegree;
+constexpr double kFullRotation = 360 * kRadiansPerDegree;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ double steepest_deg(const Shape::Settings& s) {
     case Shape::Kind::valley:
       return s.slope_deg;
     case Shape::Kind::ripple:
-      return std::atan(kFullTurn * s.amplitude_m / s.period_m) / kRadiansPerDegree;
+      return std::atan(kFullRotation * s.amplitude_m / s.period_m) / kRadiansPerDegree;
     default:
       return 0;
   }
@@ -64,8 +64,8 @@ void Shape::add_flank(double x0, double x1, double slope) {
 }
 
 Shape::Wave Shape::wave(double x) const {
-  const double periods = x / settings_.period_m, per_m = kFullTurn / settings_.period_m;
-  const auto [sine, cosine] = sin_cos(kFullTurn * (periods - std::floor(periods)));
+  const double periods = x / settings_.period_m, per_m = kFullRotation / settings_.period_m;
+  const auto [sine, cosine] = sin_cos(kFullRotation * (periods - std::floor(periods)));
   const double height_m = settings_.amplitude_m * sine;
   return {height_m, settings_.amplitude_m * per_m * cosine, -per_m * per_m * height_m};
 }
@@ -120,10 +120,10 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
   };
   double squared = std::min(squared_at(from), squared_at(to));
   double before = from;
-  bool falls = way_along_wave(p_S, before).value <= 0;
+  bool falls = distance_along_wave(p_S, before).value <= 0;
   for (int i = 1; i <= kSamples; ++i) {
     const double next = from + (to - from) * i / kSamples;
-    const bool rises = way_along_wave(p_S, next).value > 0;
+    const bool rises = distance_along_wave(p_S, next).value > 0;
     if (falls && rises) squared = std::min(squared, squared_at(foot_on_wave(p_S, before, next)));
     before = next, falls = !rises;
   }
@@ -133,7 +133,7 @@ double Shape::distance_to_wave(const Vec3& p_S) const {
 }
 
 // Half the slope, along x, of the squared distance from p to the wave at x; and how that changes.
-Shape::Way Shape::way_along_wave(const Vec3& p_S, double x) const {
+Shape::DistanceSlope Shape::distance_along_wave(const Vec3& p_S, double x) const {
   const Wave w = wave(x);
   const double up = w.height_m - p_S.y();
   return {x - p_S.x() + up * w.slope, 1 + w.slope * w.slope + up * w.bend_per_m};
@@ -142,12 +142,12 @@ Shape::Way Shape::way_along_wave(const Vec3& p_S, double x) const {
 // Where that slope is 0, between a place where it falls and one where it rises: by Newton's method, and by
 // halving where that would leave them.
 double Shape::foot_on_wave(const Vec3& p_S, double low, double high) const {
-  constexpr int kMostSteps = 60;
+  constexpr int kMaxSteps = 60;
   double x = 0.5 * (low + high);
-  for (int step = 0; step < kMostSteps; ++step) {
-    const Way way = way_along_wave(p_S, x);
-    (way.value > 0 ? high : low) = x;
-    double next = x - way.value / way.slope;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const DistanceSlope displacement = distance_along_wave(p_S, x);
+    (displacement.value > 0 ? high : low) = x;
+    double next = x - displacement.value / displacement.slope;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     if (next == x) break;
     x = next;

@@ -40,11 +40,11 @@ class Shape {
   struct Wave {
     double height_m, slope, bend_per_m;  // and its first and second derivative
   };
-  struct Way {
+  struct DistanceSlope {
     double value, slope;
   };
   Wave wave(double x) const;
-  Way way_along_wave(const Vec3& p_S, double x) const;
+  DistanceSlope distance_along_wave(const Vec3& p_S, double x) const;
   double foot_on_wave(const Vec3& p_S, double low, double high) const;
   double distance_to_dome(const Vec3& p_S) const;
   double distance_to_wave(const Vec3& p_S) const;

@@ -64,9 +64,9 @@ ShapePose ShapeMotion::moved(double lift_m, double time_s) const {
   pose.y_m = lift_m;
   if (settings_.shake_amplitude_m > 0)
     pose.y_m += settings_.shake_amplitude_m * swing(moving_s * settings_.shake_hz);
-  double turn_deg = settings_.tilt_deg;
-  if (settings_.rock_deg > 0) turn_deg += settings_.rock_deg * swing(moving_s * settings_.rock_hz);
-  if (turn_deg != 0) std::tie(pose.sine, pose.cosine) = sin_cos(turn_deg * kRadiansPerDegree);
+  double rotation_deg = settings_.tilt_deg;
+  if (settings_.rock_deg > 0) rotation_deg += settings_.rock_deg * swing(moving_s * settings_.rock_hz);
+  if (rotation_deg != 0) std::tie(pose.sine, pose.cosine) = sin_cos(rotation_deg * kRadiansPerDegree);
   return pose;
 }
 

@@ -31,7 +31,7 @@ class Slot final : public PanelScene {
 };
 
 Parameters parameters(Slot::Settings& s);
-inline std::string conflict(const Slot::Settings&) {
+inline std::string validate(const Slot::Settings&) {
   return {};
 }
 

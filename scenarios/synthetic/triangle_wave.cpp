@@ -11,8 +11,7 @@ Parameters parameters(TriangleWave::Settings& s) {
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"period_m", &s.period_m, 1e-3, 10, "length of one wave along x"},
-      {"largest_height_m", &s.largest_height_m, 0, 10,
-       "peak-to-peak height at the end of the grid; 0 at its start"},
+      {"max_height_m", &s.max_height_m, 0, 10, "peak-to-peak height at the end of the grid; 0 at its start"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
   };
   list.insert(list.end(), more.begin(), more.end());
@@ -29,7 +28,7 @@ double TriangleWave::surface_height(double x, double, double) const {
   const double half = 0.5 * settings_.period_m;
   const double place = std::clamp(x - start, 0.0, length) / half;
   const auto corner = [&](double k) {
-    const double amplitude = 0.5 * settings_.largest_height_m * std::min(1.0, k * half / length);
+    const double amplitude = 0.5 * settings_.max_height_m * std::min(1.0, k * half / length);
     return std::fmod(k, 2) == 1 ? amplitude : -amplitude;
   };
   const double k = std::floor(place);

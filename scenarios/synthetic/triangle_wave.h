@@ -16,7 +16,7 @@ class TriangleWave final : public Scenario {
     Grid grid{300, 100, 0.0015, 0, 0};
     double frame_rate_hz = 30;
     double period_m = 0.06;
-    double largest_height_m = 0.03;
+    double max_height_m = 0.03;
     double noise_sigma_m = 0;
   };
 
@@ -36,7 +36,7 @@ class TriangleWave final : public Scenario {
 };
 
 Parameters parameters(TriangleWave::Settings& s);
-inline std::string conflict(const TriangleWave::Settings&) {
+inline std::string validate(const TriangleWave::Settings&) {
   return {};
 }
 

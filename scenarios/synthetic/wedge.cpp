@@ -15,26 +15,26 @@ Parameters parameters(Wedge::Settings& s) {
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
       {"open_gap_m", &s.open_gap_m, 0, 10, "between the lower edges, at first and at last"},
       {"closed_gap_m", &s.closed_gap_m, 0, 10, "between the lower edges, while closed; 0: they meet"},
-      {"closing_at_s", &s.closing_at_s, 0, 1e4, "the walls begin to close, evenly"},
-      {"closed_at_s", &s.closed_at_s, 0, 1e4, "the walls are closed"},
-      {"reopening_at_s", &s.reopening_at_s, 0, 1e4, "the walls begin to open again"},
-      {"open_at_s", &s.open_at_s, 0, 1e4, "the walls are open, and rest"},
+      {"close_start_s", &s.close_start_s, 0, 1e4, "the walls begin to close, evenly"},
+      {"close_end_s", &s.close_end_s, 0, 1e4, "the walls are closed"},
+      {"open_start_s", &s.open_start_s, 0, 1e4, "the walls begin to open again"},
+      {"open_end_s", &s.open_end_s, 0, 1e4, "the walls are open, and rest"},
       {"offset_m", &s.offset_m, -10, 10, "shift of the wedge along z"},
       {"tilt_deg", &s.tilt_deg, -90, 90, "turn of the wedge about x, through the middle of its lower edges"},
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
   };
 }
 
-std::string conflict(const Wedge::Settings& s) {
-  const double times[] = {s.closing_at_s, s.closed_at_s, s.reopening_at_s, s.open_at_s};
+std::string validate(const Wedge::Settings& s) {
+  const double times[] = {s.close_start_s, s.close_end_s, s.open_start_s, s.open_end_s};
   return std::is_sorted(std::begin(times), std::end(times))
              ? ""
-             : "closing_at_s, closed_at_s, reopening_at_s, open_at_s: allowed only in this order";
+             : "close_start_s, close_end_s, open_start_s, open_end_s: allowed only in this order";
 }
 
 Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings),
-      frame_count_(1 + static_cast<int>(std::ceil(settings.open_at_s * settings.frame_rate_hz - 1e-6))) {
+      frame_count_(1 + static_cast<int>(std::ceil(settings.open_end_s * settings.frame_rate_hz - 1e-6))) {
   const auto [s, c] = sin_cos(settings.tilt_deg * kRadiansPerDegree);
   up_ = {0, c, s}, across_ = {0, -s, c};
   std::tie(sine_, cosine_) = sin_cos(0.5 * settings.angle_deg * kRadiansPerDegree);
@@ -42,10 +42,10 @@ Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)
 
 double Wedge::gap_m(double time_s) const {
   const Settings& s = settings_;
-  if (time_s < s.closing_at_s || time_s >= s.open_at_s) return s.open_gap_m;
-  if (time_s >= s.closed_at_s && time_s <= s.reopening_at_s) return s.closed_gap_m;
-  const double open = time_s < s.closed_at_s ? (s.closed_at_s - time_s) / (s.closed_at_s - s.closing_at_s)
-                                             : (time_s - s.reopening_at_s) / (s.open_at_s - s.reopening_at_s);
+  if (time_s < s.close_start_s || time_s >= s.open_end_s) return s.open_gap_m;
+  if (time_s >= s.close_end_s && time_s <= s.open_start_s) return s.closed_gap_m;
+  const double open = time_s < s.close_end_s ? (s.close_end_s - time_s) / (s.close_end_s - s.close_start_s)
+                                             : (time_s - s.open_start_s) / (s.open_end_s - s.open_start_s);
   return s.closed_gap_m + open * (s.open_gap_m - s.closed_gap_m);
 }
 

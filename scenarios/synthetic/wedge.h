@@ -17,10 +17,10 @@ class Wedge final : public PanelScene {
     double spacing_m = 0.002;
     double open_gap_m = 0.05;
     double closed_gap_m = 0;
-    double closing_at_s = 1;
-    double closed_at_s = 2;
-    double reopening_at_s = 3;
-    double open_at_s = 4;
+    double close_start_s = 1;
+    double close_end_s = 2;
+    double open_start_s = 3;
+    double open_end_s = 4;
     double offset_m = 0;
     double tilt_deg = 0;
     double frame_rate_hz = 30;
@@ -44,6 +44,6 @@ class Wedge final : public PanelScene {
 };
 
 Parameters parameters(Wedge::Settings& s);
-std::string conflict(const Wedge::Settings& s);
+std::string validate(const Wedge::Settings& s);
 
 }  // namespace remote_touch

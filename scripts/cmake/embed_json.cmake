@@ -1,6 +1,6 @@
 # Writes JSON files of data/ into the program, so that one binary is all a user has to carry. FILES: a list, OUTPUT: the
-# C++ file, FUNCTION: of runners/settings/stored.h, which returns them. The name of each is its file's without the ending.
-set(text "// Written by the build from data/; edit those files.\n#include \"runners/settings/stored.h\"\n\n")
+# C++ file, FUNCTION: of runners/settings/embedded_data.h, which returns them. The name of each is its file's without the ending.
+set(text "// Written by the build from data/; edit those files.\n#include \"runners/settings/embedded_data.h\"\n\n")
 string(APPEND text "namespace remote_touch {\n\nnamespace {\nconstexpr StoredText kTexts[] = {\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)

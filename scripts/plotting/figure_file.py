@@ -1,4 +1,4 @@
-"""Reads a figure file: HDF5 of the schema remote-touch-figure/1, which analysis/figures/result_file.cpp writes."""
+"""Reads a figure file: HDF5 of the schema remote-touch-figure/2, which analysis/figures/result_file.cpp writes."""
 import dataclasses
 import math
 import re
@@ -6,7 +6,7 @@ import re
 import h5py
 import numpy as np
 
-SCHEMA = "remote-touch-figure/1"
+SCHEMA = "remote-touch-figure/2"
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image")
 NEED_Z = ("map", "band", "image")
 

@@ -81,7 +81,7 @@ void add_assignments() {
   add_rule<NearPoint>(
       "near-point", cloud,
       [near](const PointCloud& frame, std::size_t i) {
-        return (frame.point(i) - near.point_m).norm() <= near.within_m;
+        return (frame.point(i) - near.point_m).norm() <= near.inner_radius_m;
       },
       near);
   add_rule<HueRange>("hue-range", cloud,

@@ -24,7 +24,8 @@ const double kListRadius_m = kSettings.r3_m * (1 + 0.8661 * 0.125);
 
 // The mean stiffness is a quotient of sums of some thousand N/m, each term on a grid of 2e-7.
 bool same(const naive::RegionStep& a, const naive::RegionStep& b) {
-  return a.step.state == b.step.state && std::abs(a.step.nearest_m - b.step.nearest_m) < 1e-15 &&
+  return a.step.state == b.step.state &&
+         std::abs(a.step.nearest_distance_m - b.step.nearest_distance_m) < 1e-15 &&
          (a.step.normal - b.step.normal).norm() < 1e-12 && (a.step.step - b.step.step).norm() < 1e-12 &&
          std::abs(a.stiffness - b.stiffness) < 1e-9 * b.stiffness;
 }
@@ -41,8 +42,8 @@ class Stepper {
     listed_ = list.size();
     const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, near_.sum_grid(),
                                kSettings.stiffness_N_per_m};
-    const Survey survey = kernels_.survey(list.view(), proxy_W.data(), regions);
-    naive::Step out{classify(survey.nearest, kSettings), survey.nearest, unit_normal(survey, Vec3::Zero())};
+    const ContactQuery query = kernels_.contact_query(list.view(), proxy_W.data(), regions);
+    naive::Step out{classify(query.nearest, kSettings), query.nearest, unit_normal(query, Vec3::Zero())};
     const Vec3 u = hip_W - proxy_W;
     if (out.state == ContactState::contact)
       out.step = contact_step(out.normal, u, kSettings);
@@ -50,8 +51,7 @@ class Stepper {
       out.step = entrenched_step(list.view(), kernels_, proxy_W, out.normal, u, kSettings);
     else
       out.step = free_step(near_, proxy_W, u, kSettings);
-    return {out,
-            survey.weight_sum > 0 ? survey.stiffness_sum / survey.weight_sum : kSettings.stiffness_N_per_m};
+    return {out, query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : kSettings.stiffness_N_per_m};
   }
   std::size_t listed() const { return listed_; }
 
@@ -145,12 +145,12 @@ void time_ticks(benchmark::State& state, const FixtureScene& scene, const Kernel
   renderer.on_frame({0, 0, 0, scene.search});
   renderer.step({fixture_hip_above()}, 0);
   for (int i = 0; i < 10; ++i) renderer.step({fixture_hip_at(0)}, 0);  // down to the surface
-  int tick = 0, way = 1;
+  int tick = 0, displacement = 1;
   double steps = 0;
   for (auto _ : state) {
     steps += renderer.step({fixture_hip_at(tick / kTickRate_hz)}, 0).steps;
-    tick += way;
-    if (tick == 0 || tick == kTicksOneWay) way = -way;
+    tick += displacement;
+    if (tick == 0 || tick == kTicksOneWay) displacement = -displacement;
   }
   state.counters["steps"] = benchmark::Counter(steps, benchmark::Counter::kAvgIterations);
 }

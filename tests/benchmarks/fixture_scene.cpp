@@ -30,7 +30,7 @@ PointCloud with_columns(PointCloud cloud, double radius, double radius_right, bo
 // Single steps in contact, as the renderer itself finds them.
 FixtureSteps contact_steps(const FixtureScene& scene) {
   ProxyParameters one_step = kSettings;
-  one_step.steps_per_tick = 1, one_step.closing_steps = 0;
+  one_step.steps_per_tick = 1, one_step.max_exit_steps = 0;
   const double rate_hz = kTickRate_hz * kSettings.steps_per_tick;
   ProxyRenderer renderer(one_step, rate_hz, scenes::kernels());
   renderer.on_frame({0, 0, 0, scene.search});
@@ -48,17 +48,18 @@ FixtureSteps contact_steps(const FixtureScene& scene) {
 
 // The same steps begun out or in along the normal; with a way, the HIP is so far below.
 FixtureSteps lifted(const FixtureScene& scene, const FixtureSteps& contact, FixtureSteps out, double height_m,
-                    double way_m) {
+                    double displacement_m) {
   Neighbourhood near(kSettings.r3_m, scenes::kernels());
   near.set_points(scene.search);
   for (std::size_t i = 0; i < contact.proxies.size(); ++i) {
     const Vec3& p_W = contact.proxies[i];
     const PointsView points = near.around(p_W).view();
-    const Survey survey = scenes::kernels().survey(
+    const ContactQuery query = scenes::kernels().contact_query(
         points, p_W.data(), {kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, near.sum_grid(), 0});
-    const Vec3 normal = Vec3(survey.normal_sum[0], survey.normal_sum[1], survey.normal_sum[2]).normalized();
+    const Vec3 normal = Vec3(query.normal_sum[0], query.normal_sum[1], query.normal_sum[2]).normalized();
     out.proxies.push_back(p_W + height_m * normal);
-    out.hips.push_back(way_m > 0 ? Vec3(out.proxies.back() - way_m * normal) : contact.hips[i]);
+    out.hips.push_back(displacement_m > 0 ? Vec3(out.proxies.back() - displacement_m * normal)
+                                          : contact.hips[i]);
   }
   return out;
 }

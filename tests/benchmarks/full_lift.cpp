@@ -60,7 +60,7 @@ class AllNoiseSearch final : public NeighbourSearch {
 
  private:
   const std::size_t size_;
-  Room<double> x_, y_, z_;
+  Buffer<double> x_, y_, z_;
 };
 
 }  // namespace

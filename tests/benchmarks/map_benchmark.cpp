@@ -36,7 +36,7 @@ void report(const char* check, bool is_right) {
 
 struct Seconds {
   double wall = std::numeric_limits<double>::infinity(), cpu = wall;
-  void least(const Seconds& other) { wall = std::min(wall, other.wall), cpu = std::min(cpu, other.cpu); }
+  void min(const Seconds& other) { wall = std::min(wall, other.wall), cpu = std::min(cpu, other.cpu); }
 };
 
 // cpu: of all threads together.
@@ -168,17 +168,17 @@ void print(const char* name, int steps, int threads, std::size_t lifts, const Se
 struct SampledTime {
   const char* name;
   std::function<void(const Cell&)> lift;
-  std::vector<Seconds> least = {};
+  std::vector<Seconds> min = {};
 
   void measure(const std::vector<Cell>& cells) {
-    least.resize(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) least[i].least(seconds([&] { lift(cells[i]); }));
+    min.resize(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) min[i].min(seconds([&] { lift(cells[i]); }));
   }
   void print(std::size_t map_lifts) const {
     Seconds map{0, 0};
-    const double share = static_cast<double>(map_lifts) / static_cast<double>(least.size());
-    for (const Seconds& each : least) map.wall += share * each.wall, map.cpu += share * each.cpu;
-    benchmarks::print(name, 30, 1, least.size(), map);
+    const double fraction = static_cast<double>(map_lifts) / static_cast<double>(min.size());
+    for (const Seconds& each : min) map.wall += fraction * each.wall, map.cpu += fraction * each.cpu;
+    benchmarks::print(name, 30, 1, min.size(), map);
   }
 };
 
@@ -186,14 +186,14 @@ struct SampledTime {
 struct MapTime {
   const Map& map;
   int steps, threads;
-  Seconds least = {};
+  Seconds min = {};
   std::string measures = {};  // their digest
 
   void measure() {
     omp_set_num_threads(threads);
-    least.least(seconds([&] { measures = digest(run_sweep(map.sweep(), {}).measures); }));
+    min.min(seconds([&] { measures = digest(run_sweep(map.sweep(), {}).measures); }));
   }
-  void print() const { benchmarks::print("map", steps, threads, map.lift_count(), least); }
+  void print() const { benchmarks::print("map", steps, threads, map.lift_count(), min); }
 };
 
 void time(const Map& at_30, const Map& at_1000, int repetitions) {

@@ -71,21 +71,21 @@ Vec3 entrenched_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const
 Step proxy_step(const std::vector<Vec3>& points, const Vec3& proxy_W, const Vec3& hip_W,
                 const Vec3& previous_normal, const ProxyParameters& p) {
   Step out;
-  out.nearest_m = std::numeric_limits<double>::infinity();
+  out.nearest_distance_m = std::numeric_limits<double>::infinity();
   Vec3 sum = Vec3::Zero();
   for (const Vec3& x : points) {
     const Vec3 e = proxy_W - x;
     const double distance = e.norm();
-    if (distance < out.nearest_m) out.nearest_m = distance;
+    if (distance < out.nearest_distance_m) out.nearest_distance_m = distance;
     if (distance > 0 && distance < p.r3_m) sum += e / distance * psi(distance, p);  // (4.1)
   }
   const double length = sum.norm();
   out.normal = length > 1e-10 ? Vec3(sum / length) : previous_normal;
   const Vec3 u = hip_W - proxy_W;
-  if (out.nearest_m < p.r1_m) {
+  if (out.nearest_distance_m < p.r1_m) {
     out.state = ContactState::entrenched;
     out.step = entrenched_step(points, proxy_W, out.normal, p);
-  } else if (out.nearest_m <= p.r2_m) {
+  } else if (out.nearest_distance_m <= p.r2_m) {
     out.state = ContactState::contact;
     out.step = contact_step(out.normal, u, p);
   } else {
@@ -151,12 +151,12 @@ std::vector<Ball> sliding_on_grid() {
 
 // The row with the fewest holes on its right half, for a recorded image has whole regions without depth.
 int measured_row(const PointCloud& cloud, const CameraIntrinsics& camera) {
-  int best = 0, most = -1;
+  int best = 0, max = -1;
   for (int v = camera.height / 3; v < 2 * camera.height / 3; ++v) {
     int measured = 0;
     for (int u = camera.width / 2; u < camera.width; ++u)
       measured += std::isfinite(cloud.z[static_cast<std::size_t>(v) * camera.width + u]) ? 1 : 0;
-    if (measured > most) best = v, most = measured;
+    if (measured > max) best = v, max = measured;
   }
   return best;
 }

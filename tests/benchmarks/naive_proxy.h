@@ -15,7 +15,7 @@ namespace remote_touch::naive {
 
 struct Step {
   ContactState state = ContactState::free;  // before the step
-  double nearest_m = 0;
+  double nearest_distance_m = 0;
   Vec3 normal = Vec3::Zero();
   Vec3 step = Vec3::Zero();
 };

@@ -56,13 +56,13 @@ std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyPa
 RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy_W, const Vec3& hip_W,
                        const Vec3& previous_normal, const ProxyParameters& p) {
   Step out;
-  out.nearest_m = std::numeric_limits<double>::infinity();
+  out.nearest_distance_m = std::numeric_limits<double>::infinity();
   Vec3 sum = Vec3::Zero();
   double weights = 0, weighted = 0;
   for (const RegionPoint& point : points) {
     const Vec3 e = proxy_W - point.x;
     const double distance = e.norm(), r = distance - point.radius;  // (5.5)
-    out.nearest_m = std::min(out.nearest_m, r);
+    out.nearest_distance_m = std::min(out.nearest_distance_m, r);
     if (r >= p.r3_m) continue;
     const double weight = psi(r, p);
     if (distance > 0) sum += e / distance * weight;
@@ -71,10 +71,10 @@ RegionStep region_step(const std::vector<RegionPoint>& points, const Vec3& proxy
   const double length = sum.norm();
   out.normal = length > 1e-10 ? Vec3(sum / length) : previous_normal;
   const Vec3 u = hip_W - proxy_W;
-  if (out.nearest_m < p.r1_m) {
+  if (out.nearest_distance_m < p.r1_m) {
     out.state = ContactState::entrenched;
     out.step = entrenched_step(points, proxy_W, out.normal, p);
-  } else if (out.nearest_m <= p.r2_m) {
+  } else if (out.nearest_distance_m <= p.r2_m) {
     out.state = ContactState::contact;
     out.step = contact_step(out.normal, u, p);
   } else {
@@ -98,7 +98,7 @@ void region_tick(const std::vector<RegionPoint>& points, const Vec3& hip_W, cons
   const bool has_regions =
       std::any_of(points.begin(), points.end(), [](const auto& x) { return x.radius > 0; });
   if (!has_regions) return;
-  for (int k = 0; k < p.closing_steps && is_entrenched(points, proxy.proxy_W, p); ++k) step_on();
+  for (int k = 0; k < p.max_exit_steps && is_entrenched(points, proxy.proxy_W, p); ++k) step_on();
   if (is_entrenched(points, proxy.proxy_W, p)) proxy.proxy_W = proxy.clear_W;
 }
 

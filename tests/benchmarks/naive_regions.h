@@ -18,7 +18,7 @@ struct RegionPoint {
 std::vector<RegionPoint> region_points_of(const PointCloud& cloud, const ProxyParameters& p);
 
 struct RegionStep {
-  Step step;             // nearest_m is the least r_n, (5.5)
+  Step step;             // nearest_distance_m is the least r_n, (5.5)
   double stiffness = 0;  // (5.8) as a weighted mean; the renderer's own where no point has a weight
 };
 

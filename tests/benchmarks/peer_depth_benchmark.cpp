@@ -31,7 +31,7 @@ void report(benchmark::State& state, const CameraIntrinsics& camera, const std::
       if (!std::isnan(e)) sum += e * e, ++count;
     }
   state.counters["rms_" + unit] = std::sqrt(sum / count);
-  state.counters["share"] = count / all;
+  state.counters["fraction"] = count / all;
 }
 
 double angle_deg(const Vec3& n, const Vec3& truth) {

@@ -103,22 +103,22 @@ class GImpact : btCollisionWorld::ContactResultCallback {
 };
 
 // Of the boxes around single triangles.
-double longest_diagonal(const MeshAndPoints& from) {
-  double longest = 0;
+double max_diagonal(const MeshAndPoints& from) {
+  double max_length = 0;
   for (const auto& [a, b, c] : from.triangles) {
     Vector low, high;
     for (int i = 0; i < 3; ++i)
       std::tie(low[i], high[i]) =
           std::minmax({from.vertices[a][i], from.vertices[b][i], from.vertices[c][i]});
-    longest = std::max(longest, (high - low).norm());
+    max_length = std::max(max_length, (high - low).norm());
   }
-  return longest;
+  return max_length;
 }
 
 // It finds pairs of triangles whose boxes meet and that reach behind each other: more than those that cross.
 ToolPeer gimpact(const std::string& name, const MeshAndPoints& from, double side_m) {
   const double radius = side_m / std::sqrt(3.0);
-  ToolPeer peer{name, {}, radius, std::sqrt(3.0) * radius + longest_diagonal(from), true, {}, {}};
+  ToolPeer peer{name, {}, radius, std::sqrt(3.0) * radius + max_diagonal(from), true, {}, {}};
   for (std::size_t i = 0; i < from.points_W.size(); ++i)
     peer.bodies_W.push_back(triangle_around(from.points_W[i], from.normals_W[i], side_m));
   const auto collision = std::make_shared<GImpact>(from, peer.bodies_W);
@@ -198,12 +198,12 @@ class Octree {
 };
 
 // Pairs of cell and triangle alone, without the places of contact: ours are alone too.
-ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t most_contacts) {
+ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t max_contacts) {
   const auto collision = std::make_shared<Octree>(from);
   const double diagonal = std::sqrt(3.0) * kCell_m;
-  ToolPeer peer{name, {}, diagonal, diagonal, most_contacts > 1, {}, {}};
+  ToolPeer peer{name, {}, diagonal, diagonal, max_contacts > 1, {}, {}};
   for (const Place& p : from.points_W) peer.bodies_W.push_back(collision->cell_of(p));
-  const fcl::CollisionRequestd request(most_contacts, false);
+  const fcl::CollisionRequestd request(max_contacts, false);
   peer.touch = [=](const Pose& pose) { return collision->touch(pose, request); };
   peer.touched = [=] { return collision->touched(); };
   return peer;
@@ -212,10 +212,10 @@ ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t 
 }  // namespace
 
 std::vector<ToolPeer> tool_peers(const MeshAndPoints& from) {
-  constexpr std::size_t kMostContacts = 1'000'000;
+  constexpr std::size_t kMaxContacts = 1'000'000;
   // Triangles as wide as a voxel of ours, and as wide as the points are apart.
   return {gimpact("bullet_gimpact_0.5mm", from, 5e-4), gimpact("bullet_gimpact_2mm", from, 2e-3),
-          octree("fcl_octree_all", from, kMostContacts), octree("fcl_octree_first", from, 1)};
+          octree("fcl_octree_all", from, kMaxContacts), octree("fcl_octree_first", from, 1)};
 }
 
 }  // namespace remote_touch::peers

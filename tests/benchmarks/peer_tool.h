@@ -27,7 +27,7 @@ struct ToolPeer {
   std::string name;
   std::vector<std::vector<Place>> bodies_W;  // corners of the convex body of every point
   // How far from the surface a point may be whose body is found.
-  double farthest_outside_m, farthest_inside_m;
+  double max_outside_m, max_inside_m;
   bool all;  // false: the search ends at the first contact
   // The work that is timed; returns the number of contacts. A body has one with each triangle that it meets.
   std::function<std::size_t(const Pose&)> touch;

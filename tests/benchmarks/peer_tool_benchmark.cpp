@@ -22,14 +22,14 @@
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_tool.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 
 namespace remote_touch::benchmarks {
 namespace {
 
 constexpr double kUndecided_m = 1e-5;  // others compute in float, or iterate up to 1e-6
 constexpr double kPressed_m = 2e-3;
-constexpr int kLeastCrossing = 100;  // bodies in all poses, or the comparison says too little
+constexpr int kMinCrossing = 100;  // bodies in all poses, or the comparison says too little
 
 peers::Place place(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -118,8 +118,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
     int crossing_here = 0;
     for (std::size_t i = 0; i < peer.bodies_W.size(); ++i) {
       const double d = surface.signed_m(pose, surface.scene().cloud.point(i));
-      const bool in_reach =
-          d <= peer.farthest_outside_m + kUndecided_m && -d <= peer.farthest_inside_m + kUndecided_m;
+      const bool in_reach = d <= peer.max_outside_m + kUndecided_m && -d <= peer.max_inside_m + kUndecided_m;
       if (found.contains(i) && !in_reach) return false;
       if (!in_reach || !surface.crosses(pose, peer.bodies_W[i])) continue;
       if (peer.all && !found.contains(i)) return false;
@@ -128,7 +127,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
     if (!peer.all && (contacts > 1 || (contacts == 0 && crossing_here > 0))) return false;
     crossing += crossing_here;
   }
-  return crossing >= kLeastCrossing && peer.touch(plain(surface.scene().separated)) == 0;
+  return crossing >= kMinCrossing && peer.touch(plain(surface.scene().separated)) == 0;
 }
 
 // --- time ---
@@ -136,7 +135,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
 void add_ours(const Surface& surface, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : levels()) {
     const auto finder = std::make_shared<TouchFinder>(surface.scene().tool, *kernels);
-    finder->on_frame(formed<TiledCloud>(surface.scene().cloud));
+    finder->on_frame(formatted<TiledCloud>(surface.scene().cloud));
     add(
         "list/" + where + "/ours/" + kernels->isa, [=, &surface] { return ours_right(*finder, surface); },
         [=](benchmark::State& state) {

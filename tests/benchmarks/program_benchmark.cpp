@@ -26,7 +26,7 @@ using Vector = peers::Vector<6>;
 // Many, in turn: branches cannot be learnt by heart.
 constexpr int kProblems = 64;
 // Beyond, there are too many subsets to wait for.
-constexpr int kMostRowsOfSubsets = 6;
+constexpr int kMaxRowsOfSubsets = 6;
 
 // Random rows around a point near the origin that fulfils them, and a random target.
 struct Problems {
@@ -46,7 +46,7 @@ struct Problems {
         problem.add(row, -0.5 * std::abs(normal(random)));
       }
       programs.push_back(problem.program());
-      answers.push_back(peers::least_distance(problem).y);
+      answers.push_back(peers::min_distance(problem).y);
       all.push_back(problem);
     }
   }
@@ -88,7 +88,7 @@ void add_programs() {
         program.add(p.all[i].rows[j], p.all[i].bounds[j]);
       return program.nearest(p.all[i].target).y;
     });
-    if (rows <= kMostRowsOfSubsets)
+    if (rows <= kMaxRowsOfSubsets)
       add_solver("program_subsets/" + count, problems, 1e-10, [](const Problems& p, std::size_t i) {
         return peers::nearest_of_all_subsets(p.all[i]).value_or(Vector::Zero());
       });

@@ -19,8 +19,8 @@ constexpr double kFocal_px = 525;
 
 double away_from_capsule(const Vec3& p, const Vec3& from, const Vec3& to, double radius_m) {
   const Vec3 along = to - from;
-  const double share = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - from - share * along).norm() - radius_m;
+  const double fraction = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - from - fraction * along).norm() - radius_m;
 }
 
 // Of a place, in the wheel's frame: the ring, three spokes and a hub along its axis.
@@ -83,9 +83,9 @@ PointCloud frame_of_wheels(double nearer_m) {
   return cloud;
 }
 
-SphereTool generated_sphere_tool(const std::string& name, int most_leaves) {
+SphereTool generated_sphere_tool(const std::string& name, int max_leaves) {
   const auto body = generated_tool(name);
-  const auto leaves = std::make_shared<const SphereTree>(make_tool_spheres(*body, most_leaves).spheres);
+  const auto leaves = std::make_shared<const SphereTree>(make_tool_spheres(*body, max_leaves).spheres);
   return {body, leaves, reach_of(*leaves)};
 }
 

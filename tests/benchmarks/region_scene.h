@@ -25,7 +25,7 @@ struct SphereTool {
   std::shared_ptr<const SphereTree> leaves;
   double reach_m;
 };
-SphereTool generated_sphere_tool(const std::string& name, int most_leaves);
+SphereTool generated_sphere_tool(const std::string& name, int max_leaves);
 // Three links of 0.27 m, one after the other, of 30 mm radius, all around them leaves of 12 mm.
 SphereTool arm_of_leaves(int leaves);
 

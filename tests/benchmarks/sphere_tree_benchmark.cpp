@@ -16,7 +16,7 @@
 #include "core/tool/motion/look_ahead_motion.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -89,16 +89,16 @@ void add_tree(const PointCloud& cloud) {
 bool detection_right(const SphereTool& tool, const PointCloud& cloud, const ToolPose& pose,
                      const Kernels& kernels) {
   RegionContacts contacts(tool.leaves, kLookAhead_m, kernels);
-  contacts.on_frame(formed<RegionTree>(cloud));
+  contacts.on_frame(formatted<RegionTree>(cloud));
   const SphereTree& regions = contacts.regions().spheres();
   const std::vector<LeafPair> expected = naive_pairs(*tool.leaves, pose, regions, kLookAhead_m);
   TreeCollision collision(*tool.leaves, kernels);
   collision.on_frame(regions);
-  std::vector<LeafPair> room(expected.size() + 1);
-  if (collision.near(pose, kLookAhead_m, room) != expected.size()) return false;
+  std::vector<LeafPair> buffer(expected.size() + 1);
+  if (collision.near(pose, kLookAhead_m, buffer) != expected.size()) return false;
   for (std::size_t i = 0; i < expected.size(); ++i)
-    if (room[i].tool != expected[i].tool || room[i].region != expected[i].region ||
-        room[i].gap_m != expected[i].gap_m)
+    if (buffer[i].tool != expected[i].tool || buffer[i].region != expected[i].region ||
+        buffer[i].gap_m != expected[i].gap_m)
       return false;
   return contacts.near(pose, 0).deepest_m == deepest_m(expected);
 }
@@ -112,7 +112,7 @@ void add_detection(const std::string& name, const PointCloud& cloud, const Place
         [=, &cloud](benchmark::State& state) {
           const SphereTool& tool = tool_of(name, kLeaves);
           RegionContacts contacts(tool.leaves, kLookAhead_m, *kernels);
-          contacts.on_frame(formed<RegionTree>(cloud));
+          contacts.on_frame(formatted<RegionTree>(cloud));
           TreeCollision collision(*tool.leaves, *kernels);
           collision.on_frame(contacts.regions().spheres());
           std::size_t chosen = 0;
@@ -168,8 +168,9 @@ class Ride {
       : tool_(tool),
         course_(course),
         contacts_(tool.leaves, kLookAhead_m, kernels),
-        motion_({.detections_per_tick = kDetections, .at_rest_m = kAtRest_m}, *tool.body, tool.reach_m) {
-    contacts_.on_frame(formed<RegionTree>(wheels()));
+        motion_({.detections_per_tick = kDetections, .rest_threshold_m = kAtRest_m}, *tool.body,
+                tool.reach_m) {
+    contacts_.on_frame(formatted<RegionTree>(wheels()));
     pose_ = course.device(0);
     pose_.p_W.z() -= 0.3;
     for (int i = 0; i < 20; ++i) step(course.device(0));
@@ -177,7 +178,7 @@ class Ride {
   // The frame is not part of the tick.
   void begin(int tick) {
     const PointCloud* frame = course_.frame(tick);
-    if (frame) contacts_.on_frame(formed<RegionTree>(*frame));
+    if (frame) contacts_.on_frame(formatted<RegionTree>(*frame));
     updated_ = frame != nullptr;
   }
   ToolMotionReport step(int tick) { return step(course_.device(tick)); }
@@ -222,8 +223,8 @@ bool ride_right(const SphereTool& tool, const Course& course, const Kernels& ker
 void time_ride(benchmark::State& state, const SphereTool& tool, const Course& course,
                const Kernels& kernels) {
   const auto ticks = static_cast<std::size_t>(course.ticks);
-  std::vector<double> least_ns(ticks, std::numeric_limits<double>::infinity());
-  double detections = 0, most = 0, rides = 0;
+  std::vector<double> min_ns(ticks, std::numeric_limits<double>::infinity());
+  double detections = 0, max = 0, rides = 0;
   for (auto _ : state) {
     state.PauseTiming();
     Ride ride(tool, course, kernels);
@@ -233,19 +234,19 @@ void time_ride(benchmark::State& state, const SphereTool& tool, const Course& co
       const double start_ns = cpu_ns();
       const ToolMotionReport report = ride.step(tick);
       const double ns = cpu_ns() - start_ns;
-      least_ns[static_cast<std::size_t>(tick)] = std::min(least_ns[static_cast<std::size_t>(tick)], ns);
-      detections += report.detections, most = std::max(most, double(report.detections));
+      min_ns[static_cast<std::size_t>(tick)] = std::min(min_ns[static_cast<std::size_t>(tick)], ns);
+      detections += report.detections, max = std::max(max, double(report.detections));
     }
     ++rides;
   }
   double sum = 0;
-  for (const double ns : least_ns) sum += ns;
-  std::sort(least_ns.begin(), least_ns.end());
+  for (const double ns : min_ns) sum += ns;
+  std::sort(min_ns.begin(), min_ns.end());
   state.counters["mean_ns"] = sum / course.ticks;
-  state.counters["p99_9_ns"] = least_ns[static_cast<std::size_t>(0.999 * (least_ns.size() - 1) + 0.5)];
-  state.counters["largest_ns"] = least_ns.back();
+  state.counters["p99_9_ns"] = min_ns[static_cast<std::size_t>(0.999 * (min_ns.size() - 1) + 0.5)];
+  state.counters["max_ns"] = min_ns.back();
   state.counters["detections"] = detections / rides / course.ticks;
-  state.counters["most_detections"] = most;
+  state.counters["max_detections"] = max;
 }
 
 void add_ride(const std::string& name, int leaves, const std::string& kind, const Course& course) {

@@ -19,7 +19,7 @@ namespace remote_touch::benchmarks {
 namespace {
 
 bool same(const naive::Step& a, const naive::Step& b) {
-  return a.state == b.state && std::abs(a.nearest_m - b.nearest_m) < 1e-15 &&
+  return a.state == b.state && std::abs(a.nearest_distance_m - b.nearest_distance_m) < 1e-15 &&
          (a.normal - b.normal).norm() < 1e-11 && (a.step - b.step).norm() < 1e-14;
 }
 
@@ -65,11 +65,11 @@ naive::Step step_from(const GatheredPoints& list, double sum_grid, const Kernels
                       const Vec3& proxy_W, const Vec3& hip_W) {
   const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, sum_grid,
                              kSettings.stiffness_N_per_m};
-  const Survey survey = kernels.survey(list.view(), proxy_W.data(), regions);
+  const ContactQuery query = kernels.contact_query(list.view(), proxy_W.data(), regions);
   naive::Step out;
-  out.nearest_m = survey.nearest;
-  out.state = classify(survey.nearest, kSettings);
-  out.normal = unit_normal(survey, Vec3::Zero());
+  out.nearest_distance_m = query.nearest;
+  out.state = classify(query.nearest, kSettings);
+  out.normal = unit_normal(query, Vec3::Zero());
   if (out.state == ContactState::contact) out.step = contact_step(out.normal, hip_W - proxy_W, kSettings);
   return out;
 }

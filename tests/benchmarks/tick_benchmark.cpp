@@ -27,14 +27,14 @@ void time_ticks(benchmark::State& state, const Slide& slide, const Kernels& kern
   renderer.on_frame({0, 0, 0, slide.search});
   renderer.step({slide.above}, 0);
   for (int i = 0; i < 10; ++i) renderer.step({slide.start}, 0);  // down to the surface
-  int tick = 0, way = 1;
+  int tick = 0, displacement = 1;
   double steps = 0, in_contact = 0;
   for (auto _ : state) {
     const RenderOutput out = renderer.step({hip_at(slide, tick / kTickRate_hz)}, 0);
     steps += out.steps;
     in_contact += out.state == ContactState::contact ? 1 : 0;
-    tick += way;
-    if (tick == 0 || tick == kTicksOneWay) way = -way;
+    tick += displacement;
+    if (tick == 0 || tick == kTicksOneWay) displacement = -displacement;
   }
   using Counter = benchmark::Counter;
   state.counters["steps"] = Counter(steps, Counter::kAvgIterations);

@@ -15,7 +15,7 @@
 #include "core/tool/motion/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -36,7 +36,7 @@ const char* name_of(TouchRule rule) {
 void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : levels()) {
     const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
-    finder->on_frame(formed<TiledCloud>(scene.cloud));
+    finder->on_frame(formatted<TiledCloud>(scene.cloud));
     add(
         "tool_list/" + scene.name + "_" + where + "/" + kernels->isa,
         [=, &scene] {
@@ -78,20 +78,20 @@ struct Stepper {
         program(*scene.tool),
         rule(rule_),
         reach_m(scene.tool->reach_m) {
-    contacts.on_frame(formed<TiledCloud>(scene.cloud));
+    contacts.on_frame(formatted<TiledCloud>(scene.cloud));
   }
 
   // A millimetre down and along at most, as far as the points allow.
   ToolPose step(const ToolPose& pose, std::size_t& listed) {
-    Vector6 wish;
-    wish << 3e-4, -8e-4, 0, 0, 0, 0;
+    Vector6 desired;
+    desired << 3e-4, -8e-4, 0, 0, 0, 0;
     const auto found =
         rule == TouchRule::voxels ? contacts.in_voxels(pose).contacts : contacts.near(pose, 0).contacts;
     listed = found.size();
     const Eigen::Quaterniond q_TW = pose.q_WT.conjugate();
-    Vector6 wanted_T;
-    wanted_T << q_TW * wish.head<3>(), q_TW * wish.tail<3>();
-    const ConstrainedMotion motion = program.solve(wanted_T, found);
+    Vector6 desired_T;
+    desired_T << q_TW * desired.head<3>(), q_TW * desired.tail<3>();
+    const ConstrainedMotion motion = program.solve(desired_T, found);
     Vector6 a_g;
     a_g << pose.q_WT * motion.a_g.head<3>(), pose.q_WT * motion.a_g.tail<3>();
     return moved(pose, capped(a_g, reach_m, 1e-3));
@@ -151,7 +151,7 @@ bool rides_same(const ToolScene& scene, const ToolParameters& parameters, const 
   int touching = 0;
   for (int tick = 0; tick < kSlideTicks; ++tick) {
     const RenderOutput a = ride.step(tick), b = slowest.step(tick);
-    if (a.proxy_W != b.proxy_W || a.force_N != b.force_N || a.nearest_m != b.nearest_m ||
+    if (a.proxy_W != b.proxy_W || a.force_N != b.force_N || a.nearest_distance_m != b.nearest_distance_m ||
         a.tool->orientation_W.coeffs() != b.tool->orientation_W.coeffs() ||
         a.contact_count != b.contact_count)
       return false;
@@ -166,24 +166,24 @@ void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParame
                const Kernels& kernels) {
   Ride ride(scene, parameters, kernels);
   for (int tick = 0; tick < kSlideTicks; ++tick) ride.step(tick);  // from here on one slide is as the other
-  std::vector<double> least_ns(kSlideTicks, std::numeric_limits<double>::infinity());
+  std::vector<double> min_ns(kSlideTicks, std::numeric_limits<double>::infinity());
   double detections = 0, steps = 0;
   int tick = 0;
   for (auto _ : state) {
     const Clock::time_point start = Clock::now();
     const RenderOutput out = ride.step(tick);
     const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-    least_ns[static_cast<std::size_t>(tick)] = std::min(least_ns[static_cast<std::size_t>(tick)], ns);
+    min_ns[static_cast<std::size_t>(tick)] = std::min(min_ns[static_cast<std::size_t>(tick)], ns);
     detections += out.tool->detections, steps += out.steps;
     tick = (tick + 1) % kSlideTicks;
   }
-  std::erase(least_ns, std::numeric_limits<double>::infinity());
-  std::sort(least_ns.begin(), least_ns.end());
+  std::erase(min_ns, std::numeric_limits<double>::infinity());
+  std::sort(min_ns.begin(), min_ns.end());
   using Counter = benchmark::Counter;
   state.counters["detections"] = Counter(detections, Counter::kAvgIterations);
   state.counters["steps"] = Counter(steps, Counter::kAvgIterations);
-  state.counters["p99_9_ns"] = least_ns[static_cast<std::size_t>(0.999 * (least_ns.size() - 1) + 0.5)];
-  state.counters["largest_ns"] = least_ns.back();
+  state.counters["p99_9_ns"] = min_ns[static_cast<std::size_t>(0.999 * (min_ns.size() - 1) + 0.5)];
+  state.counters["max_ns"] = min_ns.back();
 }
 
 void add_ride(const ToolScene& scene, TouchRule rule) {

@@ -30,7 +30,7 @@ constexpr int kPressFrame = 15;  // from it on the HIP is below the cloud
 constexpr double kPressDepth_m = 0.03;
 constexpr int kFirstTimedFrame = 2;         // the two before begin a track
 constexpr double kStandsNoise_rc = 2;       // up to here the sheet may not pop through
-constexpr double kLeastHeight_rc = -0.5;    // of its proxy above the cloud, in the end
+constexpr double kMinHeight_rc = -0.5;      // of its proxy above the cloud, in the end
 constexpr double kMotionStep_rc = 0x1p-12;  // of the places in core/tracked_sheet/patch_frame.h
 
 // --- a lift, and what is answered on it ---
@@ -76,22 +76,22 @@ DeviceState device_at(const Lift& lift, int f) {
   return {Vec3(0, lift.motion.surface_height(0, 0, frame_of(lift, f).captured_s) - kPressDepth_m, 0)};
 }
 
-struct Contender {
+struct Method {
   std::string name;
   std::unique_ptr<Renderer> (*renderer)(const Kernels& kernels);
 };
 
-const Contender kProxy{"proxy", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
-                         return std::make_unique<ProxyRenderer>(ProxyParameters{}, kTickRate_hz, kernels);
-                       }};
-const Contender kSheet{"tracked-sheet", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
-                         return std::make_unique<TrackedSheetRenderer>(TrackedSheetParameters{}, kTickRate_hz,
-                                                                       kernels);
-                       }};
+const Method kProxy{"proxy", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
+                      return std::make_unique<ProxyRenderer>(ProxyParameters{}, kTickRate_hz, kernels);
+                    }};
+const Method kSheet{"tracked-sheet", [](const Kernels& kernels) -> std::unique_ptr<Renderer> {
+                      return std::make_unique<TrackedSheetRenderer>(TrackedSheetParameters{}, kTickRate_hz,
+                                                                    kernels);
+                    }};
 
-std::vector<RenderOutput> answers(const Lift& lift, const Contender& contender, const Kernels& kernels) {
+std::vector<RenderOutput> answers(const Lift& lift, const Method& method, const Kernels& kernels) {
   std::vector<RenderOutput> outputs;
-  const std::unique_ptr<Renderer> renderer = contender.renderer(kernels);
+  const std::unique_ptr<Renderer> renderer = method.renderer(kernels);
   for (int f = 0; f < kFrames; ++f) {
     renderer->on_frame(frame_of(lift, f));
     for (int tick = first_tick_of(f); tick < first_tick_of(f + 1); ++tick)
@@ -110,10 +110,10 @@ std::array<std::uint64_t, 3> bits(const Vec3& v) {
 }
 // Names every member, so that one more does not compile until it is compared too.
 auto bits(const RenderOutput& out) {
-  const auto& [proxy, force, slave, state, normal, velocity, nearest, carried, steps, converged, contacts,
-               frame, status, tool, guidance] = out;
+  const auto& [proxy, force, slave, state, normal, velocity, nearest, frame_correction, steps, converged,
+               contacts, frame, status, tool, guidance] = out;
   return std::tuple(bits(proxy), bits(force), bits(slave), state, bits(normal), bits(velocity), bits(nearest),
-                    bits(carried), steps, converged, contacts, frame, status, tool.has_value(),
+                    bits(frame_correction), steps, converged, contacts, frame, status, tool.has_value(),
                     guidance.has_value());
 }
 
@@ -122,11 +122,9 @@ bool same_bits(const std::vector<RenderOutput>& a, const std::vector<RenderOutpu
                     [](const RenderOutput& p, const RenderOutput& q) { return bits(p) == bits(q); });
 }
 
-bool levels_agree(const Lift& lift, const Contender& contender) {
-  const std::vector<RenderOutput> slowest = answers(lift, contender, kernels_for(Isa::x86_64));
-  const auto agrees = [&](const Kernels* level) {
-    return same_bits(answers(lift, contender, *level), slowest);
-  };
+bool levels_agree(const Lift& lift, const Method& method) {
+  const std::vector<RenderOutput> slowest = answers(lift, method, kernels_for(Isa::x86_64));
+  const auto agrees = [&](const Kernels* level) { return same_bits(answers(lift, method, *level), slowest); };
   const std::vector<const Kernels*> all = levels();
   return std::all_of(all.begin(), all.end(), agrees);
 }
@@ -135,8 +133,8 @@ bool proxy_right(const Lift& lift) {
   return levels_agree(lift, kProxy);
 }
 
-std::vector<RenderOutput> best_answers(const Lift& lift, const Contender& contender) {
-  return answers(lift, contender, kernels_for(best_isa()));
+std::vector<RenderOutput> best_answers(const Lift& lift, const Method& method) {
+  return answers(lift, method, kernels_for(best_isa()));
 }
 
 // While it moves only nearly: the sheet's motion is measured in steps of kMotionStep_rc, and before the
@@ -156,7 +154,7 @@ bool is_the_proxy_without_noise(const Lift& lift) {
 bool ends_above(const Lift& lift) {
   const Vec3 proxy_W = best_answers(lift, kSheet).back().proxy_W;
   const double end_s = time_of(first_tick_of(kFrames) - 1);
-  return lift.motion.signed_distance(proxy_W, end_s) > kLeastHeight_rc * kRc_m;
+  return lift.motion.signed_distance(proxy_W, end_s) > kMinHeight_rc * kRc_m;
 }
 
 bool sheet_right(const Lift& lift) {
@@ -176,7 +174,7 @@ struct LeastTimes {
   }
 };
 
-void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& least) {
+void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& min) {
   for (int f = 0; f < kFrames; ++f) {
     const auto i = static_cast<std::size_t>(f);
     const Frame frame = frame_of(lift, f);
@@ -188,8 +186,8 @@ void time_lift(const Lift& lift, Renderer& renderer, LeastTimes& least) {
       const RenderOutput out = renderer.step(device, time_of(tick));
       benchmark::DoNotOptimize(&out);
     }
-    least.ticks_ns[i] = std::min(least.ticks_ns[i], cpu_ns() - taken_ns);
-    least.frame_ns[i] = std::min(least.frame_ns[i], taken_ns - start_ns);
+    min.ticks_ns[i] = std::min(min.ticks_ns[i], cpu_ns() - taken_ns);
+    min.frame_ns[i] = std::min(min.frame_ns[i], taken_ns - start_ns);
   }
 }
 
@@ -206,32 +204,31 @@ void count_work(benchmark::State& state, const std::vector<RenderOutput>& output
   state.counters["in_contact"] = in_contact / ticks;
 }
 
-void time_lifts(benchmark::State& state, const Lift& lift, const Contender& contender, LeastTimes& least) {
+void time_lifts(benchmark::State& state, const Lift& lift, const Method& method, LeastTimes& min) {
   const Kernels& kernels = kernels_for(best_isa());
   for (auto _ : state) {
     state.PauseTiming();
-    const std::unique_ptr<Renderer> renderer = contender.renderer(kernels);
+    const std::unique_ptr<Renderer> renderer = method.renderer(kernels);
     state.ResumeTiming();
-    time_lift(lift, *renderer, least);
+    time_lift(lift, *renderer, min);
   }
   const auto sum = [](const auto& ns, int first) {
     return std::accumulate(ns.begin() + first, ns.end(), 0.0);
   };
   const int ticks = first_tick_of(kFrames) - first_tick_of(kPressFrame);
-  state.counters["frame_ns"] = sum(least.frame_ns, kFirstTimedFrame) / (kFrames - kFirstTimedFrame);
-  state.counters["tick_ns"] = sum(least.ticks_ns, kPressFrame) / ticks;
-  count_work(state, answers(lift, contender, kernels));
+  state.counters["frame_ns"] = sum(min.frame_ns, kFirstTimedFrame) / (kFrames - kFirstTimedFrame);
+  state.counters["tick_ns"] = sum(min.ticks_ns, kPressFrame) / ticks;
+  count_work(state, answers(lift, method, kernels));
 }
 
-void add_lift(const std::shared_ptr<const Lift>& lift, const Contender& contender,
-              bool (*is_right)(const Lift&)) {
+void add_lift(const std::shared_ptr<const Lift>& lift, const Method& method, bool (*is_right)(const Lift&)) {
   char noise[16];
   std::snprintf(noise, sizeof noise, "%g", lift->noise_rc);
-  const auto least = std::make_shared<LeastTimes>();
+  const auto min = std::make_shared<LeastTimes>();
   add(
-      "sheet_lift/" + contender.name + "/" + noise + "/" + kernels_for(best_isa()).isa,
+      "sheet_lift/" + method.name + "/" + noise + "/" + kernels_for(best_isa()).isa,
       [=] { return is_right(*lift); },
-      [=, &contender](benchmark::State& state) { time_lifts(state, *lift, contender, *least); });
+      [=, &method](benchmark::State& state) { time_lifts(state, *lift, method, *min); });
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class DeviceDouble {
 
     int devices = 1;
     int sensed_axes = 6, actuated_axes = 6;
-    double largest_force = 0, continuous_force = 0, largest_torque = 0, largest_stiffness = 0;
+    double max_force = 0, continuous_force = 0, max_torque = 0, max_stiffness = 0;
     bool is_unplugged = false;
     int reading_error = 0, writing_error = 0, switching_error = 0;  // the vendor's code, until it is 0 again
     // Of those that have such things.
@@ -62,7 +62,7 @@ class DeviceDouble {
     change(state_);
   }
   // The next such call hangs until release(), and then does what it was called for.
-  enum Call { none, tells_force, switches_on };
+  enum Call { none, reports_force, switches_on };
   void hang_next(Call call) { hangs_ = true, hang_next_ = call; }
   void release() { hangs_ = false; }
   bool is_hanging() const { return hangs_ && hang_next_ == none; }

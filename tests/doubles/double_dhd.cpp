@@ -72,11 +72,11 @@ bool dhdHasActiveWrist(char) {
 }
 
 double dhdGetMaxForce(char) {
-  return device.state().largest_force;
+  return device.state().max_force;
 }
 
 double dhdGetMaxTorque(char) {
-  return device.state().largest_torque;
+  return device.state().max_torque;
 }
 
 unsigned dhdGetButtonMask(char) {
@@ -99,7 +99,7 @@ int dhdGetAngularVelocityRad(double* x, double* y, double* z, char id) {
 
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty, double tz,
                                         double /*gripper*/, char id) {
-  device.enter(DeviceDouble::tells_force);
+  device.enter(DeviceDouble::reports_force);
   const int result = answer(id, device.state().writing_error);
   if (result == 0) device.tell({fx, fy, fz, tx, ty, tz});
   return result;

@@ -89,7 +89,7 @@ int readTaskPositionEAPI(void* handle, double* position, int size) {
   if (size < 12 || !device.now().has_motors_on) return kError;
   const DeviceDouble::State state = last_known();
   std::copy(state.position.begin(), state.position.end(), position);
-  std::copy(state.turn.begin(), state.turn.end(), position + 3);
+  std::copy(state.rotation.begin(), state.rotation.end(), position + 3);
   return answer(handle, device.state().reading_error);
 }
 
@@ -102,13 +102,13 @@ int readTaskVelocityEAPI(void* handle, double* velocity, int size) {
 }
 
 int writeForceEAPI(void* handle, double* force, int size) {
-  device.enter(DeviceDouble::tells_force);
+  device.enter(DeviceDouble::reports_force);
   if (size < 6) return kError;
   const int result = answer(handle, device.state().writing_error);
   if (result != kOk) return result;
-  std::array<double, 6> told{};
-  std::copy(force, force + 6, told.begin());
-  device.tell(told);
+  std::array<double, 6> commanded{};
+  std::copy(force, force + 6, commanded.begin());
+  device.tell(commanded);
   const std::lock_guard<std::mutex> lock(known_mutex);
   if (device.now().has_motors_on) known = device.state();
   return result;

@@ -94,7 +94,7 @@ void hdEndFrame(unsigned handle) {
   if (handle != kHandle) last_error = kBadHandle;
   if (!is_in_frame) last_error = kIllegalEnd;
   is_in_frame = false;
-  device.enter(DeviceDouble::tells_force);
+  device.enter(DeviceDouble::reports_force);
   const int error = device.state().writing_error;
   if (!device.state().is_unplugged && error == 0) device.tell(told);
   keep(error);
@@ -126,10 +126,10 @@ void hdGetDoublev(unsigned what, double* values) {
   if (what == 0x2052) give_transform(state, values);
   if (what == 0x2051) std::copy(state.velocity.begin(), state.velocity.end(), values);
   if (what == 0x2053) std::copy(state.turning.begin(), state.turning.end(), values);
-  if (what == 0x2602) *values = state.largest_stiffness;
-  if (what == 0x2603) *values = state.largest_force;
+  if (what == 0x2602) *values = state.max_stiffness;
+  if (what == 0x2603) *values = state.max_force;
   if (what == 0x2604) *values = state.continuous_force;
-  if (what == 0x2622) *values = state.largest_torque;
+  if (what == 0x2622) *values = state.max_torque;
   if (is_in_frame) keep(state.reading_error);
 }
 

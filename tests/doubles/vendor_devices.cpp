@@ -36,7 +36,7 @@ const VendorDevice kForceDimension{.name = "force_dimension",
                                    .drives_itself = false,
                                    .has_motors_on_to_read = false,
                                    .error = 7,
-                                   .told_error = 7,
+                                   .sent_error = 7,
                                    .gone_error = 2};
 
 const VendorDevice kOpenHaptics{.name = "open_haptics",
@@ -53,7 +53,7 @@ const VendorDevice kOpenHaptics{.name = "open_haptics",
                                 .drives_itself = true,
                                 .has_motors_on_to_read = false,
                                 .error = 0x0201,
-                                .told_error = 0x0201,
+                                .sent_error = 0x0201,
                                 .gone_error = 0x0302};
 
 const VendorDevice kEntact{.name = "entact",
@@ -70,7 +70,7 @@ const VendorDevice kEntact{.name = "entact",
                            .drives_itself = false,
                            .has_motors_on_to_read = true,
                            .error = 1,
-                           .told_error = -1,
+                           .sent_error = -1,
                            .gone_error = -1};
 
 void PrintTo(const VendorDevice* vendor, std::ostream* out) {
@@ -100,7 +100,7 @@ void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& 
   device.run(cycle);
 }
 
-std::vector<std::array<double, 6>> told_forces(const DeviceDouble& device) {
+std::vector<std::array<double, 6>> sent_forces(const DeviceDouble& device) {
   std::vector<std::array<double, 6>> told;
   for (const DeviceDouble::Event& event : device.events())
     if (event.told != std::array<double, 6>{} && (told.empty() || told.back() != event.told))

@@ -24,7 +24,7 @@ struct VendorDevice {
   Eigen::Matrix3d axes;  // takes ours to the vendor's
   double length_per_m, torque_per_Nm;
   bool has_buttons, drives_itself, has_motors_on_to_read;
-  int error, told_error;  // one of the vendor's codes, and what a fault tells of it
+  int error, sent_error;  // one of the vendor's codes, and what a fault tells of it
   int gone_error;         // of a device that is unplugged
 };
 
@@ -63,7 +63,7 @@ class CallCycle : public DeviceCycle {
 void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick);
 
 // What the library was told that is not zero, once for all that was the same in a row.
-std::vector<std::array<double, 6>> told_forces(const DeviceDouble& device);
+std::vector<std::array<double, 6>> sent_forces(const DeviceDouble& device);
 
 // What one tick reads once the device has been told a force, and whether it was a fault.
 struct ReadOnce {

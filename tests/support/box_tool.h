@@ -23,7 +23,7 @@ inline TriangleMesh box_mesh(const Vec3& half_m) {
   return mesh;
 }
 
-// The sides are whole numbers of voxels; the outermost layer inside is the shell.
+// The sides are integers of voxels; the outermost layer inside is the shell.
 inline std::shared_ptr<const VoxelTool> box_tool(const Vec3& half_m, double voxel_m = 5e-4) {
   auto tool = std::make_shared<VoxelTool>();
   tool->mesh = box_mesh(half_m);

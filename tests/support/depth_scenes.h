@@ -81,10 +81,10 @@ inline void add_noise(DepthImage& depth, double sigma_m, unsigned seed) {
 }
 
 // A share of the pixels, each with one of the values that mean no measurement.
-inline void add_holes(DepthImage& depth, double share, unsigned seed, const std::vector<double>& values) {
+inline void add_holes(DepthImage& depth, double fraction, unsigned seed, const std::vector<double>& values) {
   std::mt19937 random(seed);
   for (double& z : depth.z_m) {
-    const bool hole = random() < share * 4294967296.0;
+    const bool hole = random() < fraction * 4294967296.0;
     const double value = values[random() % values.size()];
     if (hole) z = value;
   }
@@ -93,7 +93,7 @@ inline void add_holes(DepthImage& depth, double share, unsigned seed, const std:
 // What a filter does to a step: its largest error there without noise, and what it leaves of the noise on
 // the walls, as a share. filtered(depth, camera) gives the depths of a cloud in the camera frame.
 struct StepSmear {
-  double largest_error_m;
+  double max_error_m;
   double noise_gain;
 };
 
@@ -109,7 +109,7 @@ StepSmear smear_of_step(double z_m, double step_m, double sigma_m, const Filtere
   for (int v = 10; v < 110; ++v)
     for (int u = 10; u < 150; ++u) {
       const std::size_t i = static_cast<std::size_t>(v * 160 + u);
-      smear.largest_error_m = std::max(smear.largest_error_m, std::abs(clean[i] - truth.depth.z_m[i]));
+      smear.max_error_m = std::max(smear.max_error_m, std::abs(clean[i] - truth.depth.z_m[i]));
       if (std::abs(u - 79.5) < 10) continue;
       smear.noise_gain += std::pow(left[i] - truth.depth.z_m[i], 2), ++count;
     }

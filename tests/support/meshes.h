@@ -54,10 +54,10 @@ inline double to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
 }
 
 inline double distance(const TriangleMesh& mesh, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles)
-    least = std::min(least, to_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
-  return least;
+    min = std::min(min, to_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
+  return min;
 }
 
 // By the solid angles of all triangles: 1 inside, 0 outside.

@@ -38,7 +38,7 @@ Trace awkward_trace(int ticks) {
     out.state = static_cast<ContactState>(i % 3), out.status = static_cast<RenderStatus>(i % 5);
     out.steps = i, out.converged = i % 2 == 0;
     out.contact_count = std::numeric_limits<int>::max() - i, out.frame_index = i / 33 - 1;
-    out.surface_velocity_m_per_s = number(), out.nearest_m = number();
+    out.surface_velocity_m_per_s = number(), out.nearest_distance_m = number();
     out.slave_W = vector();
     trace.append(0.001 * i, {vector()}, out, {number(), number(), 0});
   }

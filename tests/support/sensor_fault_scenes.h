@@ -53,8 +53,8 @@ inline std::size_t measured(const PointCloud& cloud) {
 }
 
 // A share of so many draws, within five standard deviations.
-inline void expect_share(double count, double of, double share) {
-  EXPECT_NEAR(count / of, share, 5 * std::sqrt(share * (1 - share) / of));
+inline void expect_fraction(double count, double of, double fraction) {
+  EXPECT_NEAR(count / of, fraction, 5 * std::sqrt(fraction * (1 - fraction) / of));
 }
 
 }  // namespace remote_touch

@@ -18,7 +18,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kBearable_s = 0.002;
-constexpr int kMostTries = 6;
+constexpr int kMaxTries = 6;
 constexpr const char* kTry = "REMOTE_TOUCH_TRY";  // of the process that was started again
 
 using Clock = std::chrono::steady_clock;
@@ -39,7 +39,7 @@ class Pauses {
   double end_s() {
     stop_ = true;
     for (std::thread& watch : watches_) watch.join();
-    return longest_s_;
+    return max_s_;
   }
 
  private:
@@ -58,14 +58,14 @@ class Pauses {
     }
   }
   void note(double late_s) {
-    double longest_s = longest_s_;
-    while (late_s > longest_s && !longest_s_.compare_exchange_weak(longest_s, late_s)) {
+    double max_s = max_s_;
+    while (late_s > max_s && !max_s_.compare_exchange_weak(max_s, late_s)) {
     }
   }
 
   std::atomic<int> watching_ = 0;
   std::atomic<bool> stop_ = false;
-  std::atomic<double> longest_s_ = 0;
+  std::atomic<double> max_s_ = 0;
   std::vector<std::thread> watches_;
 };
 
@@ -106,12 +106,12 @@ int run_timed_tests(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   Pauses pauses;
   const int failed = RUN_ALL_TESTS();
-  const double longest_s = pauses.end_s();
+  const double max_s = pauses.end_s();
   const std::string names = names_of_the_failed();
   if (failed == 0 || names.empty()) return failed;
   const int tries = tries_so_far();
-  std::printf("the machine paused for %.1f ms; try %d of %d\n", 1e3 * longest_s, tries, kMostTries);
-  if (longest_s > kBearable_s && tries < kMostTries) start_again(arguments, names, tries + 1);
+  std::printf("the machine paused for %.1f ms; try %d of %d\n", 1e3 * max_s, tries, kMaxTries);
+  if (max_s > kBearable_s && tries < kMaxTries) start_again(arguments, names, tries + 1);
   return failed;
 }
 

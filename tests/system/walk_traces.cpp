@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <random>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/figures/result_file.h"
 
 namespace {

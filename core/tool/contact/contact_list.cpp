@@ -9,7 +9,7 @@ namespace remote_touch {
 namespace {
 
 // The collision list reaches a little less far than the field.
-constexpr double kLongestReach_m = kFieldMargin_m - 2e-4;
+constexpr double kMaxReach_m = kFieldMargin_m - 2e-4;
 constexpr double kTouch_m = 1e-4;       // a disk closer to the tool than this is touched
 constexpr double kSearch_m = 3e-4;      // a disk closer than this has its nearest place searched
 constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
@@ -21,21 +21,21 @@ ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParame
     : p_(parameters),
       kernels_(kernels),
       finder_(std::move(tool), kernels),
-      disks_(parameters.disk_share, ContactThinning::kCell_m) {}
+      disks_(parameters.disk_radius_ratio, ContactThinning::kCell_m) {}
 
 void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   finder_.on_frame(std::move(cloud));
   const TiledCloud& points = finder_.cloud();
-  widest_disk_m_ = p_.disk_share * points.widest_spacing_m();
-  reserve(points.room());
+  max_disk_m_ = p_.disk_radius_ratio * points.max_spacing_m();
+  reserve(points.padded_size());
   disks_.on_frame(points);
 }
 
-void ContactList::reserve(std::size_t room) {
-  finder_.reserve(room), disks_.reserve(room);
-  contacts_.reserve(room), collisions_.reserve(room);
-  near_.reserve(room), nearest_.reserve(room);
-  clusters_.reserve(room);
+void ContactList::reserve(std::size_t padded_size) {
+  finder_.reserve(padded_size), disks_.reserve(padded_size);
+  contacts_.reserve(padded_size), collisions_.reserve(padded_size);
+  near_.reserve(padded_size), nearest_.reserve(padded_size);
+  clusters_.reserve(padded_size);
 }
 
 std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
@@ -92,12 +92,12 @@ void ContactList::gather_deepest(double side) {
 }
 
 NearContacts ContactList::near(const ToolPose& pose, double side) {
-  const double reach_m = std::min(p_.look_ahead_m + widest_disk_m_, kLongestReach_m);
+  const double reach_m = std::min(p_.look_ahead_m + max_disk_m_, kMaxReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   contacts_.clear();
-  disks_.look(finder_, kernels_, pose, reach_m);
+  disks_.query(finder_, kernels_, pose, reach_m);
   gather_near();
-  if (near_.size() > ContactThinning::kMost)
+  if (near_.size() > ContactThinning::kMaxCount)
     gather_deepest(side);
   else
     for (const NearDisk& near : near_) contacts_.push_back(contact(near.disk, side));
@@ -126,13 +126,13 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
 Touched ContactList::touched(const ToolPose& pose) {
   const bool disks = p_.contact_rule == TouchRule::look_ahead;
   const double shown_m = std::max(p_.look_ahead_m, 2 * finder_.tool().grid.size_m);
-  const double reach_m = std::min(shown_m + (disks ? widest_disk_m_ : 0), kLongestReach_m);
+  const double reach_m = std::min(shown_m + (disks ? max_disk_m_ : 0), kMaxReach_m);
   Touched all;
-  all.nearest_m = std::numeric_limits<double>::infinity();
+  all.nearest_distance_m = std::numeric_limits<double>::infinity();
   clusters_.clear();
-  disks_.look(finder_, kernels_, pose, reach_m);
+  disks_.query(finder_, kernels_, pose, reach_m);
   for (std::size_t i = 0; i < disks_.size(); ++i) {
-    all.nearest_m = std::min(all.nearest_m, disks_.distance_m(i));
+    all.nearest_distance_m = std::min(all.nearest_distance_m, disks_.distance_m(i));
     // No voxel of the tool is farther from its surface than that.
     const bool may_be_in = disks_.distance_m(i) <= 2 * finder_.tool().grid.size_m;
     const Voxel voxel = may_be_in ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
@@ -144,7 +144,7 @@ Touched ContactList::touched(const ToolPose& pose) {
     ++all.points;
     clusters_.push_back(cell_number(disks_.p_T(i), kClustersPer_m));
   }
-  if (all.nearest_m > shown_m) all.nearest_m = std::numeric_limits<double>::infinity();
+  if (all.nearest_distance_m > shown_m) all.nearest_distance_m = std::numeric_limits<double>::infinity();
   std::sort(clusters_.begin(), clusters_.end());
   all.clusters = static_cast<int>(std::unique(clusters_.begin(), clusters_.end()) - clusters_.begin());
   return all;

@@ -27,8 +27,8 @@ struct VoxelContacts {
 struct Touched {
   ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
   int points = 0;
-  int clusters = 0;      // 10 mm cells of the tool frame with such points
-  double nearest_m = 0;  // field value of the lowest point; infinite beyond the look-ahead
+  int clusters = 0;               // 10 mm cells of the tool frame with such points
+  double nearest_distance_m = 0;  // field value of the lowest point; infinite beyond the look-ahead
 };
 
 // Lists are valid until the next call. More contacts than the motion can take are thinned.
@@ -38,7 +38,7 @@ class ContactList final : public NearContactSource {
               const Kernels& kernels);
 
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
-  void reserve(std::size_t room);                          // for clouds of that room
+  void reserve(std::size_t padded_size);                   // for clouds of that room
   const TouchFinder& finder() const { return finder_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
@@ -61,7 +61,7 @@ class ContactList final : public NearContactSource {
   const Kernels& kernels_;
   TouchFinder finder_;
   NearDisks disks_;
-  double widest_disk_m_ = 0;
+  double max_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
   struct NearDisk {

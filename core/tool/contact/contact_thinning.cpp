@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMostTries = 64;
+constexpr int kMaxTries = 64;
 
 }  // namespace
 
@@ -21,16 +21,16 @@ std::uint64_t cell_number(const Vec3& p_T, double cells_per_m) {
   return key;
 }
 
-std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& way_T, double cells_per_m) {
+std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double cells_per_m) {
   std::uint64_t key = cell_number(p_T, cells_per_m);
-  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (way_T[axis] < 0 ? 1u : 0u);
+  for (int axis = 0; axis < 3; ++axis) key = key << 1 | (direction_T[axis] < 0 ? 1u : 0u);
   return key;
 }
 
 // The slot of a key in this call, or an unused one; null in a crowded table.
 ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
   std::size_t at = (key * 0x9e3779b97f4a7c15u) >> 52;
-  for (int tries = 0; tries < kMostTries; ++tries, at = (at + 1) % kMostCells)
+  for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kMaxCells)
     if (slots_[at].stamp != stamp_ || slots_[at].key == key) return &slots_[at];
   return nullptr;
 }
@@ -47,9 +47,9 @@ std::size_t ContactThinning::cell(std::uint64_t cell_and_octant) {
   return slot->cell;
 }
 
-void ContactThinning::thin(std::vector<ToolContact>& contacts, std::size_t most) {
+void ContactThinning::thin(std::vector<ToolContact>& contacts, std::size_t max) {
   constexpr double kGrowth = 1.5;
-  for (double cell_m = kCell_m; contacts.size() > most; cell_m *= kGrowth) thin_in_cells(contacts, cell_m);
+  for (double cell_m = kCell_m; contacts.size() > max; cell_m *= kGrowth) thin_in_cells(contacts, cell_m);
 }
 
 void ContactThinning::thin_in_cells(std::vector<ToolContact>& contacts, double cell_m) {

@@ -13,10 +13,10 @@ namespace remote_touch {
 class ContactThinning {
  public:
   // Far more cells than a tool of a hand's size has within reach of a surface; what comes later has none.
-  static constexpr std::size_t kMostCells = 4096;  // a power of two
+  static constexpr std::size_t kMaxCells = 4096;  // a power of two
   static constexpr std::size_t kNoCell = ~std::size_t{0};
 
-  ContactThinning() : slots_(kMostCells) {}
+  ContactThinning() : slots_(kMaxCells) {}
 
   void begin();
   // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
@@ -27,8 +27,8 @@ class ContactThinning {
   // motion within a tenth of a millimetre, and what is left over the next detection finds. Then larger ones,
   // for contacts have to stay spread over the tool.
   static constexpr double kCell_m = 4e-3;
-  static constexpr auto kMost = static_cast<std::size_t>(MotionProgram::kMostContacts);
-  void thin(std::vector<ToolContact>& contacts, std::size_t most = kMost);
+  static constexpr auto kMaxCount = static_cast<std::size_t>(MotionProgram::kMaxContacts);
+  void thin(std::vector<ToolContact>& contacts, std::size_t max = kMaxCount);
 
  private:
   void thin_in_cells(std::vector<ToolContact>& contacts, double cell_m);
@@ -46,6 +46,6 @@ class ContactThinning {
 // Which cube of a grid over the tool frame a place lies in, as one number.
 std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
 // The same, and which coordinates of a way are negative.
-std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& way_T, double cells_per_m);
+std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double cells_per_m);
 
 }  // namespace remote_touch

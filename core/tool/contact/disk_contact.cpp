@@ -24,17 +24,17 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const Vec3 along = slope_in_plane(disk, place.at);
   const double steep = along.norm();
   if (steep < kFlatSlope) return false;
-  const Vec3 start_T = place.p_T, way_T = -along / steep, offset = start_T - disk.p_T;
+  const Vec3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
   // to the rim: |offset + t way| = radius
-  const double ahead = offset.dot(way_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
+  const double ahead = offset.dot(direction_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();
   struct End {
     double t;
     FieldSample at;
     double slope;
   };
   const auto end = [&](double t) {
-    const FieldSample at = sample_field(tool, start_T + t * way_T);
-    return End{t, at, at.gradient_T.dot(way_T)};
+    const FieldSample at = sample_field(tool, start_T + t * direction_T);
+    return End{t, at, at.gradient_T.dot(direction_T)};
   };
   End low{0, place.at, -steep}, high = end(std::sqrt(std::max(0.0, ahead * ahead + inside)) - ahead);
   place.at_rim = high.slope < -kFlatSlope && high.at.distance_m < low.at.distance_m;
@@ -46,13 +46,13 @@ bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
     (between.slope < 0 ? low : high) = between;
   }
   const End& best = high.at.distance_m <= low.at.distance_m ? high : low;
-  place.p_T = start_T + best.t * way_T;
+  place.p_T = start_T + best.t * direction_T;
   place.at = best.at;
   // On an edge the gradients of both sides make up one without a slope along the line: it alone tells the
   // side of a disk that is met at a grazing angle.
   if (!place.at_rim && low.slope < 0 && high.slope > low.slope) {
-    const double share = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
-    place.at.gradient_T = share * low.at.gradient_T + (1 - share) * high.at.gradient_T;
+    const double fraction = std::clamp(high.slope / (high.slope - low.slope), 0.0, 1.0);
+    place.at.gradient_T = fraction * low.at.gradient_T + (1 - fraction) * high.at.gradient_T;
   }
   return best.t > 0;
 }
@@ -86,7 +86,7 @@ double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& 
 }
 
 // Out of the tool, and up where the field is flat.
-Vec3 way_out(const FieldSample& at, double steep) {
+Vec3 exit_distance(const FieldSample& at, double steep) {
   return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
 }
 
@@ -113,14 +113,14 @@ ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const D
     const double flush = side_of_flush(tool, disk, nearest);
     if (flush != 0) side = flush, as_plane = true;
   }
-  const Vec3 out = as_plane ? Vec3(side * disk.n_T) : way_out(nearest.at, nearest.at.gradient_T.norm());
+  const Vec3 out = as_plane ? Vec3(side * disk.n_T) : exit_distance(nearest.at, nearest.at.gradient_T.norm());
   return {nearest.p_T, out, -nearest.at.distance_m, side};
 }
 
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
   const double steep = disk.at.gradient_T.norm();
   const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
-  return {disk.p_T, way_out(disk.at, steep), -lower_bound_m, side};
+  return {disk.p_T, exit_distance(disk.at, steep), -lower_bound_m, side};
 }
 
 }  // namespace remote_touch

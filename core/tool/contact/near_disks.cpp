@@ -7,19 +7,19 @@
 namespace remote_touch {
 
 void NearDisks::on_frame(const TiledCloud& cloud) {
-  reserve(cloud.room());
+  reserve(cloud.padded_size());
 }
 
-void NearDisks::reserve(std::size_t room) {
+void NearDisks::reserve(std::size_t padded_size) {
   for (Columns* columns : {&p_T_, &n_T_, &gradient_T_})
-    for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(room);
-  for (auto* column : {&radius_, &distance_, &slope_, &lower_}) column->grow(room);
-  cell_.grow(room);
+    for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(padded_size);
+  for (auto* column : {&radius_, &distance_, &slope_, &lower_}) column->grow(padded_size);
+  cell_.grow(padded_size);
   count_ = 0, is_known_ = false;
 }
 
-void NearDisks::look(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
-                     double reach_m) {
+void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                      double reach_m) {
   if (is_known_ && pose == pose_ && reach_m == reach_m_) return;
   const VoxelTool& tool = finder.tool();
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
@@ -40,8 +40,8 @@ void NearDisks::look(const TouchFinder& finder, const Kernels& kernels, const To
   disks.radius = radius_.data(), disks.distance = distance_.data(), disks.slope = slope_.data(),
   disks.lower = lower_.data(), disks.cell = cell_.data();
   const std::span<const std::uint32_t> points = finder.within(pose, reach_m);
-  kernels.disks_in_field(finder.cloud().columns(), points.data(), points.size(), share_, cells_per_m_, field,
-                         disks);
+  kernels.disks_in_field(finder.cloud().columns(), points.data(), points.size(), disk_radius_ratio_,
+                         cells_per_m_, field, disks);
   count_ = points.size();
   finish_outside(tool);
   is_known_ = true, pose_ = pose, reach_m_ = reach_m;

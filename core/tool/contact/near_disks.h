@@ -12,12 +12,13 @@ namespace remote_touch {
 // Asked for the same pose again it has the answer already.
 class NearDisks {
  public:
-  NearDisks(double disk_share, double cell_m) : share_(disk_share), cells_per_m_(1 / cell_m) {}
+  NearDisks(double disk_radius_ratio, double cell_m)
+      : disk_radius_ratio_(disk_radius_ratio), cells_per_m_(1 / cell_m) {}
 
   void on_frame(const TiledCloud& cloud);  // allocates where room was not reserved
-  void reserve(std::size_t room);          // for clouds of that room
+  void reserve(std::size_t padded_size);   // for clouds of that room
   // All disks whose middle is within reach_m, and some farther ones; in the order of the cloud's tiles.
-  void look(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
+  void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }
   double lower_m(std::size_t i) const { return lower_[i]; }  // lower_bound_m()
@@ -33,16 +34,16 @@ class NearDisks {
 
  private:
   struct Columns {
-    Room<double> x, y, z;
+    Buffer<double> x, y, z;
 
     Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
   };
   void finish_outside(const VoxelTool& tool);
 
-  const double share_, cells_per_m_;
+  const double disk_radius_ratio_, cells_per_m_;
   Columns p_T_, n_T_, gradient_T_;
-  Room<double> radius_, distance_, slope_, lower_;
-  Room<std::uint64_t> cell_;
+  Buffer<double> radius_, distance_, slope_, lower_;
+  Buffer<std::uint64_t> cell_;
   std::size_t count_ = 0;
   bool is_known_ = false;  // for:
   ToolPose pose_;

@@ -121,8 +121,8 @@ void TiledCloud::assign(const PointCloud& cloud) {
   gather_tile_spheres();
   gather_blocks();
   measure_spacing(cloud);
-  widest_spacing_m_ = 0;
-  for (const double spacing_m : spacing_m_) widest_spacing_m_ = std::max(widest_spacing_m_, spacing_m);
+  max_spacing_m_ = 0;
+  for (const double spacing_m : spacing_m_) max_spacing_m_ = std::max(max_spacing_m_, spacing_m);
 }
 
 void TiledCloud::measure_spacing(const PointCloud& cloud) {
@@ -142,12 +142,12 @@ void TiledCloud::measure_spacing(const PointCloud& cloud) {
   for (const Tile& tile : tiles_) {
     nearest.clear();
     for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
-      double least = std::numeric_limits<double>::infinity();
+      double min = std::numeric_limits<double>::infinity();
       for (std::uint32_t j = tile.first; j < tile.first + tile.padded_count; ++j) {
         const double squared = (point(i) - point(j)).squaredNorm();
-        if (squared > kSamePlace_m * kSamePlace_m && squared < least) least = squared;
+        if (squared > kSamePlace_m * kSamePlace_m && squared < min) min = squared;
       }
-      if (x_[i] != kFarAway && least < 1) nearest.push_back(std::sqrt(least));
+      if (x_[i] != kFarAway && min < 1) nearest.push_back(std::sqrt(min));
     }
     of_tiles.push_back(median(nearest));
   }

@@ -45,7 +45,7 @@ class TiledCloud {
   const double* x() const { return x_.data(); }
   const double* y() const { return y_.data(); }
   const double* z() const { return z_.data(); }
-  std::size_t room() const { return x_.size(); }  // padding included
+  std::size_t padded_size() const { return x_.size(); }  // padding included
   PointColumns columns() const {
     return {x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data(), spacing_m_.data()};
   }
@@ -58,7 +58,7 @@ class TiledCloud {
   // Distance to the points around it: a pixel of the image at the point's depth; in other clouds the side of
   // the square that a point of its tile has for itself.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
-  double widest_spacing_m() const { return widest_spacing_m_; }
+  double max_spacing_m() const { return max_spacing_m_; }
   int without_normal() const { return without_normal_; }
 
  private:
@@ -81,7 +81,7 @@ class TiledCloud {
     SphereColumns columns() const { return {x.data(), y.data(), z.data(), radius_m.data()}; }
   };
   Spheres tile_spheres_, group_spheres_;
-  double widest_spacing_m_ = 0;
+  double max_spacing_m_ = 0;
   int without_normal_ = 0;
 };
 

@@ -51,11 +51,11 @@ TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& k
 
 void TouchFinder::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   cloud_ = std::move(cloud);
-  reserve(cloud_->room());
+  reserve(cloud_->padded_size());
 }
 
-void TouchFinder::reserve(std::size_t room) {
-  for (auto* list : {&found_, &groups_, &tiles_, &rows_}) list->grow(room + kTilePoints * kBlockTiles);
+void TouchFinder::reserve(std::size_t padded_size) {
+  for (auto* list : {&found_, &groups_, &tiles_, &rows_}) list->grow(padded_size + kTilePoints * kBlockTiles);
 }
 
 std::span<const std::uint32_t> TouchFinder::in_tool(const ToolPose& pose) const {
@@ -67,7 +67,7 @@ std::span<const std::uint32_t> TouchFinder::within(const ToolPose& pose, double 
 }
 
 std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double distance_m,
-                                                 const std::int8_t* table, int least) const {
+                                                 const std::int8_t* table, int min) const {
   const VoxelGrid& grid = tool_->grid;
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   CellTransform to_cells;
@@ -93,12 +93,12 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
   const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
   const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
                           distance_m / grid.size_m + 2, 1 / grid.size_m};
-  const std::size_t tiles = kernels_.spheres_near(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
+  const std::size_t tiles = kernels_.near_spheres(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
                                                   nearness, code, tiles_.data());
-  const std::size_t groups = kernels_.spheres_near(cloud_->group_spheres(), tiles_.data(), tiles, to_cells,
+  const std::size_t groups = kernels_.near_spheres(cloud_->group_spheres(), tiles_.data(), tiles, to_cells,
                                                    nearness, code, groups_.data());
   const std::size_t count = kernels_.points_in_cells(cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(),
-                                                     groups, to_cells, cells, least, found_.data());
+                                                     groups, to_cells, cells, min, found_.data());
   return {found_.data(), count};
 }
 

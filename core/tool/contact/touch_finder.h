@@ -19,7 +19,7 @@ class TouchFinder {
   TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
 
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
-  void reserve(std::size_t room);                          // for clouds of that room
+  void reserve(std::size_t padded_size);                   // for clouds of that room
   const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
 
@@ -33,13 +33,13 @@ class TouchFinder {
 
  private:
   std::span<const std::uint32_t> find(const ToolPose& pose, double distance_m, const std::int8_t* table,
-                                      int least) const;
+                                      int min) const;
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   std::vector<std::int8_t> voxels_, nearness_;  // of every cell, with room to read three bytes more
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
-  mutable Room<std::uint32_t> rows_, tiles_, groups_, found_;
+  mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;
 };
 
 }  // namespace remote_touch

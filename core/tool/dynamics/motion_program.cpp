@@ -12,7 +12,7 @@ constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
 
 }  // namespace
 
-MotionProgram::MotionProgram(const VoxelTool& tool) : rigid_(kMostContacts), elastic_(kMostContacts + 1) {
+MotionProgram::MotionProgram(const VoxelTool& tool) : rigid_(kMaxContacts), elastic_(kMaxContacts + 1) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tool.inertia_m2);
   root_ = axes.operatorSqrt();
   inverse_root_ = axes.operatorInverseSqrt();
@@ -38,9 +38,9 @@ ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const 
   return motion;
 }
 
-ConstrainedMotion MotionProgram::solve(const Vector6& wanted_T, std::span<const ToolContact> contacts) {
+ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const ToolContact> contacts) {
   Vector6 target;
-  target << wanted_T.head<3>(), root_ * wanted_T.tail<3>();
+  target << desired_T.head<3>(), root_ * desired_T.tail<3>();
   rigid_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const int row = rigid_.size();

@@ -28,14 +28,14 @@ struct ConstrainedMotion {
 
 class MotionProgram {
  public:
-  static constexpr int kMostContacts = 256;
+  static constexpr int kMaxContacts = 256;
 
   explicit MotionProgram(const VoxelTool& tool);
 
   // (6.4), (6.5) for a wanted motion in tool axes; (6.7), (6.8) is the same with a wish of zero and depths of
   // 1. Where a wedge makes (6.5) infeasible, the wish stays and one slack loosens every row. Contacts beyond
-  // kMostContacts are ignored. Does not allocate.
-  ConstrainedMotion solve(const Vector6& wanted_T, std::span<const ToolContact> contacts);
+  // kMaxContacts are ignored. Does not allocate.
+  ConstrainedMotion solve(const Vector6& desired_T, std::span<const ToolContact> contacts);
 
  private:
   using Row = Vector6;
@@ -46,7 +46,7 @@ class MotionProgram {
   Eigen::Matrix3d root_, inverse_root_;  // of the inertia for 1 kg, so M^(1/2) of (6.4)
   QuadraticProgram<6> rigid_;
   QuadraticProgram<7> elastic_;
-  int number_[kMostContacts] = {};  // of the contact behind each row
+  int number_[kMaxContacts] = {};  // of the contact behind each row
 };
 
 }  // namespace remote_touch

@@ -13,23 +13,23 @@ enum class TorqueRule { inverse_jacobian, printed };  // of (6.9)
 struct ToolParameters {
   TouchRule contact_rule = TouchRule::look_ahead;
   int detections_per_tick = 60;
-  double longest_step_m = 1e-3;   // s_max
+  double max_step_m = 1e-3;       // s_max
   double free_accuracy_m = 1e-4;  // epsilon_f
   double exit_accuracy_m = 1e-4;  // epsilon_c
   double look_ahead_m = 2e-3;
-  double disk_share = 0.75;
-  double at_rest_m = 1e-6;
+  double disk_radius_ratio = 0.75;
+  double rest_threshold_m = 1e-6;
   double stiffness_N_per_m = 600;  // K of (6.9) for a tool of 1 kg
   double gyration_radius_m = 0.03;
-  double largest_force_N = 20;
-  double largest_torque_Nm = 1;
+  double max_force_N = 20;
+  double max_torque_Nm = 1;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
   bool velocity_estimate = false;  // not in the dissertation
-  double longest_prediction_s = 0.1;
+  double max_prediction_s = 0.1;
 };
 
 Parameters parameters(ToolParameters& p);
 // What contradicts what, as one line; empty when the settings fit together.
-std::string conflict(const ToolParameters& p);
+std::string validate(const ToolParameters& p);
 
 }  // namespace remote_touch

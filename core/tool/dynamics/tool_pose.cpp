@@ -3,12 +3,12 @@
 namespace remote_touch {
 
 namespace {
-constexpr double kFarthestHip_m = 1e6;  // as for the proxy: a device farther away is no hand's
+constexpr double kMaxHipDistance_m = 1e6;  // as for the proxy: a device farther away is no hand's
 }
 
-std::optional<ToolPose> held_by(const DeviceState& device) {
+std::optional<ToolPose> device_pose(const DeviceState& device) {
   const bool usable = device.position_W.allFinite() &&
-                      device.position_W.cwiseAbs().maxCoeff() <= kFarthestHip_m &&
+                      device.position_W.cwiseAbs().maxCoeff() <= kMaxHipDistance_m &&
                       device.orientation_W.coeffs().allFinite() && device.orientation_W.norm() > 0.5;
   if (!usable) return {};
   return ToolPose{device.position_W, device.orientation_W.normalized()};
@@ -24,19 +24,19 @@ Vector6 displacement(const ToolPose& from, const ToolPose& to) {
   return a_gu;
 }
 
-Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g) {
+Vector6 rotated(const Eigen::Quaterniond& q, const Vector6& a_g) {
   Vector6 other;
   other << q * a_g.head<3>(), q * a_g.tail<3>();
   return other;
 }
 
-double way_m(const Vector6& a_g, double reach_m) {
+double max_point_displacement_m(const Vector6& a_g, double reach_m) {
   return a_g.head<3>().norm() + a_g.tail<3>().norm() * reach_m;
 }
 
-Vector6 capped(const Vector6& a_g, double reach_m, double longest_m) {
-  const double way = way_m(a_g, reach_m);
-  return way > longest_m ? Vector6(a_g * (longest_m / way)) : a_g;
+Vector6 capped(const Vector6& a_g, double reach_m, double max_m) {
+  const double motion_m = max_point_displacement_m(a_g, reach_m);
+  return motion_m > max_m ? Vector6(a_g * (max_m / motion_m)) : a_g;
 }
 
 }  // namespace remote_touch

@@ -25,18 +25,18 @@ struct ToolPose {
 
 // Of a tool that the device holds by its centre of mass; none for a device that is not finite, more than
 // 1000 km away or without an orientation.
-std::optional<ToolPose> held_by(const DeviceState& device);
+std::optional<ToolPose> device_pose(const DeviceState& device);
 
 ToolPose moved(const ToolPose& pose, const Vector6& a_g);
 // (6.2): the displacement that takes one pose to the other in a unit step, in world axes.
 Vector6 displacement(const ToolPose& from, const ToolPose& to);
 
 // The same displacement in other axes, which q takes its own to.
-Vector6 turned(const Eigen::Quaterniond& q, const Vector6& a_g);
+Vector6 rotated(const Eigen::Quaterniond& q, const Vector6& a_g);
 
 // A bound of the way that any point of the tool makes, |a| + |alpha| reach.
-double way_m(const Vector6& a_g, double reach_m);
-// The same direction, no longer than longest_m by that measure.
-Vector6 capped(const Vector6& a_g, double reach_m, double longest_m);
+double max_point_displacement_m(const Vector6& a_g, double reach_m);
+// The same direction, no longer than max_m by that measure.
+Vector6 capped(const Vector6& a_g, double reach_m, double max_m);
 
 }  // namespace remote_touch

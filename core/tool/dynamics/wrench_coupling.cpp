@@ -10,9 +10,9 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
   return m;
 }
 
-Vec3 cut(const Vec3& v, double longest) {
+Vec3 cut(const Vec3& v, double max_length) {
   const double length = v.norm();
-  return length > longest ? Vec3(v * (longest / length)) : v;
+  return length > max_length ? Vec3(v * (max_length / length)) : v;
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inerti
     const double rotational = k * spring.gyration_radius_m * spring.gyration_radius_m;
     torque = inverse_left_jacobian(phi).transpose() * (rotational * phi);
   }
-  return {cut(-k * a_gu.head<3>(), spring.largest_force_N), cut(-torque, spring.largest_torque_Nm)};
+  return {cut(-k * a_gu.head<3>(), spring.max_force_N), cut(-torque, spring.max_torque_Nm)};
 }
 
 }  // namespace remote_touch

@@ -16,13 +16,13 @@ struct Wrench {
 struct WrenchSpring {
   double stiffness_N_per_m = 0;
   double gyration_radius_m = 0;  // the rotational stiffness is stiffness times its square
-  double largest_force_N = 0, largest_torque_Nm = 0;
+  double max_force_N = 0, max_torque_Nm = 0;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
 };
 
 // That of (6.9) between tool and device, with a stiffness of its own.
 inline WrenchSpring coupling_of(const ToolParameters& p, double stiffness_N_per_m) {
-  return {stiffness_N_per_m, p.gyration_radius_m, p.largest_force_N, p.largest_torque_Nm, p.torque_rule};
+  return {stiffness_N_per_m, p.gyration_radius_m, p.max_force_N, p.max_torque_Nm, p.torque_rule};
 }
 
 // The transpose of the inverse left Jacobian of a turn phi, which takes the derivative of an energy by phi to

@@ -17,9 +17,9 @@ double ball(const Vec3& p, const Vec3& centre, double radius) {
 }
 
 double capsule(const Vec3& p, const Vec3& from, const Vec3& to, double radius) {
-  const Vec3 way = to - from;
-  const double t = std::clamp((p - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
-  return (p - from - t * way).norm() - radius;
+  const Vec3 displacement = to - from;
+  const double t = std::clamp((p - from).dot(displacement) / displacement.squaredNorm(), 0.0, 1.0);
+  return (p - from - t * displacement).norm() - radius;
 }
 
 // Of a box with edges and corners of a radius; half sides to the outside.

@@ -12,8 +12,8 @@ namespace {
 
 // Corner c of a cube is at (c & 1, c >> 1 & 1, c >> 2). Six ways along edges from corner 0 to 7; odd ones
 // make a tetrahedron of the other orientation.
-constexpr int kWays[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
-                             {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+constexpr int kDirections[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                                   {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
 class March {
  public:
@@ -54,8 +54,9 @@ class March {
     if (i == 0 || j == 0 || k == 0 || i + 2 == nodes_[0] || j + 2 == nodes_[1] || k + 2 == nodes_[2])
       for (const std::size_t n : corner) open_ |= values_[n] < 0 && on_side(n);
     if (inside == 8) return;
-    for (const auto& way : kWays)
-      tetrahedron({corner[way[0]], corner[way[1]], corner[way[2]], corner[way[3]]});
+    for (const auto& displacement : kDirections)
+      tetrahedron({corner[displacement[0]], corner[displacement[1]], corner[displacement[2]],
+                   corner[displacement[3]]});
   }
 
   bool on_side(std::size_t n) const {
@@ -92,27 +93,28 @@ class March {
     const std::size_t low = std::min(in, out), high = std::max(in, out);
     // Ends of an edge differ by 0 or 1 along every axis.
     const std::size_t step = high - low;
-    const int way = static_cast<int>(step % nodes_[0] != 0) + 2 * (step / nodes_[0] % nodes_[1] != 0) +
-                    4 * (step / nodes_[0] / nodes_[1] != 0);
+    const int displacement = static_cast<int>(step % nodes_[0] != 0) +
+                             2 * (step / nodes_[0] % nodes_[1] != 0) +
+                             4 * (step / nodes_[0] / nodes_[1] != 0);
     const auto [found, is_new] =
-        vertices_.try_emplace(8 * low + way, static_cast<int>(mesh_.vertices.size()));
+        vertices_.try_emplace(8 * low + displacement, static_cast<int>(mesh_.vertices.size()));
     if (is_new) mesh_.vertices.push_back(root(in, out));
     return found->second;
   }
 
   // Halving and false position in turns.
   Vec3 root(std::size_t in, std::size_t out) const {
-    const Vec3 from = place(in), way = place(out) - from;
+    const Vec3 from = place(in), displacement = place(out) - from;
     double a = 0, b = 1, fa = values_[in], fb = values_[out];
     for (int i = 0; i < 8; ++i) {
       const double t = i % 2 == 0 ? a + (b - a) * fa / (fa - fb) : 0.5 * (a + b);
-      const double f = function_(from + t * way);
+      const double f = function_(from + t * displacement);
       if (f < 0)
         a = t, fa = f;
       else
         b = t, fb = f;
     }
-    return from + std::clamp(a + (b - a) * fa / (fa - fb), 0.01, 0.99) * way;
+    return from + std::clamp(a + (b - a) * fa / (fa - fb), 0.01, 0.99) * displacement;
   }
 
   const std::function<double(const Vec3&)>& function_;

@@ -75,8 +75,8 @@ bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle)
   const auto [a, b, c] = triangle;
   if (a == b || b == c || c == a) return true;
   const Vec3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
-  const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
-  return ab.cross(ac).norm() <= 1e-10 * longest;
+  const double max_length = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
+  return ab.cross(ac).norm() <= 1e-10 * max_length;
 }
 
 MeshCheck check_mesh(const TriangleMesh& mesh) {

@@ -82,7 +82,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
     neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
   }
   std::vector<int> component(mesh.triangles.size(), -1);
-  std::vector<bool> turned(mesh.triangles.size(), false);
+  std::vector<bool> flipped(mesh.triangles.size(), false);
   for (std::size_t start = 0; start < component.size(); ++start) {
     if (component[start] >= 0) continue;
     component[start] = static_cast<int>(start);
@@ -91,12 +91,12 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
       for (const auto& [other, opposed] : neighbours[open.front()])
         if (component[other] < 0) {
           component[other] = static_cast<int>(start);
-          turned[other] = turned[open.front()] != opposed;
+          flipped[other] = flipped[open.front()] != opposed;
           open.push_back(other);
         }
   }
-  for (std::size_t t = 0; t < turned.size(); ++t)
-    if (turned[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), ++done.turned_triangles;
+  for (std::size_t t = 0; t < flipped.size(); ++t)
+    if (flipped[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), ++done.flipped_triangles;
   return component;
 }
 
@@ -105,7 +105,7 @@ void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& don
   struct Way {
     int to, component;
   };
-  std::multimap<int, Way> ways;  // along the hole: against the direction of the triangle there
+  std::multimap<int, Way> directions;  // along the hole: against the direction of the triangle there
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto same = [&](std::size_t other) {
@@ -114,17 +114,17 @@ void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& don
     if (same(e - 1) || same(e + 1)) continue;  // e - 1 of 0 is no edge
     const int from = edges[e].forward ? edges[e].high : edges[e].low;
     const int to = edges[e].forward ? edges[e].low : edges[e].high;
-    ways.emplace(from, Way{to, component[edges[e].triangle]});
+    directions.emplace(from, Way{to, component[edges[e].triangle]});
   }
-  while (!ways.empty()) {
-    const int start = ways.begin()->first, part = ways.begin()->second.component;
+  while (!directions.empty()) {
+    const int start = directions.begin()->first, part = directions.begin()->second.component;
     std::vector<int> loop;
     for (int at = start;;) {
-      const auto next = ways.find(at);
-      if (next == ways.end()) break;
+      const auto next = directions.find(at);
+      if (next == directions.end()) break;
       loop.push_back(at);
       at = next->second.to;
-      ways.erase(next);
+      directions.erase(next);
       if (at != start) continue;
       Vec3 middle = Vec3::Zero();
       for (const int v : loop) middle += mesh.vertices[v] / static_cast<double>(loop.size());
@@ -153,7 +153,7 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRe
     }
     if (volume >= 0) continue;
     for (const int t : triangles) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    done.turned_triangles += static_cast<int>(triangles.size());
+    done.flipped_triangles += static_cast<int>(triangles.size());
   }
 }
 
@@ -161,14 +161,14 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, MeshRe
 
 TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done) {
   done = {};
-  TriangleMesh mended = mesh;
-  if (mended.vertices.empty()) return mended;
-  weld(mended, done);
-  drop_useless(mended, done);
-  std::vector<int> component = orient(mended, done);
-  fill_holes(mended, component, done);
-  turn_outwards(mended, component, done);
-  return mended;
+  TriangleMesh repaired = mesh;
+  if (repaired.vertices.empty()) return repaired;
+  weld(repaired, done);
+  drop_useless(repaired, done);
+  std::vector<int> component = orient(repaired, done);
+  fill_holes(repaired, component, done);
+  turn_outwards(repaired, component, done);
+  return repaired;
 }
 
 std::string text(const MeshRepair& done) {
@@ -179,7 +179,7 @@ std::string text(const MeshRepair& done) {
   };
   add("welded", done.welded_vertices, "vertices");
   add("dropped", done.dropped_triangles, "triangles");
-  add("turned", done.turned_triangles, "triangles");
+  add("turned", done.flipped_triangles, "triangles");
   add("filled", done.filled_holes, "holes");
   return all.empty() ? "nothing" : all;
 }

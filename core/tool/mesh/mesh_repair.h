@@ -10,7 +10,7 @@ namespace remote_touch {
 struct MeshRepair {
   int welded_vertices = 0;    // within a millionth of the mesh's size of another one
   int dropped_triangles = 0;  // degenerate, or there twice
-  int turned_triangles = 0;   // against the orientation of their part
+  int flipped_triangles = 0;  // against the orientation of their part
   int filled_holes = 0;       // loops of boundary edges, each with a fan around its middle
 };
 

@@ -180,10 +180,10 @@ double TriangleTree::winding_number(const Vec3& p) const {
   stack[open++] = 0;
   while (open > 0) {
     const Node& node = nodes_[stack[--open]];
-    const Vec3 way = node.centre - p;
-    const double squared = way.squaredNorm();
+    const Vec3 displacement = node.centre - p;
+    const double squared = displacement.squaredNorm();
     if (squared > kFar * kFar * node.reach * node.reach) {
-      angle += node.area.dot(way) / (squared * std::sqrt(squared));
+      angle += node.area.dot(displacement) / (squared * std::sqrt(squared));
     } else if (node.right < 0) {
       for (int f = node.left; f < node.left - node.right; ++f) angle += solid_angle(faces_[f], p);
     } else {

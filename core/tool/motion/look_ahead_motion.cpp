@@ -36,19 +36,19 @@ Vector6 LookAheadMotion::step_towards(const Vector6& a_gu, const ToolPose& pose,
     report.active_count = 0, report.push_W.setZero();
     return capped(a_gu, reach_m_, p_.look_ahead_m);
   }
-  const Vector6 wanted_T = turned(pose.q_WT.conjugate(), a_gu);
+  const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   const bool collides = near.deepest_m > kCollision_m;
-  ConstrainedMotion motion = program_.solve(collides ? Vector6(Vector6::Zero()) : wanted_T, near.contacts);
-  if (collides && motion.elastic) motion = program_.solve(wanted_T, near.contacts);
+  ConstrainedMotion motion = program_.solve(collides ? Vector6(Vector6::Zero()) : desired_T, near.contacts);
+  if (collides && motion.elastic) motion = program_.solve(desired_T, near.contacts);
   report.active_count = motion.active_count;
   report.push_W = pose.q_WT * motion.push_T;
   if (!settling_ && motion.side != 0) side_ = motion.side > 0 ? 1 : -1;
-  // Out of what a frame put deep into the tool steps of longest_step_m would be many. A step may be as long
+  // Out of what a frame put deep into the tool steps of max_step_m would be many. A step may be as long
   // as the deepest place is deep: all within that distance of it is tool, so the place stays in the tool or
   // comes to its surface, and is not jumped over. What the step runs into beyond the look-ahead the next look
   // finds.
-  const double longest_m = std::max(p_.longest_step_m, settling_ ? near.deepest_m : 0);
-  return capped(turned(pose.q_WT, motion.a_g), reach_m_, longest_m);
+  const double max_m = std::max(p_.max_step_m, settling_ ? near.deepest_m : 0);
+  return capped(rotated(pose.q_WT, motion.a_g), reach_m_, max_m);
 }
 
 ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, NearContactSource& source,
@@ -58,7 +58,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
-  Progress progress(p_.at_rest_m, kPatience);
+  Progress progress(p_.rest_threshold_m, kPatience);
   while (true) {
     const NearContacts near = source.near(pose, settling_ ? side_ : 0);
     ++report.detections;
@@ -69,8 +69,8 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
 
     report.touch_W = pose.q_WT * touched_direction(near);
     const Vector6 a_gu = displacement(pose, device);
-    const double left_m = way_m(a_gu, reach_m_);
-    if (near.contacts.empty() && left_m <= p_.look_ahead_m) {
+    const double remaining_m = max_point_displacement_m(a_gu, reach_m_);
+    if (near.contacts.empty() && remaining_m <= p_.look_ahead_m) {
       // Nothing is as near as the device.
       report.steps += pose == device ? 0 : 1;
       pose = device;
@@ -80,9 +80,9 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
       return report;
     }
     const Vector6 a_g = step_towards(a_gu, pose, near, report);
-    progress.look(left_m);
-    report.at_rest =
-        way_m(a_g, reach_m_) <= p_.at_rest_m || (near.deepest_m <= kCollision_m && progress.has_ended());
+    progress.update(remaining_m);
+    report.at_rest = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
+                     (near.deepest_m <= kCollision_m && progress.has_ended());
     if (report.at_rest || report.detections >= p_.detections_per_tick) break;
     const bool arrives = a_g == a_gu;
     pose = arrives ? device : moved(pose, a_g);

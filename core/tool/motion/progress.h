@@ -9,20 +9,20 @@ namespace remote_touch {
 
 class Progress {
  public:
-  // least_m: coming nearer by this or less is none. patience: how many looks without progress end it.
-  Progress(double least_m, int patience) : least_m_(least_m), patience_(patience) {}
+  // min_m: coming nearer by this or less is none. patience: how many looks without progress end it.
+  Progress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
 
   // The way left to the device, way_m(), at one more look.
-  void look(double left_m) {
-    without_ = left_m < nearest_m_ - least_m_ ? 0 : without_ + 1;
-    nearest_m_ = std::min(nearest_m_, left_m);
+  void update(double remaining_m) {
+    without_ = remaining_m < nearest_distance_m_ - min_m_ ? 0 : without_ + 1;
+    nearest_distance_m_ = std::min(nearest_distance_m_, remaining_m);
   }
   bool has_ended() const { return without_ >= patience_; }
 
  private:
-  const double least_m_;
+  const double min_m_;
   const int patience_;
-  double nearest_m_ = std::numeric_limits<double>::infinity();
+  double nearest_distance_m_ = std::numeric_limits<double>::infinity();
   int without_ = 0;  // looks since the last progress
 };
 

@@ -22,7 +22,7 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       kernels_(kernels),
       contacts_(tool_, parameters, kernels),
       motion_(make_tool_motion(parameters, *tool_)),
-      velocity_(parameters.longest_prediction_s) {}
+      velocity_(parameters.max_prediction_s) {}
 
 void ToolRenderer::prepare(Frame& frame) const {
   frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
@@ -40,19 +40,19 @@ void ToolRenderer::on_frame(const Frame& frame) {
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
   pose_.p_W += correction;
-  carried_m_ += correction;
+  frame_correction_m_ += correction;
 }
 
 RenderOutput ToolRenderer::step(const DeviceState& device, double) {
   RenderOutput out;
   out.frame_index = order_.newest();
-  out.carried_m = std::exchange(carried_m_, Vec3::Zero());
+  out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
   out.tool.emplace();
-  const std::optional<ToolPose> held = held_by(device);
-  if (!held) {
+  const std::optional<ToolPose> target = device_pose(device);
+  if (!target) {
     out.status = RenderStatus::device_not_finite;  // hold still and let go
   } else {
-    const ToolPose& goal = *held;
+    const ToolPose& goal = *target;
     if (!placed_) pose_ = goal, placed_ = true;
     if (order_.newest() < 0) {
       pose_ = goal;
@@ -92,10 +92,10 @@ void ToolRenderer::measure(RenderOutput& out) {
     measured_at_ = pose_, is_measured_ = true;
   }
   out.state = touched_.state;
-  out.nearest_m = touched_.nearest_m;
+  out.nearest_distance_m = touched_.nearest_distance_m;
   out.contact_count = touched_.points;
   out.tool->contact_clusters = touched_.clusters;
-  out.tool->penetration_m = std::max(0.0, -touched_.nearest_m);
+  out.tool->tool_penetration_m = std::max(0.0, -touched_.nearest_distance_m);
   out.tool->disabled_points = contacts_.finder().cloud().without_normal();
 }
 

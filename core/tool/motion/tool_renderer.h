@@ -16,7 +16,7 @@ namespace remote_touch {
 // printed rule, and as points only under the other; their number is in the output.
 class ToolRenderer final : public Renderer {
  public:
-  // pre: conflict(parameters) is empty.
+  // pre: validate(parameters) is empty.
   ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                const Kernels& kernels);
 
@@ -40,7 +40,7 @@ class ToolRenderer final : public Renderer {
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
   FrameOrder order_;
-  Vec3 carried_m_ = Vec3::Zero();
+  Vec3 frame_correction_m_ = Vec3::Zero();
 
   ToolPose measured_at_;  // the last pose measured, while the frame is the same
   Touched touched_;

@@ -14,8 +14,8 @@ constexpr int kPatience = 4;
 
 }  // namespace
 
-VoxelMotion::Look VoxelMotion::look(const ToolPose& pose, ContactList& contacts,
-                                    ToolMotionReport& report) const {
+VoxelMotion::PoseQuery VoxelMotion::query(const ToolPose& pose, ContactList& contacts,
+                                          ToolMotionReport& report) const {
   ++report.detections;
   const VoxelContacts found = contacts.in_voxels(pose);
   Vec3 touch_T = Vec3::Zero();
@@ -26,63 +26,65 @@ VoxelMotion::Look VoxelMotion::look(const ToolPose& pose, ContactList& contacts,
 }
 
 // What the tool would do from here: (6.2) when free, (6.4) in contact, (6.7) in a collision.
-VoxelMotion::Wanted VoxelMotion::wanted_step(const ToolPose& pose, const Vector6& a_gu, const Look& here,
-                                             ToolMotionReport& report) {
+VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const Vector6& a_gu,
+                                                   const PoseQuery& here, ToolMotionReport& report) {
   report.active_count = 0, report.push_W.setZero();
   // No farther than the budget leads.
   if (here.state == ContactState::free) return {capped(a_gu, reach_m_, p_.detections_per_tick * sub_step_m_)};
-  const Vector6 wish = turned(pose.q_WT.conjugate(), capped(a_gu, reach_m_, p_.longest_step_m));
+  const Vector6 desired_T = rotated(pose.q_WT.conjugate(), capped(a_gu, reach_m_, p_.max_step_m));
   ConstrainedMotion motion;
   bool trapped = false;
   if (here.state == ContactState::contact) {
-    motion = program_.solve(wish, here.contacts);
+    motion = program_.solve(desired_T, here.contacts);
   } else {
     motion = program_.solve(Vector6::Zero(), here.contacts);
     trapped = motion.elastic;
-    const double way = way_m(motion.a_g, reach_m_);
+    const double motion_m = max_point_displacement_m(motion.a_g, reach_m_);
     if (trapped)  // as in a wedge: the tool stays between the points and follows the device
-      motion = program_.solve(wish, here.contacts);
-    else if (way > 0)  // the length of (6.7) has no meaning
-      motion.a_g *= p_.longest_step_m / way;
+      motion = program_.solve(desired_T, here.contacts);
+    else if (motion_m > 0)  // the length of (6.7) has no meaning
+      motion.a_g *= p_.max_step_m / motion_m;
   }
   report.active_count = motion.active_count;
   report.push_W = pose.q_WT * motion.push_T;
-  return {capped(turned(pose.q_WT, motion.a_g), reach_m_, p_.longest_step_m), trapped};
+  return {capped(rotated(pose.q_WT, motion.a_g), reach_m_, p_.max_step_m), trapped};
 }
 
 // Moves along a displacement in sub-steps until the state is another, which is then found by bisection, or to
 // its end. Where the budget ends the tool stays at the last place that was looked at. Returns whether it came
 // to the end.
-bool VoxelMotion::advance(ToolPose& pose, Look& here, const Vector6& a_g, const ToolPose* goal,
+bool VoxelMotion::advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, const ToolPose* goal,
                           ContactList& contacts, ToolMotionReport& report) const {
   const ToolPose start = pose;
-  const double way = way_m(a_g, reach_m_);
-  const int sub_steps = std::max(1, static_cast<int>(std::ceil(way / sub_step_m_)));
+  const double motion_m = max_point_displacement_m(a_g, reach_m_);
+  const int sub_steps = std::max(1, static_cast<int>(std::ceil(motion_m / sub_step_m_)));
   const ContactState from = here.state;
-  const auto at = [&](double share) { return share == 1 && goal ? *goal : moved(start, share * a_g); };
+  const auto at = [&](double fraction) {
+    return fraction == 1 && goal ? *goal : moved(start, fraction * a_g);
+  };
   double before = 0;  // the share of the way up to which the state was the old one
   for (int i = 1; i <= sub_steps; ++i) {
     if (spent(report)) return false;
-    const double share = i == sub_steps ? 1 : static_cast<double>(i) / sub_steps;
-    Look there = look(at(share), contacts, report);
+    const double fraction = i == sub_steps ? 1 : static_cast<double>(i) / sub_steps;
+    PoseQuery there = query(at(fraction), contacts, report);
     if (there.state == from || (from == ContactState::contact && there.state == ContactState::free)) {
-      pose = at(share), here = there, before = share;
+      pose = at(fraction), here = there, before = fraction;
       continue;
     }
     // Into contact: the touching end counts, 6.2.5; out of a collision: the end outside.
     // One detection is kept for the end, in case the last look was at the other side.
-    double after = share;
+    double after = fraction;
     bool seen = true;  // the last look was at `after`
     const double accuracy = from == ContactState::entrenched ? p_.exit_accuracy_m : p_.free_accuracy_m;
-    while ((after - before) * way > accuracy && report.detections + 1 < p_.detections_per_tick) {
+    while ((after - before) * motion_m > accuracy && report.detections + 1 < p_.detections_per_tick) {
       const double middle = 0.5 * (before + after);
-      const Look between = look(at(middle), contacts, report);
+      const PoseQuery between = query(at(middle), contacts, report);
       seen = between.state != from;
       (seen ? after : before) = middle;
       if (seen) there = between;
     }
     pose = at(after);
-    here = seen ? there : look(pose, contacts, report);  // lists are those of the last pose looked at
+    here = seen ? there : query(pose, contacts, report);  // lists are those of the last pose looked at
     return false;
   }
   return true;
@@ -91,23 +93,23 @@ bool VoxelMotion::advance(ToolPose& pose, Look& here, const Vector6& a_g, const 
 ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool) {
   ToolMotionReport report;
   const Vec3 start_W = pose.p_W;
-  Look here = look(pose, contacts, report);
+  PoseQuery here = query(pose, contacts, report);
   const ContactState first = here.state;
   bool same_state = true;
-  Progress progress(p_.at_rest_m, kPatience);
+  Progress progress(p_.rest_threshold_m, kPatience);
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
-    const Wanted wanted = wanted_step(pose, a_gu, here, report);
-    const double left = way_m(a_gu, reach_m_);
-    if (here.state == ContactState::contact) progress.look(left);
-    const bool may_rest = here.state != ContactState::entrenched || wanted.trapped;
-    report.at_rest = (may_rest && way_m(wanted.a_g, reach_m_) <= p_.at_rest_m) ||
+    const DesiredStep desired = desired_step(pose, a_gu, here, report);
+    const double left = max_point_displacement_m(a_gu, reach_m_);
+    if (here.state == ContactState::contact) progress.update(left);
+    const bool may_rest = here.state != ContactState::entrenched || desired.trapped;
+    report.at_rest = (may_rest && max_point_displacement_m(desired.a_g, reach_m_) <= p_.rest_threshold_m) ||
                      (here.state == ContactState::contact && progress.has_ended());
-    if (here.state == ContactState::free && left <= p_.at_rest_m) pose = device;
+    if (here.state == ContactState::free && left <= p_.rest_threshold_m) pose = device;
     if (report.at_rest || spent(report)) break;
-    const bool arrives = here.state == ContactState::free && wanted.a_g == a_gu;
+    const bool arrives = here.state == ContactState::free && desired.a_g == a_gu;
     report.at_rest =
-        advance(pose, here, wanted.a_g, arrives ? &device : nullptr, contacts, report) && arrives;
+        advance(pose, here, desired.a_g, arrives ? &device : nullptr, contacts, report) && arrives;
     ++report.steps;
     // The step that ends the first state belongs to it.
     if (same_state) report.first_step_m = pose.p_W - start_W;

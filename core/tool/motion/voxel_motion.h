@@ -13,18 +13,19 @@ class VoxelMotion final : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:
-  struct Look {  // what is known about a pose
+  struct PoseQuery {  // what is known about a pose
     ContactState state = ContactState::free;
     std::span<const ToolContact> contacts;
   };
-  Look look(const ToolPose& pose, ContactList& contacts, ToolMotionReport& report) const;
-  struct Wanted {
+  PoseQuery query(const ToolPose& pose, ContactList& contacts, ToolMotionReport& report) const;
+  struct DesiredStep {
     Vector6 a_g;
     bool trapped = false;  // no motion leads out of all collisions
   };
-  Wanted wanted_step(const ToolPose& pose, const Vector6& a_gu, const Look& here, ToolMotionReport& report);
-  bool advance(ToolPose& pose, Look& here, const Vector6& a_g, const ToolPose* goal, ContactList& contacts,
-               ToolMotionReport& report) const;
+  DesiredStep desired_step(const ToolPose& pose, const Vector6& a_gu, const PoseQuery& here,
+                           ToolMotionReport& report);
+  bool advance(ToolPose& pose, PoseQuery& here, const Vector6& a_g, const ToolPose* goal,
+               ContactList& contacts, ToolMotionReport& report) const;
   bool spent(const ToolMotionReport& report) const { return report.detections >= p_.detections_per_tick; }
 
   const ToolParameters p_;

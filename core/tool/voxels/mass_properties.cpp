@@ -36,7 +36,7 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
 }
 
 MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes) {
-  // In units of the voxel and by whole numbers, so that nothing is lost over millions of nodes.
+  // In units of the voxel and by integers, so that nothing is lost over millions of nodes.
   const std::size_t columns = grid.cells[0] + 1, rows = grid.cells[1] + 1;
   Vec3 first = Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();

@@ -15,23 +15,23 @@ namespace {
 // Of the cell that holds `at` (in voxels from the origin), its first node and the place within it.
 struct InCell {
   std::array<int, 3> cell;
-  Vec3 share;
+  Vec3 fraction;
 };
 InCell cell_at(const VoxelGrid& grid, const Vec3& at) {
   InCell in;
   for (int i = 0; i < 3; ++i) {
     in.cell[i] = std::clamp(static_cast<int>(at[i]), 0, grid.cells[i] - 1);
-    in.share[i] = at[i] - in.cell[i];
+    in.fraction[i] = at[i] - in.cell[i];
   }
   return in;
 }
 
 FieldSample trilinear(const VoxelTool& tool, const Vec3& at) {
   const VoxelGrid& grid = tool.grid;
-  const auto [cell, share] = cell_at(grid, at);
+  const auto [cell, fraction] = cell_at(grid, at);
   const std::size_t row = grid.cells[0] + 1, layer = row * (grid.cells[1] + std::size_t(1));
   const float* n = &tool.distance_m[cell[0] + row * cell[1] + layer * cell[2]];
-  const double x = share.x(), y = share.y(), z = share.z();
+  const double x = fraction.x(), y = fraction.y(), z = fraction.z();
   const double d00 = n[1] - double(n[0]), d10 = n[row + 1] - double(n[row]);
   const double d01 = n[layer + 1] - double(n[layer]), d11 = n[layer + row + 1] - double(n[layer + row]);
   const double v00 = n[0] + x * d00, v10 = n[row] + x * d10;
@@ -105,17 +105,17 @@ void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& re
            const std::string& name) {
   Vec3 low, high;
   bounding_box(mesh, low, high);
-  const double longest = (high - low).maxCoeff();
-  if (!(longest > 0) || !std::isfinite(longest)) refuse(name, "has no size; allowed a closed mesh");
-  const double factor = settings.size_m > 0 ? settings.size_m / longest : 1;
+  const double max_length = (high - low).maxCoeff();
+  if (!(max_length > 0) || !std::isfinite(max_length)) refuse(name, "has no size; allowed a closed mesh");
+  const double factor = settings.size_m > 0 ? settings.size_m / max_length : 1;
   for (Vec3& v : mesh.vertices) v *= factor;
   report.sides_m = factor * (high - low);
   const double cells = cells_around(mesh, settings.voxel_m);
-  if (cells > kMostCells)
+  if (cells > kMaxCells)
     refuse(name, std::to_string(report.sides_m.maxCoeff()) + " m long, needs " +
                      std::to_string(std::llround(std::min(cells / 1e6, 1e15))) + " million voxels of " +
                      std::to_string(settings.voxel_m) + " m; allowed " +
-                     std::to_string(std::llround(kMostCells / 1e6)) +
+                     std::to_string(std::llround(kMaxCells / 1e6)) +
                      " million: set renderer.tool_size_m, or a larger renderer.tool_voxel_m");
 }
 
@@ -172,7 +172,7 @@ void count_voxels(const VoxelTool& tool, ToolReport& report) {
         if (crossed[cell]) ++surface, thin += is_thin(tool, i, j, k);
       }
   report.voxels = {tool.voxels.size() - shell - interior, shell, interior};
-  report.thin_share = static_cast<double>(thin) / static_cast<double>(std::max<std::size_t>(surface, 1));
+  report.thin_fraction = static_cast<double>(thin) / static_cast<double>(std::max<std::size_t>(surface, 1));
 }
 
 }  // namespace
@@ -206,8 +206,8 @@ std::string text(const ToolReport& report) {
   if (report.inverted) all += "; faces turned outwards";
   if (!report.check.closed()) all += "; repaired: " + text(report.repaired);
   if (report.by_winding_number) all += ", still open: solid by winding numbers";
-  if (report.thin_share >= 0.0005)
-    all += "; " + tenths(100 * report.thin_share) +
+  if (report.thin_fraction >= 0.0005)
+    all += "; " + tenths(100 * report.thin_fraction) +
            " % of the surface is on parts thinner than about three voxels";
   return all;
 }

@@ -67,15 +67,15 @@ struct ToolReport {
   MeshRepair repaired;                  // all zero without repair
   bool by_winding_number = false;       // repaired, and still open
   std::array<std::size_t, 3> voxels{};  // free, shell, interior
-  double thin_share = 0;                // of the surface farther than two voxels from all interior
+  double thin_fraction = 0;             // of the surface farther than two voxels from all interior
 };
 std::string text(const ToolReport& report);
 
 // The mesh scaled, moved with its centre of mass into the origin, and made into voxels and a distance field.
 // name is for messages only. Throws InputError for a mesh that is empty, not closed (without repair), without
-// volume, with vertices that are not finite, with corners that are no vertices, too fine for kMostCells, or
+// volume, with vertices that are not finite, with corners that are no vertices, too fine for kMaxCells, or
 // thinner than a voxel everywhere.
-inline constexpr double kMostCells = 150e6;
+inline constexpr double kMaxCells = 150e6;
 VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
                           const std::string& name = "mesh");
 

@@ -55,19 +55,19 @@ bool touches(const Corners& triangle, const Vec3& c, const Vec3& h) {
 void mark(const Corners& triangle, const VoxelGrid& grid, Cell low, Cell high,
           std::vector<std::uint8_t>& crossed) {
   Vec3 centre, half;
-  int widest = 0;
+  int max_width = 0;
   for (int i = 0; i < 3; ++i) {
     if (high[i] < low[i]) return;
     centre[i] = (low[i] + high[i] + 1) / 2.0, half[i] = (high[i] - low[i] + 1) / 2.0;
-    if (high[i] - low[i] > high[widest] - low[widest]) widest = i;
+    if (high[i] - low[i] > high[max_width] - low[max_width]) max_width = i;
   }
   if (!touches(triangle, centre, half)) return;
-  if (high[widest] == low[widest]) {
+  if (high[max_width] == low[max_width]) {
     crossed[low[0] + grid.cells[0] * (low[1] + std::size_t(grid.cells[1]) * low[2])] = 1;
     return;
   }
   Cell end = high, begin = low;
-  end[widest] = (low[widest] + high[widest]) / 2, begin[widest] = end[widest] + 1;
+  end[max_width] = (low[max_width] + high[max_width]) / 2, begin[max_width] = end[max_width] + 1;
   mark(triangle, grid, low, end, crossed);
   mark(triangle, grid, begin, high, crossed);
 }

@@ -20,7 +20,7 @@ double cells_around(const TriangleMesh& mesh, double voxel_m);
 std::vector<std::uint8_t> crossed_cells(const TriangleMesh& mesh, const VoxelGrid& grid);
 
 // 1 for the nodes that a closed mesh winds around at least once: inside the union of parts that overlap, not
-// in a hollow. By lines along x through the nodes, in whole numbers, so that a line through an edge or a
+// in a hollow. By lines along x through the nodes, in integers, so that a line through an edge or a
 // corner counts right; for this y and z are rounded to less than a millionth of a voxel.
 struct InsideNodes {
   std::vector<std::uint8_t> inside;

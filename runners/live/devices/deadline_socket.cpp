@@ -50,10 +50,10 @@ void DeadlineSocket::cut() noexcept {
 
 std::string DeadlineSocket::connect_to_host(const std::string& host, const std::string& port,
                                             double deadline_s) {
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo requested{};
+  requested.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  const int error = ::getaddrinfo(host.c_str(), port.c_str(), &wanted, &found);
+  const int error = ::getaddrinfo(host.c_str(), port.c_str(), &requested, &found);
   if (error != 0) return ::gai_strerror(error);
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> all(found, ::freeaddrinfo);
   int why = EHOSTUNREACH;
@@ -62,8 +62,8 @@ std::string DeadlineSocket::connect_to_host(const std::string& host, const std::
     handle_ = ::socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     why = handle_ < 0 ? errno : connect_within(one->ai_addr, one->ai_addrlen, deadline_s);
     if (why != 0) continue;
-    const int at_once = 1;
-    ::setsockopt(handle_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
+    const int immediately = 1;
+    ::setsockopt(handle_, IPPROTO_TCP, TCP_NODELAY, &immediately, sizeof immediately);
     return "";
   }
   close();
@@ -96,10 +96,10 @@ int DeadlineSocket::connect_within(const void* address, unsigned size, double de
 // Looks once also after the deadline: a thread that was not running meanwhile finds what has come.
 int DeadlineSocket::wait(short events, double deadline_s) noexcept {
   for (;;) {
-    const double left_s = std::max(0.0, deadline_s - steady_s());
+    const double remaining_s = std::max(0.0, deadline_s - steady_s());
     timespec left{};
-    left.tv_sec = static_cast<time_t>(left_s);
-    left.tv_nsec = static_cast<long>(1e9 * (left_s - std::floor(left_s)));
+    left.tv_sec = static_cast<time_t>(remaining_s);
+    left.tv_nsec = static_cast<long>(1e9 * (remaining_s - std::floor(remaining_s)));
     pollfd one{handle_, events, 0};
     const int ready = ::ppoll(&one, 1, &left, nullptr);
     if (ready > 0) return 0;

@@ -53,16 +53,15 @@ std::string DeviceAddress::choice(const std::string& key, const std::vector<std:
   return chosen;
 }
 
-double DeviceAddress::number(const std::string& key, double otherwise, double smallest,
-                             double largest) const {
+double DeviceAddress::number(const std::string& key, double otherwise, double min, double max) const {
   if (!has(key)) return otherwise;
   const std::string text = word(key, "");
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   // Written so that what is no number is refused too.
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= smallest && value <= largest))
-    throw refusal(key + " is \"" + text + "\"; allowed a number from " + short_text(smallest) + " to " +
-                  short_text(largest));
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= min && value <= max))
+    throw refusal(key + " is \"" + text + "\"; allowed a number from " + short_text(min) + " to " +
+                  short_text(max));
   return value;
 }
 

@@ -23,7 +23,7 @@ class DeviceAddress {
   std::string word(const std::string& key, const std::string& otherwise) const;
   // One of allowed; without the setting, the first of them.
   std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
-  double number(const std::string& key, double otherwise, double smallest, double largest) const;
+  double number(const std::string& key, double otherwise, double min, double max) const;
 
   InputError refusal(const std::string& problem) const { return InputError(written_, problem); }
 

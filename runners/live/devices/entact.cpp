@@ -92,7 +92,7 @@ Entact::Entact(const std::string& address, const std::string& subject) {
 }
 
 Entact::~Entact() {
-  let_go();
+  release();
   eapi_.close();
 }
 
@@ -139,24 +139,24 @@ DeviceFault Entact::sense(DeviceReading& reading) noexcept {
     return {"Entact: the velocity cannot be read", -1};
   reading.position_m = from_user_right_up(Vec3(pose.data())) * kMPerMm;
   reading.velocity_m_per_s = from_user_right_up(Vec3(velocity.data())) * kMPerMm;
-  reading.turning_rad_per_s = from_user_right_up(Vec3(velocity.data() + 3));
+  reading.angular_velocity_rad_per_s = from_user_right_up(Vec3(velocity.data() + 3));
   reading.buttons = 0;  // it has none that the library knows
-  const Eigen::Matrix3d turn =
+  const Eigen::Matrix3d rotation =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.data() + 3);
-  if (!is_rotation(turn)) return kNoRotation;
-  reading.orientation = Eigen::Quaterniond(turn_from_user_right_up(turn));
+  if (!is_rotation(rotation)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(rotation_from_user_right_up(rotation));
   return {};
 }
 
 int Entact::tell(const Wrench& wrench) noexcept {
   const Vec3 f = to_user_right_up(wrench.force_N), t = to_user_right_up(wrench.torque_Nm) * kNmmPerNm;
-  std::array<double, 6> told{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
-  return eapi_.write_force(handle_, told.data(), 6);
+  std::array<double, 6> commanded{f.x(), f.y(), f.z(), t.x(), t.y(), t.z()};
+  return eapi_.write_force(handle_, commanded.data(), 6);
 }
 
 // Force control is entered with no force, and a force must be told before the device tells where it is.
 DeviceFault Entact::switch_on() noexcept {
-  if (is_let_go()) return kLetGo;
+  if (is_released()) return kReleased;
   if (has_motors_on_) return {};
   if (eapi_.set_mode(handle_, Eapi::force_control) != Eapi::kOk)
     return {"Entact: the motors cannot be switched on", -1};

@@ -113,7 +113,7 @@ ForceDimension::ForceDimension(int number, const std::string& subject) {
 }
 
 ForceDimension::~ForceDimension() {
-  let_go();
+  release();
   dhd_.close(id_);
 }
 
@@ -123,9 +123,9 @@ void ForceDimension::learn_traits() {
     if (const char* name = dhd_.get_system_name(id_); name != nullptr) traits_.name = name;
   traits_.sensed_axes = dhd_.has_wrist(id_) ? 6 : 3;
   traits_.actuated_axes = dhd_.has_active_wrist != nullptr && dhd_.has_active_wrist(id_) ? 6 : 3;
-  if (dhd_.get_max_force != nullptr) traits_.largest_force_N = std::max(0.0, dhd_.get_max_force(id_));
+  if (dhd_.get_max_force != nullptr) traits_.max_force_N = std::max(0.0, dhd_.get_max_force(id_));
   if (dhd_.get_max_torque != nullptr && traits_.actuated_axes == 6)
-    traits_.largest_torque_Nm = std::max(0.0, dhd_.get_max_torque(id_));
+    traits_.max_torque_Nm = std::max(0.0, dhd_.get_max_torque(id_));
 }
 
 DeviceFault ForceDimension::last_fault(const char* what) const noexcept {
@@ -146,10 +146,11 @@ DeviceFault ForceDimension::sense(DeviceReading& reading) noexcept {
   if (traits_.sensed_axes < 6) return {};
   if (dhd_.get_angular_velocity_rad(&w.x(), &w.y(), &w.z(), id_) < 0)
     return last_fault("Force Dimension: the angular velocity cannot be read");
-  reading.turning_rad_per_s = from_user_right_up(w);
-  const Eigen::Matrix3d turn = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&frame[0][0]);
-  if (!is_rotation(turn)) return kNoRotation;
-  reading.orientation = Eigen::Quaterniond(turn_from_user_right_up(turn));
+  reading.angular_velocity_rad_per_s = from_user_right_up(w);
+  const Eigen::Matrix3d rotation =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&frame[0][0]);
+  if (!is_rotation(rotation)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(rotation_from_user_right_up(rotation));
   return {};
 }
 

@@ -12,15 +12,15 @@ constexpr double kPatience_s = 5e-3;
 
 bool is_finite(const DeviceReading& r) {
   return r.position_m.allFinite() && r.orientation.coeffs().allFinite() && r.velocity_m_per_s.allFinite() &&
-         r.turning_rad_per_s.allFinite();
+         r.angular_velocity_rad_per_s.allFinite();
 }
 
 }  // namespace
 
-// Either let_go() sees that a call is under way, or that call sees at its end that it must switch off; both
+// Either release() sees that a call is under way, or that call sees at its end that it must switch off; both
 // where they overlap. Every order leaves the motors off, since a force is told only after they are on.
 void GatedDevice::leave_vendor() noexcept {
-  if (let_go_) switch_off();
+  if (released_) switch_off();
   in_vendor_ = false;
 }
 
@@ -42,19 +42,19 @@ DeviceFault GatedDevice::write(const Wrench& wrench) noexcept {
 }
 
 DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
-  if (let_go_) return kLetGo;
+  if (released_) return kReleased;
   if (!is_on_) {
     if (const DeviceFault fault = switch_on()) return fault;
     is_on_ = true;
-    if (let_go_) return kLetGo;  // the motors went on after they were switched off
+    if (released_) return kReleased;  // the motors went on after they were switched off
   }
   return exert(wrench);
 }
 
 // Vendors' calls rarely expect company: one under way may end, but is not waited for longer than it should
 // take.
-void GatedDevice::let_go() noexcept {
-  let_go_ = true;
+void GatedDevice::release() noexcept {
+  released_ = true;
   const timespec nap{0, 100'000};
   for (const double until_s = steady_s() + kPatience_s; in_vendor_ && steady_s() < until_s;)
     nanosleep(&nap, nullptr);
@@ -62,9 +62,9 @@ void GatedDevice::let_go() noexcept {
 }
 
 // The next write switches the motors on, as the first one did.
-bool GatedDevice::hold_again() noexcept {
+bool GatedDevice::rearm() noexcept {
   is_on_ = false;
-  let_go_ = false;
+  released_ = false;
   return true;
 }
 

@@ -1,5 +1,5 @@
-// What the adapters of vendors' libraries share: the force is off until the first write() and after let_go(),
-// and nothing that is no number passes in either direction.
+// What the adapters of vendors' libraries share: the force is off until the first write() and after
+// release(), and nothing that is no number passes in either direction.
 #pragma once
 
 #include <atomic>
@@ -8,16 +8,16 @@
 
 namespace remote_touch {
 
-// An adapter's destructor calls let_go() before it closes.
+// An adapter's destructor calls release() before it closes.
 class GatedDevice : public HapticDevice {
  public:
   DeviceFault read(DeviceReading& reading) noexcept final;
   DeviceFault write(const Wrench& wrench) noexcept final;
-  void let_go() noexcept final;
-  bool hold_again() noexcept final;
+  void release() noexcept final;
+  bool rearm() noexcept final;
 
  protected:
-  bool is_let_go() const { return let_go_; }
+  bool is_released() const { return released_; }
 
  private:
   // In the thread of the ticks. Of a reading, all that the vendor tells; the caller checks that it is finite.
@@ -31,7 +31,7 @@ class GatedDevice : public HapticDevice {
   DeviceFault exert_if_on(const Wrench& wrench) noexcept;
   void leave_vendor() noexcept;
 
-  std::atomic<bool> let_go_{false}, in_vendor_{false};
+  std::atomic<bool> released_{false}, in_vendor_{false};
   bool is_on_ = false;
 };
 

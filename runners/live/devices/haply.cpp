@@ -22,7 +22,7 @@ constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
 constexpr double kTickEndsWithin_s = 5e-3, kLastAnswerWithin_s = 20e-3;
 constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
 constexpr double kUnfollowed_s = 50e-3;
-constexpr double kLeastCheckedForce_N = 0.3, kLeastShare = 0.1, kLargestSurplus_N = 1;
+constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
 
 constexpr DeviceFault kNoState{"the Haply service sent something that is no state"};
 constexpr DeviceFault kDeviceGone{"the Inverse3 is no longer in the states of the service"};
@@ -47,8 +47,8 @@ class ForceCheck {
  public:
   DeviceFault operator()(const Vec3& sent, const Vec3& given, HaplyForceKey key, double now_s) {
     const bool is_missing =
-        sent.norm() > kLeastCheckedForce_N && given.dot(sent) < kLeastShare * sent.dot(sent);
-    const bool is_other = given.norm() > sent.norm() + kLargestSurplus_N;
+        sent.norm() > kMinCheckedForce_N && given.dot(sent) < kMinFraction * sent.dot(sent);
+    const bool is_other = given.norm() > sent.norm() + kMaxSurplus_N;
     if (!is_missing && !is_other) followed_s_ = now_s;
     if (now_s - followed_s_ < kUnfollowed_s) return {};
     if (is_other) return kOtherForce;
@@ -129,20 +129,20 @@ class Haply final : public HapticDevice {
       throw address.refusal(std::string("no first state (") + fault.what +
                             "); is the device calibrated and on?");
   }
-  ~Haply() override { let_go(); }
+  ~Haply() override { release(); }
 
   const DeviceTraits& traits() const override { return traits_; }
 
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
-  void let_go() noexcept override;
+  void release() noexcept override;
 
  private:
-  // Who holds it may use the link. Only let_go() ever contends, and it keeps it: nobody waits in a tick.
-  class Turn {
+  // Who holds it may use the link. Only release() ever contends, and it keeps it: nobody waits in a tick.
+  class TickGuard {
    public:
-    explicit Turn(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
-    ~Turn() {
+    explicit TickGuard(std::atomic<bool>& taken) : taken_(taken), is_mine_(!taken.exchange(true)) {}
+    ~TickGuard() {
       if (is_mine_) taken_ = false;
     }
     explicit operator bool() const { return is_mine_; }
@@ -164,7 +164,7 @@ class Haply final : public HapticDevice {
   bool is_checked_ = true;
   ForceCheck check_;
 
-  std::atomic<bool> taken_{false}, is_let_go_{false};
+  std::atomic<bool> taken_{false}, is_released_{false};
   Vec3 sent_N_ = Vec3::Zero();  // in the service's axes
   double sent_s_ = 0;
   bool is_answer_due_ = false;
@@ -209,14 +209,14 @@ DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
 }
 
 DeviceFault Haply::read(DeviceReading& reading) noexcept {
-  const Turn turn(taken_);
-  return turn ? read_within(reading, kReadWithin_s) : kLetGo;
+  const TickGuard turn(taken_);
+  return turn ? read_within(reading, kReadWithin_s) : kReleased;
 }
 
 // The motors of an Inverse3 give no torque.
 DeviceFault Haply::write(const Wrench& wrench) noexcept {
-  const Turn turn(taken_);
-  if (!turn) return kLetGo;
+  const TickGuard turn(taken_);
+  if (!turn) return kReleased;
   const bool is_force = wrench.force_N.allFinite();
   const double deadline_s = steady_s() + kWriteWithin_s;
   // With a second command under way the answers would stay one behind. What is not sent lets the device idle.
@@ -226,8 +226,8 @@ DeviceFault Haply::write(const Wrench& wrench) noexcept {
   return is_force ? fault : kNoForce;
 }
 
-void Haply::let_go() noexcept {
-  if (is_let_go_.exchange(true)) return;
+void Haply::release() noexcept {
+  if (is_released_.exchange(true)) return;
   const double until_s = steady_s() + kTickEndsWithin_s;
   bool is_mine = false;
   while (!(is_mine = !taken_.exchange(true)) && steady_s() < until_s) {

@@ -29,7 +29,7 @@ namespace remote_touch {
 
 // Throws InputError. For a first state it sends a command without force.
 //
-// let_go() of the device sends such a command as soon as no thread is in read() or write(), for which it
+// release() of the device sends such a command as soon as no thread is in read() or write(), for which it
 // waits 10 ms at most, waits 20 ms at most for the answer, and ends the connection in either case: from then
 // on no command of this process reaches the service. That the service lets the device idle when commands stop
 // is its documentation's word.

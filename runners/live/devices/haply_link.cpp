@@ -35,13 +35,13 @@ namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
 // Far more than an inventory of some devices; a longer message is refused.
-constexpr std::size_t kLargestMessage = 1 << 16;
+constexpr std::size_t kMaxMessage = 1 << 16;
 // For the rest of a message that has begun to come: on one machine it comes at once.
 constexpr double kRestWithin_s = 1e-3;
 
 // Parts in which a message may come. A peer that sends more, such as one ping after the other, each of which
 // is answered, is cut off at the deadline even if there was no wait.
-constexpr int kMostParts = 64;
+constexpr int kMaxParts = 64;
 
 // Where Beast's blocking calls get and put their bytes. By themselves they know no deadline, and they may
 // wait on a socket more than once for one message; here each wait ends by the deadline of the whole call.
@@ -92,7 +92,7 @@ class DeadlineStream {
   DeadlineSocket socket;
 
  private:
-  bool is_over() { return ++parts_ > kMostParts && steady_s() > deadline_s_; }
+  bool is_over() { return ++parts_ > kMaxParts && steady_s() > deadline_s_; }
   static std::size_t result(DeadlineSocket::Transfer transfer, error_code& ec) {
     ec = error_code(transfer.error, boost::system::system_category());
     return transfer.bytes;
@@ -131,7 +131,7 @@ class BeastLink final : public HaplyLink {
     web_.handshake(host + ":" + port, target);
     web_.text(true);
     web_.auto_fragment(false);
-    web_.read_message_max(kLargestMessage);
+    web_.read_message_max(kMaxMessage);
   }
 
   DeviceFault send(std::string_view text, double deadline_s) noexcept override {
@@ -175,7 +175,7 @@ class BeastLink final : public HaplyLink {
 
   boost::asio::io_context context_;  // for Beast's timers, which are never set; it is not run
   websocket::stream<DeadlineStream, false> web_;
-  beast::flat_static_buffer<kLargestMessage> message_;
+  beast::flat_static_buffer<kMaxMessage> message_;
   bool has_first_ = false;
   DeviceFault lost_;
 };

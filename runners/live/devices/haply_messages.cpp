@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kLongestId = 256;
+constexpr std::size_t kMaxId = 256;
 
 // Members of an object that are numbers with these one-letter names; every one must be there.
 template <class Vector>
@@ -94,12 +94,12 @@ bool read_handle(JsonReader& json, HaplyHandleState& handle) {
 
 // An element is read before its name is known: the members of an object have no order.
 template <class State>
-bool read_wanted(JsonReader& json, bool (*read)(JsonReader&, State&), std::string_view wanted,
-                 std::optional<State>& found) {
+bool read_matching(JsonReader& json, bool (*read)(JsonReader&, State&), std::string_view requested,
+                   std::optional<State>& found) {
   return json.array([&] {
     State one;
     if (!read(json, one)) return false;
-    if (!found && (wanted.empty() || one.id == wanted)) found = one;
+    if (!found && (requested.empty() || one.id == requested)) found = one;
     return true;
   });
 }
@@ -111,9 +111,9 @@ bool read_haply_message(std::string_view text, std::string_view device_id, std::
   JsonReader json(text);
   message = {};
   const bool read = json.object([&](std::string_view key) {
-    if (key == "inverse3") return read_wanted(json, read_device, device_id, message.device);
+    if (key == "inverse3") return read_matching(json, read_device, device_id, message.device);
     if (key == "wireless_verse_grip" || key == "verse_grip")
-      return read_wanted(json, read_handle, handle_id, message.handle);
+      return read_matching(json, read_handle, handle_id, message.handle);
     return json.skip();
   });
   return read && json.at_end();
@@ -126,7 +126,7 @@ void HaplyForceCommand::append(std::string_view text) noexcept {
 
 bool HaplyForceCommand::set_device(std::string_view id, HaplyForceKey key) noexcept {
   const auto is_plain = [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\'; };
-  if (id.empty() || id.size() > kLongestId || !std::all_of(id.begin(), id.end(), is_plain)) return false;
+  if (id.empty() || id.size() > kMaxId || !std::all_of(id.begin(), id.end(), is_plain)) return false;
   size_ = 0;
   append(R"({"inverse3":[{"device_id":")");
   append(id);

@@ -19,13 +19,13 @@ struct DeviceFault {
   explicit operator bool() const { return what != nullptr; }
 };
 
-inline constexpr DeviceFault kLetGo{"the device was let go"};
+inline constexpr DeviceFault kReleased{"the device was let go"};
 
 struct DeviceReading {
   Vec3 position_m = Vec3::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // takes the handle's axes to the device's
   Vec3 velocity_m_per_s = Vec3::Zero();
-  Vec3 turning_rad_per_s = Vec3::Zero();
+  Vec3 angular_velocity_rad_per_s = Vec3::Zero();
   std::uint32_t buttons = 0;  // those that are down, a bit each
 };
 
@@ -33,10 +33,10 @@ struct DeviceReading {
 struct DeviceTraits {
   std::string name;
   int sensed_axes = 3, actuated_axes = 3;  // 0, 3 or 6; an input device has no motors
-  double largest_force_N = 0;
+  double max_force_N = 0;
   double continuous_force_N = 0;
-  double largest_torque_Nm = 0;
-  double largest_stiffness_N_per_m = 0;
+  double max_torque_Nm = 0;
+  double max_stiffness_N_per_m = 0;
   double tick_rate_hz = 1000;  // of its own loop
 };
 
@@ -53,7 +53,7 @@ class DeviceCycle {
 // with what is absent and what would help; the force is off until the first write().
 class HapticDevice {
  public:
-  virtual ~HapticDevice() = default;  // let_go() and closed
+  virtual ~HapticDevice() = default;  // release() and closed
 
   virtual const DeviceTraits& traits() const = 0;
 
@@ -67,11 +67,11 @@ class HapticDevice {
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
   // No force from now on, whatever a thread that hangs in a tick does next; read() and write() may answer
-  // kLetGo. From any thread, more than once.
-  virtual void let_go() noexcept = 0;
+  // kReleased. From any thread, more than once.
+  virtual void release() noexcept = 0;
   // From a tick: undoes that, where the device can take a force again. False: it cannot without being opened
   // anew.
-  virtual bool hold_again() noexcept { return false; }
+  virtual bool rearm() noexcept { return false; }
 };
 
 }  // namespace remote_touch

@@ -35,7 +35,7 @@ struct HdLibrary {
     callback_done = 0,
     callback_continue = 1,
   };
-  static constexpr unsigned short kLargestPriority = 0xFFFF;
+  static constexpr unsigned short kMaxPriority = 0xFFFF;
 
   SharedLibrary library;
   unsigned (*init_device)(const char* name) = nullptr;

@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-Heartbeat::Heartbeat(HapticDevice& device, double longest_s) : device_(device), longest_s_(longest_s) {
+Heartbeat::Heartbeat(HapticDevice& device, double max_s) : device_(device), max_s_(max_s) {
   thread_ = std::thread([this] { watch(); });
 }
 
@@ -22,7 +22,7 @@ Heartbeat::~Heartbeat() {
 
 bool Heartbeat::beat(double now_s) noexcept {
   last_s_.store(now_s, std::memory_order_release);
-  return !let_go_.exchange(false, std::memory_order_acq_rel);
+  return !released_.exchange(false, std::memory_order_acq_rel);
 }
 
 // A beat may come between the look and letting go: the device is let go then too, and the next beat says so.
@@ -30,11 +30,11 @@ void Heartbeat::watch() {
   outrank_the_loop();
   double stalled_at_s = -1;
   std::unique_lock lock(mutex_);
-  while (!stopping_.wait_for(lock, std::chrono::duration<double>(longest_s_ / 5), [this] { return stop_; })) {
+  while (!stopping_.wait_for(lock, std::chrono::duration<double>(max_s_ / 5), [this] { return stop_; })) {
     const double last_s = last_s_.load(std::memory_order_acquire);
-    if (last_s < 0 || last_s == stalled_at_s || steady_s() - last_s <= longest_s_) continue;
-    device_.let_go();
-    let_go_.store(true, std::memory_order_release);
+    if (last_s < 0 || last_s == stalled_at_s || steady_s() - last_s <= max_s_) continue;
+    device_.release();
+    released_.store(true, std::memory_order_release);
     stalls_.fetch_add(1, std::memory_order_relaxed);
     stalled_at_s = last_s;  // once a stall
   }

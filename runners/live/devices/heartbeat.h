@@ -12,8 +12,8 @@ namespace remote_touch {
 
 class Heartbeat {
  public:
-  // Looks every fifth of longest_s; a device without a beat for that long is let go at the next look.
-  Heartbeat(HapticDevice& device, double longest_s);
+  // Looks every fifth of max_s; a device without a beat for that long is let go at the next look.
+  Heartbeat(HapticDevice& device, double max_s);
   ~Heartbeat();
 
   // From the loop, at the begin of every tick. The first one starts the watch. False: the device was let go
@@ -27,9 +27,9 @@ class Heartbeat {
   void watch();
 
   HapticDevice& device_;
-  const double longest_s_;
+  const double max_s_;
   std::atomic<double> last_s_ = -1;  // of the steady clock; -1: none yet
-  std::atomic<bool> let_go_ = false;
+  std::atomic<bool> released_ = false;
   std::atomic<int> stalls_ = 0;
   std::mutex mutex_;
   std::condition_variable stopping_;

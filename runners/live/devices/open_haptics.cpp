@@ -59,8 +59,8 @@ class OpenHaptics : public GatedDevice {
   DeviceTraits traits_;
 
   // Of the thread of the ticks.
-  DeviceFault frame_fault_;  // of the frame before or of this one's beginning
-  bool has_told_ = false;    // a force, in this frame
+  DeviceFault frame_fault_;    // of the frame before or of this one's beginning
+  bool has_reported_ = false;  // a force, in this frame
 
   DeviceFault scheduler_fault_;  // set while no callback can be
   DeviceCycle* cycle_ = nullptr;
@@ -87,7 +87,7 @@ OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject)
 
 // The last frame tells no force, for whoever switches the motors on next.
 OpenHaptics::~OpenHaptics() {
-  let_go();
+  release();
   constexpr std::array<double, 3> kNone{};
   hd_.begin_frame(device_);
   hd_.set_doublev(HdLibrary::current_force, kNone.data());
@@ -110,11 +110,10 @@ void OpenHaptics::learn_traits() {
     traits_.name = model;
   traits_.sensed_axes = axes(HdLibrary::input_dof);
   traits_.actuated_axes = axes(HdLibrary::output_dof);
-  traits_.largest_force_N = number(HdLibrary::nominal_max_force);
+  traits_.max_force_N = number(HdLibrary::nominal_max_force);
   traits_.continuous_force_N = number(HdLibrary::nominal_max_continuous_force);
-  traits_.largest_stiffness_N_per_m = number(HdLibrary::nominal_max_stiffness) * kMmPerM;
-  if (traits_.actuated_axes == 6)
-    traits_.largest_torque_Nm = number(HdLibrary::nominal_max_torque) * kNmPerMNm;
+  traits_.max_stiffness_N_per_m = number(HdLibrary::nominal_max_stiffness) * kMmPerM;
+  if (traits_.actuated_axes == 6) traits_.max_torque_Nm = number(HdLibrary::nominal_max_torque) * kNmPerMNm;
 }
 
 DeviceFault OpenHaptics::newest_error(const char* what) const noexcept {
@@ -136,11 +135,11 @@ DeviceFault OpenHaptics::sense(DeviceReading& reading) noexcept {
   if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) return fault;
   reading.position_m = pose.topRightCorner<3, 1>() * kMPerMm;
   reading.velocity_m_per_s = velocity * kMPerMm;
-  reading.turning_rad_per_s = turning;
+  reading.angular_velocity_rad_per_s = turning;
   reading.buttons = static_cast<std::uint32_t>(buttons);
-  const Eigen::Matrix3d turn = pose.topLeftCorner<3, 3>();
-  if (!is_rotation(turn)) return kNoRotation;
-  reading.orientation = Eigen::Quaterniond(turn);
+  const Eigen::Matrix3d rotation = pose.topLeftCorner<3, 3>();
+  if (!is_rotation(rotation)) return kNoRotation;
+  reading.orientation = Eigen::Quaterniond(rotation);
   return {};
 }
 
@@ -157,7 +156,7 @@ DeviceFault OpenHaptics::exert(const Wrench& wrench) noexcept {
     const Vec3 torque_mNm = wrench.torque_Nm * kMNmPerNm;
     hd_.set_doublev(HdLibrary::current_torque, torque_mNm.data());
   }
-  has_told_ = true;
+  has_reported_ = true;
   return newest_error("OpenHaptics: the force cannot be set");
 }
 
@@ -172,21 +171,21 @@ void OpenHaptics::switch_off() noexcept {
 bool OpenHaptics::frame(DeviceCycle& cycle) noexcept {
   hd_.begin_frame(device_);
   if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) frame_fault_ = fault;
-  has_told_ = false;
-  const bool goes_on = cycle.tick();
-  if (!has_told_ || is_let_go() || !goes_on) exert({});
+  has_reported_ = false;
+  const bool continues = cycle.tick();
+  if (!has_reported_ || is_released() || !continues) exert({});
   hd_.end_frame(device_);
   frame_fault_ = newest_error("OpenHaptics: the force cannot be set");
-  return goes_on;
+  return continues;
 }
 
 unsigned OpenHaptics::on_schedule(void* self) noexcept {
   OpenHaptics& device = *static_cast<OpenHaptics*>(self);
   device.in_callback_ = true;
   ++device.callbacks_;
-  const bool goes_on = device.frame(*device.cycle_);
+  const bool continues = device.frame(*device.cycle_);
   device.in_callback_ = false;
-  if (goes_on) return HdLibrary::callback_continue;
+  if (continues) return HdLibrary::callback_continue;
   const std::lock_guard<std::mutex> lock(device.mutex_);
   device.has_ended_ = true;
   device.ended_.notify_one();
@@ -195,11 +194,11 @@ unsigned OpenHaptics::on_schedule(void* self) noexcept {
 
 // True after the last tick; false when no callback came for long, though none is under way.
 bool OpenHaptics::is_scheduler_done() {
-  constexpr std::chrono::seconds kLongest(1);
+  constexpr std::chrono::seconds kMaxLength(1);
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
     const long before = callbacks_;
-    if (ended_.wait_for(lock, kLongest, [this] { return has_ended_; })) return true;
+    if (ended_.wait_for(lock, kMaxLength, [this] { return has_ended_; })) return true;
     if (callbacks_ == before && !in_callback_) return false;
   }
 }
@@ -214,7 +213,7 @@ void OpenHaptics::run(DeviceCycle& cycle) {
   has_ended_ = false;
   frame_fault_ = {};
   hd_.make_current_device(device_);
-  const unsigned long callback = hd_.schedule_asynchronous(&on_schedule, this, HdLibrary::kLargestPriority);
+  const unsigned long callback = hd_.schedule_asynchronous(&on_schedule, this, HdLibrary::kMaxPriority);
   hd_.start_scheduler();
   const DeviceFault fault = newest_error("OpenHaptics: the scheduler does not start");
   const bool is_done = !fault && is_scheduler_done();

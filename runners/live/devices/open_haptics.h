@@ -2,7 +2,7 @@
 // its documentation and tried with a test double, never with a device.
 //
 // The vendor's scheduler drives run(). A scheduler that does not start or stops calling is told to the cycle
-// as a fault of its readings; let_go() reaches the device past a callback that hangs.
+// as a fault of its readings; release() reaches the device past a callback that hangs.
 #pragma once
 
 #include <memory>

@@ -7,57 +7,57 @@ namespace remote_touch {
 namespace {
 
 // Of what the vendor names as the most.
-constexpr double kShareOfDevice = 0.9;
+constexpr double kDeviceFraction = 0.9;
 // Whatever the largest force, it has to be gone in this time.
-constexpr double kLongestLetDown_s = 0.01;
+constexpr double kMaxRampDown_s = 0.01;
 
-Vec3 cut(const Vec3& v, double longest) {
+Vec3 cut(const Vec3& v, double max_length) {
   const double length = v.norm();
-  return length > longest ? Vec3(v * (longest / length)) : v;
+  return length > max_length ? Vec3(v * (max_length / length)) : v;
 }
 
-Vec3 towards(const Vec3& from, const Vec3& to, double longest) {
-  return from + cut(to - from, longest);
+Vec3 towards(const Vec3& from, const Vec3& to, double max_length) {
+  return from + cut(to - from, max_length);
 }
 
-std::string too_slow(const char* slew, const char* largest, double value, double least) {
-  if (value >= least) return {};
-  return std::string(slew) + " = " + std::to_string(value) + ": allowed " + largest +
-         " / 0.01 s = " + std::to_string(least) + " or more, so that the device is let go in that time";
+std::string too_slow(const char* slew, const char* max, double value, double min) {
+  if (value >= min) return {};
+  return std::string(slew) + " = " + std::to_string(value) + ": allowed " + max +
+         " / 0.01 s = " + std::to_string(min) + " or more, so that the device is let go in that time";
 }
 
 }  // namespace
 
 Parameters parameters(SafetyLimits& s) {
   return {
-      {"largest_force_N", &s.largest_force_N, 0, 100,
-       "longer forces are cut; 0.9 of the device's own counts too"},
-      {"largest_torque_Nm", &s.largest_torque_Nm, 0, 10, "likewise for torques"},
+      {"max_force_N", &s.max_force_N, 0, 100, "longer forces are cut; 0.9 of the device's own counts too"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 10, "likewise for torques"},
       {"force_slew_N_per_s", &s.force_slew_N_per_s, 1, 1e5, "fastest change of the force"},
       {"torque_slew_Nm_per_s", &s.torque_slew_Nm_per_s, 0.01, 1e4, "fastest change of the torque"},
-      {"fastest_m_per_s", &s.fastest_m_per_s, 0.01, 100, "a faster hand latches the gate"},
-      {"fastest_rad_per_s", &s.fastest_rad_per_s, 0.1, 1000, "a faster turn latches the gate"},
-      {"engage_below_N", &s.engage_below_N, 1e-3, 10, "force begins while the command is below"},
+      {"max_speed_m_per_s", &s.max_speed_m_per_s, 0.01, 100, "a faster hand latches the gate"},
+      {"max_angular_speed_rad_per_s", &s.max_angular_speed_rad_per_s, 0.1, 1000,
+       "a faster turn latches the gate"},
+      {"engage_force_N", &s.engage_force_N, 1e-3, 10, "force begins while the command is below"},
       {"ramp_s", &s.ramp_s, 0, 10, "then the share of the command that counts rises to 1"},
-      {"stale_s", &s.stale_s, 0.002, 1, "an older command counts as none"},
+      {"max_command_age_s", &s.max_command_age_s, 0.002, 1, "an older command counts as none"},
   };
 }
 
-std::string conflict(const SafetyLimits& s) {
-  const std::string force = too_slow("force_slew_N_per_s", "largest_force_N", s.force_slew_N_per_s,
-                                     s.largest_force_N / kLongestLetDown_s);
+std::string validate(const SafetyLimits& s) {
+  const std::string force =
+      too_slow("force_slew_N_per_s", "max_force_N", s.force_slew_N_per_s, s.max_force_N / kMaxRampDown_s);
   if (!force.empty()) return force;
-  return too_slow("torque_slew_Nm_per_s", "largest_torque_Nm", s.torque_slew_Nm_per_s,
-                  s.largest_torque_Nm / kLongestLetDown_s);
+  return too_slow("torque_slew_Nm_per_s", "max_torque_Nm", s.torque_slew_Nm_per_s,
+                  s.max_torque_Nm / kMaxRampDown_s);
 }
 
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits) {
   SafetyLimits all = limits;
   const auto cap = [](double& limit, double of_device) {
-    if (of_device > 0) limit = std::min(limit, kShareOfDevice * of_device);
+    if (of_device > 0) limit = std::min(limit, kDeviceFraction * of_device);
   };
-  cap(all.largest_force_N, traits.largest_force_N);
-  cap(all.largest_torque_Nm, traits.largest_torque_Nm);
+  cap(all.max_force_N, traits.max_force_N);
+  cap(all.max_torque_Nm, traits.max_torque_Nm);
   return all;
 }
 
@@ -76,23 +76,23 @@ DeviceFault SafetyGate::trouble(const DeviceReading& reading, const DeviceFault&
                                 const Wrench& command) const noexcept {
   if (fault) return fault;
   if (!reading.position_m.allFinite() || !reading.orientation.coeffs().allFinite() ||
-      !reading.velocity_m_per_s.allFinite() || !reading.turning_rad_per_s.allFinite())
+      !reading.velocity_m_per_s.allFinite() || !reading.angular_velocity_rad_per_s.allFinite())
     return {"the device told a number that is none"};
-  if (reading.velocity_m_per_s.norm() > limits_.fastest_m_per_s) return {"the hand is too fast"};
-  if (reading.turning_rad_per_s.norm() > limits_.fastest_rad_per_s) return {"the handle turns too fast"};
+  if (reading.velocity_m_per_s.norm() > limits_.max_speed_m_per_s) return {"the hand is too fast"};
+  if (reading.angular_velocity_rad_per_s.norm() > limits_.max_angular_speed_rad_per_s)
+    return {"the handle turns too fast"};
   if (!command.force_N.allFinite() || !command.torque_Nm.allFinite())
     return {"the command is a number that is none"};
   return {};
 }
 
 // How much of the command counts.
-double SafetyGate::share(double now_s, const Wrench& command) noexcept {
+double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
   if (state_ == GateState::waiting) {
-    const double torque_share =
-        limits_.largest_force_N > 0
-            ? limits_.engage_below_N * limits_.largest_torque_Nm / limits_.largest_force_N
-            : 0;
-    if (command.force_N.norm() >= limits_.engage_below_N || command.torque_Nm.norm() > torque_share) return 0;
+    const double torque_fraction =
+        limits_.max_force_N > 0 ? limits_.engage_force_N * limits_.max_torque_Nm / limits_.max_force_N : 0;
+    if (command.force_N.norm() >= limits_.engage_force_N || command.torque_Nm.norm() > torque_fraction)
+      return 0;
     state_ = GateState::ramping;
     ramp_began_s_ = now_s;
   }
@@ -105,7 +105,7 @@ double SafetyGate::share(double now_s, const Wrench& command) noexcept {
 }
 
 Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const DeviceFault& fault,
-                        const Wrench& command, double made_s) noexcept {
+                        const Wrench& command, double command_time_s) noexcept {
   const double gap_s = has_last_ ? now_s - last_s_ : 0;
   last_s_ = now_s, has_last_ = true;
   if (rearm_.exchange(false, std::memory_order_relaxed) && state_ == GateState::latched)
@@ -113,17 +113,18 @@ Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const Device
   if (const DeviceFault found = trouble(reading, fault, command); found && state_ != GateState::latched)
     latch(found);
   if (state_ == GateState::latched) return {};
-  const bool is_stale = gap_s > limits_.stale_s || now_s - made_s > limits_.stale_s;
+  const bool is_stale =
+      gap_s > limits_.max_command_age_s || now_s - command_time_s > limits_.max_command_age_s;
   if (is_stale) state_ = GateState::waiting;
-  const double part = is_stale ? 0 : share(now_s, command);
+  const double part = is_stale ? 0 : fraction(now_s, command);
   // After a gap the force that was written last is old: no step is larger than that of an ordinary tick.
   const double step_s = std::min(gap_s, 0.002);
-  last_.force_N = cut(towards(last_.force_N, cut(part * command.force_N, limits_.largest_force_N),
+  last_.force_N = cut(towards(last_.force_N, cut(part * command.force_N, limits_.max_force_N),
                               limits_.force_slew_N_per_s * step_s),
-                      limits_.largest_force_N);
-  last_.torque_Nm = cut(towards(last_.torque_Nm, cut(part * command.torque_Nm, limits_.largest_torque_Nm),
+                      limits_.max_force_N);
+  last_.torque_Nm = cut(towards(last_.torque_Nm, cut(part * command.torque_Nm, limits_.max_torque_Nm),
                                 limits_.torque_slew_Nm_per_s * step_s),
-                        limits_.largest_torque_Nm);
+                        limits_.max_torque_Nm);
   return last_;
 }
 

@@ -10,19 +10,19 @@
 namespace remote_touch {
 
 struct SafetyLimits {
-  double largest_force_N = 5;
-  double largest_torque_Nm = 0.2;
+  double max_force_N = 5;
+  double max_torque_Nm = 0.2;
   double force_slew_N_per_s = 1000;
   double torque_slew_Nm_per_s = 40;
-  double fastest_m_per_s = 3;
-  double fastest_rad_per_s = 40;
-  double engage_below_N = 0.3;
+  double max_speed_m_per_s = 3;
+  double max_angular_speed_rad_per_s = 40;
+  double engage_force_N = 0.3;
   double ramp_s = 0.5;
-  double stale_s = 0.02;
+  double max_command_age_s = 0.02;
 };
 
 Parameters parameters(SafetyLimits& s);
-std::string conflict(const SafetyLimits& s);
+std::string validate(const SafetyLimits& s);
 
 // No more than 0.9 of what the device can do.
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits);
@@ -32,9 +32,9 @@ enum class GateState { waiting, ramping, engaged, latched };
 // Rules, each for itself:
 // - A fault of the device, a reading or a command that is no number, or a hand faster than the limits: no
 //   force, until rearm().
-// - No tick for stale_s, or a command older than that: down to nothing at the slew rate, then as at the
-// start.
-// - Force begins only while the command is below engage_below_N and a torque of the same share, and rises
+// - No tick for max_command_age_s, or a command older than that: down to nothing at the slew rate, then as at
+// the start.
+// - Force begins only while the command is below engage_force_N and a torque of the same share, and rises
 //   evenly over ramp_s, so that nothing jumps at a hand that is inside something.
 // - Force and torque are cut to their largest length, and change no faster than the slew rates.
 // No allocation, no lock, no clock of its own. Not a certified safety function.
@@ -42,9 +42,10 @@ class SafetyGate {
  public:
   explicit SafetyGate(const SafetyLimits& limits) : limits_(limits) {}
 
-  // What may be written at now_s, which never decreases, of a command made at made_s. fault: of the reading.
+  // What may be written at now_s, which never decreases, of a command made at command_time_s. fault: of the
+  // reading.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
-              double made_s) noexcept;
+              double command_time_s) noexcept;
   // As after a fault of the device: no force, until rearm().
   void latch(const DeviceFault& reason) noexcept;
   // The device was let go by someone else: as at the start.
@@ -58,7 +59,7 @@ class SafetyGate {
  private:
   DeviceFault trouble(const DeviceReading& reading, const DeviceFault& fault,
                       const Wrench& command) const noexcept;
-  double share(double now_s, const Wrench& command) noexcept;
+  double fraction(double now_s, const Wrench& command) noexcept;
 
   const SafetyLimits limits_;
   GateState state_ = GateState::waiting;

@@ -23,7 +23,7 @@ DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
   const auto now = static_cast<long long>((steady_s() - start_s_) * traits_.tick_rate_hz);
   const long long first = ticks_;
   ticks_ = std::max(ticks_ + 1, now);
-  for (long long tick = std::max(first + 1, ticks_ - kMostTicksAtOnce); tick <= ticks_; ++tick) {
+  for (long long tick = std::max(first + 1, ticks_ - kMaxTicksAtOnce); tick <= ticks_; ++tick) {
     const double time_s = static_cast<double>(tick) / traits_.tick_rate_hz;
     state_ = hand_.move(script_->at(time_s), time_s);
   }
@@ -36,11 +36,12 @@ DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
 }
 
 DeviceFault SimulatedDevice::write(const Wrench& wrench) noexcept {
-  const Wrench felt = held_.load(std::memory_order_relaxed) ? placement_.in_world(wrench) : Wrench{};
+  const Wrench device_wrench =
+      armed_.load(std::memory_order_relaxed) ? placement_.in_world(wrench) : Wrench{};
   RenderOutput out;
-  out.force_N = felt.force_N;
-  out.tool.emplace().torque_Nm = felt.torque_Nm;
-  hand_.feel(state_, out);
+  out.force_N = device_wrench.force_N;
+  out.tool.emplace().torque_Nm = device_wrench.torque_Nm;
+  hand_.apply(state_, out);
   return {};
 }
 

@@ -23,15 +23,15 @@ class SimulatedDevice final : public HapticDevice {
   void run(DeviceCycle& cycle) override;
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;
-  void let_go() noexcept override { held_.store(false, std::memory_order_relaxed); }
-  bool hold_again() noexcept override {
-    held_.store(true, std::memory_order_relaxed);
+  void release() noexcept override { armed_.store(false, std::memory_order_relaxed); }
+  bool rearm() noexcept override {
+    armed_.store(true, std::memory_order_relaxed);
     return true;
   }
 
  private:
   // After a longer pause the hand starts anew from there.
-  static constexpr int kMostTicksAtOnce = 200;
+  static constexpr int kMaxTicksAtOnce = 200;
 
   const std::unique_ptr<const Trajectory> script_;
   SimulatedHand hand_;
@@ -41,7 +41,7 @@ class SimulatedDevice final : public HapticDevice {
   long long ticks_ = 0;
   DeviceState state_;
   DeviceReading last_;
-  std::atomic<bool> held_ = true;
+  std::atomic<bool> armed_ = true;
 };
 
 }  // namespace remote_touch

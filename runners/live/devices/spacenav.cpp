@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kConnectWithin_s = 0.5;
 constexpr double kHolds_s = 0.5;
-constexpr double kLongestStep_s = 0.1;  // of one reading; after a longer pause the pose does not jump
-constexpr int kMostFrames = 256;        // of one reading; the daemon sends some hundred a second
+constexpr double kMaxStep_s = 0.1;  // of one reading; after a longer pause the pose does not jump
+constexpr int kMaxFrames = 256;     // of one reading; the daemon sends some hundred a second
 
 constexpr DeviceFault kGone{"spacenavd has closed the connection"};
 constexpr DeviceFault kNoFrame{"what the socket sends is not what spacenavd sends"};
@@ -51,7 +51,7 @@ class Spacenav final : public HapticDevice {
  public:
   explicit Spacenav(const DeviceAddress& address)
       : speed_(address.number("speed", 5e-4, 1e-6, 0.1)),
-        turning_(address.number("turning", 3e-3, 1e-6, 1)),
+        angular_velocity_(address.number("turning", 3e-3, 1e-6, 1)),
         box_m_(address.number("box", 0.15, 1e-3, 10)),
         socket_(connect(address)) {
     traits_.name = "spacenavd " + socket_of(address);
@@ -65,23 +65,23 @@ class Spacenav final : public HapticDevice {
     const double now_s = steady_s();
     if (!fault_) fault_ = take_frames(now_s);
     if (fault_) return fault_;
-    if (now_s - told_s_ > kHolds_s) counts_.fill(0);
-    move(std::min(now_s - moved_s_, kLongestStep_s));
+    if (now_s - reported_s_ > kHolds_s) counts_.fill(0);
+    move(std::min(now_s - moved_s_, kMaxStep_s));
     moved_s_ = now_s;
     reading = pose_;
     return {};
   }
 
   DeviceFault write(const Wrench&) noexcept override { return fault_; }
-  void let_go() noexcept override {}
-  bool hold_again() noexcept override { return true; }
+  void release() noexcept override {}
+  bool rearm() noexcept override { return true; }
 
  private:
   DeviceFault take_frames(double now_s) noexcept;
   DeviceFault take(const Frame& frame, double now_s) noexcept;
   void move(double step_s) noexcept;
 
-  const double speed_, turning_, box_m_;  // the first two for each count
+  const double speed_, angular_velocity_, box_m_;  // the first two for each count
   DeadlineSocket socket_;
   DeviceTraits traits_;
   DeviceFault fault_;
@@ -89,12 +89,12 @@ class Spacenav final : public HapticDevice {
   std::array<char, sizeof(Frame)> bytes_{};  // of a frame that has begun
   std::size_t filled_ = 0;
   std::array<std::int32_t, 6> counts_{};  // the last deflection told
-  double told_s_ = 0, moved_s_ = steady_s();
+  double reported_s_ = 0, moved_s_ = steady_s();
   DeviceReading pose_;
 };
 
 DeviceFault Spacenav::take_frames(double now_s) noexcept {
-  for (int frames = 0; frames < kMostFrames;) {
+  for (int frames = 0; frames < kMaxFrames;) {
     const auto got = socket_.read_ready(bytes_.data() + filled_, bytes_.size() - filled_);
     if (got.error == EAGAIN) return {};
     if (got.error != 0) return {kGone.what, got.error};
@@ -113,7 +113,7 @@ DeviceFault Spacenav::take(const Frame& frame, double now_s) noexcept {
   if (frame[0] < 0 || frame[0] > kLastEvent) return kNoFrame;
   if (frame[0] == kMotion) {
     std::copy_n(frame.begin() + 1, counts_.size(), counts_.begin());
-    told_s_ = now_s;
+    reported_s_ = now_s;
   } else if (frame[0] <= kRelease && frame[1] >= 0 && frame[1] < 32) {
     const std::uint32_t button = 1u << frame[1];
     if (frame[0] == kPress)
@@ -127,16 +127,16 @@ DeviceFault Spacenav::take(const Frame& frame, double now_s) noexcept {
 void Spacenav::move(double step_s) noexcept {
   const Vec3 flip(1, 1, -1);
   const Vec3 along = speed_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
-  const Vec3 about = turning_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
+  const Vec3 about = angular_velocity_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
   const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
   // At a face of the box the position stands although the mouse is pushed.
   pose_.velocity_m_per_s = step_s > 0 ? Vec3((to - pose_.position_m) / step_s) : along;
   pose_.position_m = to;
-  pose_.turning_rad_per_s = about;
+  pose_.angular_velocity_rad_per_s = about;
   const double angle = step_s * about.norm();
   if (angle > 0) {
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, about.normalized()));
-    pose_.orientation = (turn * pose_.orientation).normalized();
+    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, about.normalized()));
+    pose_.orientation = (rotation * pose_.orientation).normalized();
   }
 }
 

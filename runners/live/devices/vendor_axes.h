@@ -16,11 +16,11 @@ inline Vec3 to_user_right_up(const Vec3& v) {
 
 // The handle's axes are renamed as the device's are: a handle that is not turned for the vendor is not for
 // us.
-inline Eigen::Matrix3d turn_from_user_right_up(const Eigen::Matrix3d& turn) {
-  Eigen::Matrix3d turned;
+inline Eigen::Matrix3d rotation_from_user_right_up(const Eigen::Matrix3d& rotation) {
+  Eigen::Matrix3d rotated;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) turned(i, j) = turn((i + 1) % 3, (j + 1) % 3);
-  return turned;
+    for (int j = 0; j < 3; ++j) rotated(i, j) = rotation((i + 1) % 3, (j + 1) % 3);
+  return rotated;
 }
 
 // Up to what encoders and single precision leave; false for what is no number.

@@ -56,8 +56,8 @@ void CameraThread::end(std::string why) {
 }
 
 CameraCounts CameraThread::counts() const {
-  const std::lock_guard lock(told_mutex_);
-  return told_;
+  const std::lock_guard lock(reported_mutex_);
+  return reported_;
 }
 
 void CameraThread::run() try {
@@ -65,8 +65,8 @@ void CameraThread::run() try {
   while (!stop_.load(std::memory_order_relaxed)) switch (source_->next(sensed, kPatience_s)) {
       case SensorState::frame: {
         handle(sensed);
-        const std::lock_guard lock(told_mutex_);
-        told_ = counts_;
+        const std::lock_guard lock(reported_mutex_);
+        reported_ = counts_;
         break;
       }
       case SensorState::waiting:
@@ -88,7 +88,7 @@ bool CameraThread::is_newer(const SensorFrame& sensed) {
   if (!newer) return false;
   if (counts_.received > 1) {
     counts_.passed_over += sensed.number - last_number_ - 1;
-    counts_.longest_pause_s = std::max(counts_.longest_pause_s, sensed.captured_s - last_captured_s_);
+    counts_.max_pause_s = std::max(counts_.max_pause_s, sensed.captured_s - last_captured_s_);
   }
   last_number_ = sensed.number, last_captured_s_ = sensed.captured_s;
   return true;
@@ -121,10 +121,10 @@ void CameraThread::handle(SensorFrame& sensed) {
 }
 
 void CameraThread::send(Frame frame, double sensed_s) {
-  std::erase_if(held_, [](const Frame& old) {
+  std::erase_if(retained_frames_, [](const Frame& old) {
     return old.points.use_count() == 1 && (!old.prepared || old.prepared.use_count() == 1);
   });
-  held_.push_back(frame);
+  retained_frames_.push_back(frame);
   const std::uint64_t hash =
       frame_hash(dynamic_cast<const CloudSearch&>(*frame.points).cloud(), frame.captured_s);
   const double ready_s = steady_s();

@@ -25,7 +25,7 @@ struct CameraCounts {
   int incomplete = 0;   // without the colours that the sensor's view promises, or of another size; dropped
   int overtaken = 0;    // ready, and replaced by a newer one before the servo took them
   int unrecorded = 0;   // dropped, because the recorder had no room
-  double longest_pause_s = 0;
+  double max_pause_s = 0;
   double processing_s = 0;  // sum over the frames
 };
 
@@ -63,11 +63,11 @@ class CameraThread {
   TripleBuffer<LiveFrame>& out_;
   const FrameSink sink_;
   CameraCounts counts_;
-  mutable std::mutex told_mutex_;
-  CameraCounts told_;  // after the newest frame
+  mutable std::mutex reported_mutex_;
+  CameraCounts reported_;  // after the newest frame
   int index_ = 0, last_number_ = -1;
   double last_captured_s_ = 0;
-  std::deque<Frame> held_;
+  std::deque<Frame> retained_frames_;
   std::atomic<bool> stop_ = false;
   std::atomic<double> newest_s_;
   std::string why_;

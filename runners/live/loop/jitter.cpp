@@ -20,7 +20,7 @@ class NoDevice final : public HapticDevice {
   const DeviceTraits& traits() const override { return traits_; }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
-  void let_go() noexcept override {}
+  void release() noexcept override {}
 
  private:
   DeviceTraits traits_;
@@ -30,15 +30,15 @@ class NoDevice final : public HapticDevice {
 class Watch final : public DeviceCycle {
  public:
   Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop)
-      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), most_(duration_s * rate_hz) {
-    jitter_.late_s.reserve(static_cast<std::size_t>(most_) + 1);
+      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), max_(duration_s * rate_hz) {
+    jitter_.late_s.reserve(static_cast<std::size_t>(max_) + 1);
   }
 
   bool tick() noexcept override {
     const double now_s = steady_s();
     if (number_ < 0) start_s_ = now_s;
     const auto number = static_cast<long long>((now_s - start_s_) * rate_hz_);
-    if (static_cast<double>(number) >= most_ || (stop_ && *stop_)) return false;
+    if (static_cast<double>(number) >= max_ || (stop_ && *stop_)) return false;
     jitter_.missed += std::max(0LL, number - number_ - 1);
     number_ = number;
     jitter_.late_s.push_back(now_s - start_s_ - static_cast<double>(number) / rate_hz_);
@@ -49,7 +49,7 @@ class Watch final : public DeviceCycle {
   Jitter& jitter_;
   const double rate_hz_;
   const std::atomic<bool>* const stop_;
-  const double most_;
+  const double max_;
   long long number_ = -1;
   double start_s_ = 0;
 };
@@ -76,7 +76,7 @@ std::string histogram(const std::vector<double>& late_s) {
     const double doubled = std::log2(std::max(1e6 * late, 1e-3) / kFirst_us);
     ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(doubled)), 0, kRows - 1))];
   }
-  const long long most = *std::max_element(counts.begin(), counts.end());
+  const long long max = *std::max_element(counts.begin(), counts.end());
   std::string text;
   for (int i = 0; i < kRows; ++i) {
     const long long count = counts[static_cast<std::size_t>(i)];
@@ -84,7 +84,7 @@ std::string histogram(const std::vector<double>& late_s) {
     char row[128];
     std::snprintf(row, sizeof row, "  %8.0f to %8.0f us %10lld %s\n",
                   i == 0 ? 0 : std::ldexp(kFirst_us, i - 1), std::ldexp(kFirst_us, i), count,
-                  std::string(static_cast<std::size_t>((kBar * count + most - 1) / most), '#').c_str());
+                  std::string(static_cast<std::size_t>((kBar * count + max - 1) / max), '#').c_str());
     text += row;
   }
   return text;

@@ -22,9 +22,9 @@ void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
     last_taken_ = tick.taken, taken_at_ = tick.number;
   }
   exhausted_ticks += tick.out.tool && tick.out.tool->budget_exhausted ? 1 : 0;
-  limp_ticks += tick.gate == GateState::waiting || tick.gate == GateState::latched ? 1 : 0;
+  zero_force_ticks += tick.gate == GateState::waiting || tick.gate == GateState::latched ? 1 : 0;
   stale_ticks += static_cast<double>(tick.number - taken_at_) > kStaleFrame_s * haptic_rate_hz ? 1 : 0;
-  largest_force_N = std::max(largest_force_N, tick.written.force_N.norm());
+  max_force_N = std::max(max_force_N, tick.written.force_N.norm());
 }
 
 }  // namespace remote_touch

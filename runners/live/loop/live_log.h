@@ -17,11 +17,11 @@ struct LiveLog {
   std::vector<double> latency_s;  // of every frame taken: sensor's time stamp to the first write it counts in
   std::vector<double> waited_s;   // of every frame taken: ready to taken
   std::int64_t missed_ticks = 0;  // numbers that no tick had
-  std::int64_t exhausted_ticks = 0;  // that ended before the tool came to rest
-  std::int64_t limp_ticks = 0;       // in which the gate was waiting or latched
-  std::int64_t stale_ticks = 0;      // with no new frame for kStaleFrame_s
-  std::int64_t reversed_frames = 0;  // taken although older than the one before; there should be none
-  double largest_force_N = 0;        // written
+  std::int64_t exhausted_ticks = 0;   // that ended before the tool came to rest
+  std::int64_t zero_force_ticks = 0;  // in which the gate was waiting or latched
+  std::int64_t stale_ticks = 0;       // with no new frame for kStaleFrame_s
+  std::int64_t reversed_frames = 0;   // taken although older than the one before; there should be none
+  double max_force_N = 0;             // written
 
   static constexpr double kStaleFrame_s = 0.2;
 

@@ -19,7 +19,7 @@ LiveLogger::~LiveLogger() {
 bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
   if (!recorder_) return true;
   const std::lock_guard lock(frames_mutex_);
-  if (frames_.size() >= kMostFrames) return false;
+  if (frames_.size() >= kMaxFrames) return false;
   frames_.push_back({frame, captured_s, fixtures_off});
   return true;
 }

@@ -23,7 +23,7 @@ class LiveLogger {
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
   ~LiveLogger();
 
-  // For the camera thread: false where the disk is behind by kMostFrames.
+  // For the camera thread: false where the disk is behind by kMaxFrames.
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   // Takes all that is left and finishes the file; the servo and the camera have stopped.
   void finish();
@@ -34,7 +34,7 @@ class LiveLogger {
   void ask(std::function<void(const LiveLog&)> question);
 
  private:
-  static constexpr std::size_t kMostFrames = 90;
+  static constexpr std::size_t kMaxFrames = 90;
   struct Recorded {
     SensorFrame frame;
     double captured_s;

@@ -23,12 +23,12 @@ double missed_percent(const LiveLog& log, double ticks) {
 // An interval ends with the tick that follows it.
 void add_pieces(LiveReport& report, const LiveLog& log) {
   const std::size_t ticks = log.interval_s.size();
-  const std::size_t length = ticks / LiveReport::kMostPieces + 1;
+  const std::size_t length = ticks / LiveReport::kMaxPieces + 1;
   for (std::size_t first = 0; first < ticks; first += length) {
     const auto begin = log.interval_s.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = begin + static_cast<std::ptrdiff_t>(std::min(length, ticks - first));
     report.piece_s.push_back(log.trace.time_s[first]);
-    report.longest_interval_s.push_back(*std::max_element(begin, end));
+    report.max_interval_s.push_back(*std::max_element(begin, end));
   }
 }
 
@@ -36,19 +36,19 @@ void add_pieces(LiveReport& report, const LiveLog& log) {
 Table longer_than(const LiveReport::Times& times) {
   constexpr double kSamples = 400;
   const auto count = static_cast<double>(times.sorted.size());
-  std::vector<double> log_us, log_share;
+  std::vector<double> log_us, log_fraction;
   std::size_t last = times.sorted.size();
   for (double sample = 0; sample <= kSamples; ++sample) {
-    const double share = std::pow(count, -sample / kSamples);  // 1 to 1 / count
-    const auto at = static_cast<std::size_t>(std::lround(count * (1 - share)));
+    const double fraction = std::pow(count, -sample / kSamples);  // 1 to 1 / count
+    const auto at = static_cast<std::size_t>(std::lround(count * (1 - fraction)));
     if (at >= times.sorted.size() || at == last) continue;
     last = at;
     log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));
-    log_share.push_back(std::log10((count - static_cast<double>(at)) / count));
+    log_fraction.push_back(std::log10((count - static_cast<double>(at)) / count));
   }
   Table table{times.word, times.name};
   table.add("time", "1", "log10 of the time in us", std::move(log_us));
-  table.add("share", "1", "log10 of the share that took as long or longer", std::move(log_share));
+  table.add("fraction", "1", "log10 of the share that took as long or longer", std::move(log_fraction));
   return table;
 }
 
@@ -64,11 +64,11 @@ Table times_table(const LiveReport& report) {
   Table table{"times", "Times of the run"};
   table.columns.push_back(texts("what", "what was measured", std::move(names)));
   table.add("count", "1", "how many there were", std::move(count));
-  const std::pair<const char*, double> shares[] = {
+  const std::pair<const char*, double> fractions[] = {
       {"least", 0}, {"p50", 0.5}, {"p99", 0.99}, {"p99_9", 0.999}, {"largest", 1}};
-  for (const auto& [name, share] : shares) {
+  for (const auto& [name, fraction] : fractions) {
     std::vector<double> values;
-    for (const auto& times : report.times) values.push_back(quantile(times.sorted, share));
+    for (const auto& times : report.times) values.push_back(quantile(times.sorted, fraction));
     table.add(name, "s", std::string(name) + " of the times", std::move(values));
   }
   return table;
@@ -86,9 +86,9 @@ Table counts_table(const LiveReport& report) {
 
 }  // namespace
 
-double quantile(const std::vector<double>& sorted, double share) {
+double quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
+  return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1) + 0.5)];
 }
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
@@ -106,20 +106,20 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"missed deadlines", number(log.missed_ticks)},
                    {"missed deadlines, percent", missed_percent(log, ticks)},
                    {"ticks that ended before the tool came to rest", number(log.exhausted_ticks)},
-                   {"ticks without force: gate waiting or latched", number(log.limp_ticks)},
+                   {"ticks without force: gate waiting or latched", number(log.zero_force_ticks)},
                    {"ticks on a cloud older than 0.2 s", number(log.stale_ticks)},
                    {"stalls, the device let go", number(counts.stalls)},
                    {"rows lost", number(counts.rows_lost)},
                    {"frames received", number(camera.received)},
                    {"processing of a frame, mean us", 1e6 * camera.processing_s / handled},
-                   {"longest pause between frames, ms", 1e3 * camera.longest_pause_s},
+                   {"longest pause between frames, ms", 1e3 * camera.max_pause_s},
                    {"frames passed over: not sent, or replaced too soon", number(camera.passed_over)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
                    {"frames overtaken before the haptic loop took them", number(camera.overtaken)},
                    {"frames dropped for the recorder", number(camera.unrecorded)},
                    {"frames taken in the wrong order", number(log.reversed_frames)},
-                   {"largest force written, N", log.largest_force_N}};
+                   {"largest force written, N", log.max_force_N}};
   add_pieces(report, log);
   return report;
 }
@@ -129,7 +129,7 @@ std::string text(const LiveReport& report) {
   std::string all =
       "  times in us                            count     least       p50       p99     p99.9   largest\n";
   for (const auto& times : report.times) {
-    const auto us = [&](double share) { return 1e6 * quantile(times.sorted, share); };
+    const auto us = [&](double fraction) { return 1e6 * quantile(times.sorted, fraction); };
     std::snprintf(row, sizeof row, "  %-34s %9zu %9.1f %9.1f %9.1f %9.1f %9.1f\n", times.name,
                   times.sorted.size(), us(0), us(0.5), us(0.99), us(0.999), us(1));
     all += row;
@@ -148,21 +148,21 @@ Figure live_figure(const LiveReport& report) {
       "Above: the share of ticks or frames that took as long or longer. Below: the longest time from "
       "one tick to the next, over the run."};
   figure.tables = {times_table(report), counts_table(report)};
-  Panel shares{"How often", "log10 of the time / us", "log10 of the share that took longer"};
+  Panel fractions{"How often", "log10 of the time / us", "log10 of the share that took longer"};
   for (const auto& times : report.times) {
     if (times.sorted.empty()) continue;
     figure.tables.push_back(longer_than(times));
-    shares.curves.push_back({times.word, "time", "share", CurveStyle::steps, times.name});
+    fractions.curves.push_back({times.word, "time", "fraction", CurveStyle::steps, times.name});
   }
   Table pieces{"late", "Longest time from tick to tick"};
   pieces.add("time", "s", "beginning of the piece of the run", report.piece_s);
   std::vector<double> log_us;
-  for (const double longest : report.longest_interval_s) log_us.push_back(std::log10(1e6 * longest));
+  for (const double max_length : report.max_interval_s) log_us.push_back(std::log10(1e6 * max_length));
   pieces.add("longest", "1", "log10 of the longest time from tick to tick in us", std::move(log_us));
   Panel when{"When", "time / s", "log10 of the longest time from tick to tick / us"};
   if (!report.piece_s.empty()) when.curves.push_back({"late", "time", "longest", CurveStyle::line});
   figure.tables.push_back(std::move(pieces));
-  figure.panels = {std::move(shares), std::move(when)};
+  figure.panels = {std::move(fractions), std::move(when)};
   return figure;
 }
 

@@ -21,10 +21,10 @@ struct LiveReport {
   };
   std::vector<Times> times;
   std::vector<Count> counts;
-  // Longest time from tick to tick in each of up to kMostPieces pieces of the run, at its beginning.
-  std::vector<double> piece_s, longest_interval_s;
+  // Longest time from tick to tick in each of up to kMaxPieces pieces of the run, at its beginning.
+  std::vector<double> piece_s, max_interval_s;
 
-  static constexpr std::size_t kMostPieces = 2000;
+  static constexpr std::size_t kMaxPieces = 2000;
 };
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts);
@@ -36,6 +36,6 @@ std::string text(const LiveReport& report);
 Figure live_figure(const LiveReport& report);
 
 // Of sorted values, the one below which that share of them lies; NaN of none.
-double quantile(const std::vector<double>& sorted, double share);
+double quantile(const std::vector<double>& sorted, double fraction);
 
 }  // namespace remote_touch

@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kStall_s = 0.01;       // without a tick for that long the device is let go
 constexpr std::size_t kRows = 1 << 14;  // 16 s at 1 kHz until rows are lost
-constexpr auto kLook = std::chrono::milliseconds(10);
-constexpr auto kLongestStop = std::chrono::seconds(2);
+constexpr auto kPollPeriod = std::chrono::milliseconds(10);
+constexpr auto kMaxStop = std::chrono::seconds(2);
 
 std::size_t padded(int side_px) {
   return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
@@ -53,19 +53,19 @@ class LiveRun {
     camera_ =
         std::make_unique<CameraThread>(std::move(source_), experiment.build_processing(kernels_, switches_),
                                        *renderer_, registration, start_s_, frames_, sink);
-    share_ = bearable_share(experiment.largest_stiffness_N_per_m(), experiment.live().device_scale,
-                            device_->traits().largest_stiffness_N_per_m);
+    force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
+                               device_->traits().max_stiffness_N_per_m);
     servo_ = std::make_unique<Servo>(
         ServoLinks{*device_, *renderer_, frames_, rows_, stop_, options.stop, ends_s()},
-        DevicePlacement(experiment.live(), share_), limits_for(experiment.safety(), device_->traits()),
+        DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
         rate_hz_, start_s_, kStall_s);
   }
 
   LiveResult run() {
     LiveResult result;
     result.device = device_->traits().name;
-    result.force_share = share_;
-    if (share_ < 1) tell_of_share();
+    result.force_scale = force_scale_;
+    if (force_scale_ < 1) report_force_scale();
     camera_->start();
     std::promise<void> done;
     const std::future<void> is_done = done.get_future();
@@ -77,12 +77,12 @@ class LiveRun {
       result.ended = wait();
     } catch (...) {  // no memory for a line to the user: a loop that is not waited for would end the program
       stop_ = true;
-      device_->let_go();
+      device_->release();
       loop.join();
       throw;
     }
     stop_ = true;
-    if (is_done.wait_for(kLongestStop) != std::future_status::ready) give_up();
+    if (is_done.wait_for(kMaxStop) != std::future_status::ready) give_up();
     loop.join();
     camera_->stop();
     logger_->finish();
@@ -106,7 +106,7 @@ class LiveRun {
     } catch (...) {
       loop_failed_ = true;
     }
-    device_->let_go();
+    device_->release();
   }
 
   std::unique_ptr<SessionWriter> recorder(const SensorView& view, const RigidTransform& registration) const {
@@ -144,37 +144,37 @@ class LiveRun {
   std::string wait() {
     for (;;) {
       if (std::string why = over(); !why.empty()) return why;
-      tell_of_changes();
-      std::this_thread::sleep_for(kLook);
+      report_changes();
+      std::this_thread::sleep_for(kPollPeriod);
     }
   }
 
-  void tell(const std::string& line) const {
-    if (options_.tell) options_.tell(line);
+  void report_line(const std::string& line) const {
+    if (options_.report_line) options_.report_line(line);
   }
 
-  void tell_of_share() const {
+  void report_force_scale() const {
     char line[160];
     std::snprintf(line, sizeof line,
                   "the device takes %.4g N/m at most: it gets %.3g of every force and torque",
-                  device_->traits().largest_stiffness_N_per_m, share_);
-    tell(line);
+                  device_->traits().max_stiffness_N_per_m, force_scale_);
+    report_line(line);
   }
 
-  void tell_of_changes() {
-    if (!told_camera_ && !camera_->ended().empty()) {
-      told_camera_ = true;
-      tell("no more frames (" + camera_->ended() + "): the last cloud stays");
+  void report_changes() {
+    if (!reported_camera_ && !camera_->ended().empty()) {
+      reported_camera_ = true;
+      report_line("no more frames (" + camera_->ended() + "): the last cloud stays");
     }
     const bool stale = steady_s() - camera_->newest_s() > LiveLog::kStaleFrame_s;
-    if (stale != told_stale_ && !told_camera_) {
-      told_stale_ = stale;
-      tell(stale ? "no frame for 0.2 s: the last cloud stays" : "frames come again");
+    if (stale != reported_stale_ && !reported_camera_) {
+      reported_stale_ = stale;
+      report_line(stale ? "no frame for 0.2 s: the last cloud stays" : "frames come again");
     }
-    if (servo_->is_latched() != told_latch_) {
-      told_latch_ = !told_latch_;
-      tell(told_latch_ ? std::string("force is off: ") + servo_->trouble() + "; SIGUSR2 re-arms"
-                       : std::string("armed again"));
+    if (servo_->is_latched() != reported_latch_) {
+      reported_latch_ = !reported_latch_;
+      report_line(reported_latch_ ? std::string("force is off: ") + servo_->trouble() + "; SIGUSR2 re-arms"
+                                  : std::string("armed again"));
     }
     if (options_.rearm && options_.rearm->exchange(false)) servo_->rearm();
     if (options_.report && options_.report->exchange(false) && options_.on_report)
@@ -183,7 +183,7 @@ class LiveRun {
 
   // The vendor's call does not come back, and neither would a join.
   [[noreturn]] void give_up() {
-    device_->let_go();
+    device_->release();
     camera_->stop();
     logger_->finish();  // what was recorded until then is whole
     std::fputs("remote-touch: the device's loop does not end; it was let go\n", stderr);
@@ -193,7 +193,7 @@ class LiveRun {
   const LiveOptions& options_;
   const Kernels& kernels_;
   const double rate_hz_;
-  double start_s_ = 0, share_ = 1;
+  double start_s_ = 0, force_scale_ = 1;
   std::atomic<bool> stop_ = false, loop_failed_ = false;
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
@@ -204,7 +204,7 @@ class LiveRun {
   std::unique_ptr<LiveLogger> logger_;
   std::unique_ptr<CameraThread> camera_;
   std::unique_ptr<Servo> servo_;
-  bool told_camera_ = false, told_stale_ = false, told_latch_ = false;
+  bool reported_camera_ = false, reported_stale_ = false, reported_latch_ = false;
 };
 
 }  // namespace

@@ -20,10 +20,10 @@ struct LiveOptions {
   std::filesystem::path record;  // empty: nothing is recorded
   TextAttributes provenance;     // of the recording
   const Kernels* kernels = nullptr;
-  const std::atomic<bool>* stop = nullptr;       // SIGINT and SIGTERM
-  std::atomic<bool>* report = nullptr;           // SIGUSR1: on_report now; set back
-  std::atomic<bool>* rearm = nullptr;            // SIGUSR2: after a latch; set back
-  std::function<void(const std::string&)> tell;  // lines to the user while it runs
+  const std::atomic<bool>* stop = nullptr;              // SIGINT and SIGTERM
+  std::atomic<bool>* report = nullptr;                  // SIGUSR1: on_report now; set back
+  std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: after a latch; set back
+  std::function<void(const std::string&)> report_line;  // lines to the user while it runs
   // Of the run until now, from the thread that writes the recording: nobody else writes HDF5 then.
   std::function<void(const LiveReport&)> on_report;
 };
@@ -33,7 +33,7 @@ struct LiveResult {
   LiveCounts counts;
   std::string real_time;   // what the system gave
   std::string device;      // its name
-  double force_share = 1;  // of what was rendered, for the device's largest stiffness
+  double force_scale = 1;  // of what was rendered, for the device's largest stiffness
   std::string ended;       // why it ended
   bool failed = false;     // device, sensor, disk or renderer, or force was latched off at the end
 };

@@ -6,31 +6,33 @@ namespace remote_touch {
 
 Parameters parameters(LiveSettings& s) {
   return {
-      {"device_m", &s.device_m, -100, 100, "where the middle of the device's workspace is in the world"},
-      {"device_turn_deg", &s.device_turn_deg, -360, 360,
+      {"device_position_m", &s.device_position_m, -100, 100,
+       "where the middle of the device's workspace is in the world"},
+      {"device_rotation_deg", &s.device_rotation_deg, -360, 360,
        "rotation vector of the device; zero: x right, y up, z towards the user, as in the world of synthetic scenes"},
       {"device_scale", &s.device_scale, 0.01, 100, "ways in the world per way of the hand"},
-      {"camera_m", &s.camera_m, -100, 100,
+      {"camera_position_m", &s.camera_position_m, -100, 100,
        "registration of the camera, over where its source says it stands"},
-      {"camera_turn_deg", &s.camera_turn_deg, -360, 360, "likewise its rotation vector"},
+      {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360, "likewise its rotation vector"},
   };
 }
 
 RigidTransform camera_registration(const LiveSettings& s) {
-  return RigidTransform(Eigen::Translation3d(s.camera_m) * rotation(kRadiansPerDegree * s.camera_turn_deg));
+  return RigidTransform(Eigen::Translation3d(s.camera_position_m) *
+                        rotation(kRadiansPerDegree * s.camera_rotation_deg));
 }
 
-double bearable_share(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m) {
+double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m) {
   const double felt = stiffness_N_per_m * device_scale;
   return device_limit_N_per_m > 0 && felt > device_limit_N_per_m ? device_limit_N_per_m / felt : 1;
 }
 
-DevicePlacement::DevicePlacement(const LiveSettings& s, double share)
-    : q_WD_(rotation(kRadiansPerDegree * s.device_turn_deg)),
+DevicePlacement::DevicePlacement(const LiveSettings& s, double fraction)
+    : q_WD_(rotation(kRadiansPerDegree * s.device_rotation_deg)),
       R_DW_(q_WD_.conjugate().toRotationMatrix()),
-      p_W_(s.device_m),
+      p_W_(s.device_position_m),
       scale_(s.device_scale),
-      share_(share) {}
+      force_scale_(fraction) {}
 
 DeviceState DevicePlacement::in_world(const DeviceReading& reading) const {
   return {p_W_ + scale_ * (R_DW_.transpose() * reading.position_m), q_WD_ * reading.orientation,
@@ -38,7 +40,7 @@ DeviceState DevicePlacement::in_world(const DeviceReading& reading) const {
 }
 
 Wrench DevicePlacement::to_device(const Wrench& wrench_W) const {
-  return {share_ * (R_DW_ * wrench_W.force_N), share_ * (R_DW_ * wrench_W.torque_Nm)};
+  return {force_scale_ * (R_DW_ * wrench_W.force_N), force_scale_ * (R_DW_ * wrench_W.torque_Nm)};
 }
 
 DeviceReading DevicePlacement::of_device(const DeviceState& state) const {

@@ -11,15 +11,15 @@
 namespace remote_touch {
 
 struct LiveSettings {
-  Vec3 device_m = Vec3::Zero();
-  Vec3 device_turn_deg = Vec3::Zero();
+  Vec3 device_position_m = Vec3::Zero();
+  Vec3 device_rotation_deg = Vec3::Zero();
   double device_scale = 1;
-  Vec3 camera_m = Vec3::Zero();
-  Vec3 camera_turn_deg = Vec3::Zero();
+  Vec3 camera_position_m = Vec3::Zero();
+  Vec3 camera_rotation_deg = Vec3::Zero();
 };
 
 Parameters parameters(LiveSettings& s);
-inline std::string conflict(const LiveSettings&) {
+inline std::string validate(const LiveSettings&) {
   return {};
 }
 
@@ -28,13 +28,13 @@ RigidTransform camera_registration(const LiveSettings& s);
 
 // The share of all forces that a device can take whose own stiffness is limited; 1 where they fit, or where
 // the limit is 0, not known. device_scale ways in the world per way of the hand make that much stiffer.
-double bearable_share(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
+double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
-// From the device to the world and back: p_W = device_m + scale R p_D. Forces and torques are turned and not
-// scaled, so the hand feels scale times the stiffness; to the device goes their share.
+// From the device to the world and back: p_W = device_position_m + scale R p_D. Forces and torques are turned
+// and not scaled, so the hand feels scale times the stiffness; to the device goes their share.
 class DevicePlacement {
  public:
-  explicit DevicePlacement(const LiveSettings& s, double share = 1);
+  explicit DevicePlacement(const LiveSettings& s, double fraction = 1);
 
   DeviceState in_world(const DeviceReading& reading) const;
   Wrench to_device(const Wrench& wrench_W) const;
@@ -47,7 +47,7 @@ class DevicePlacement {
   Eigen::Quaterniond q_WD_;
   Eigen::Matrix3d R_DW_;
   Vec3 p_W_;
-  double scale_, share_;
+  double scale_, force_scale_;
 };
 
 }  // namespace remote_touch

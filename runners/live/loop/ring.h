@@ -12,11 +12,11 @@ namespace remote_touch {
 template <class T>
 class Ring {
  public:
-  // least_room: rounded up to a power of two.
-  explicit Ring(std::size_t least_room) : slots_(std::bit_ceil(least_room)) {}
+  // min_capacity: rounded up to a power of two.
+  explicit Ring(std::size_t min_capacity) : slots_(std::bit_ceil(min_capacity)) {}
 
   // The slot to write next, or null where the queue is full; it is handed over by push().
-  T* room() {
+  T* next_slot() {
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - start_.load(std::memory_order_acquire) == slots_.size()) return nullptr;
     return &slots_[end & (slots_.size() - 1)];

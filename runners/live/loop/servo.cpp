@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-bool is_let_go(const DeviceFault& fault) {
-  return fault.what == kLetGo.what;
+bool is_released(const DeviceFault& fault) {
+  return fault.what == kReleased.what;
 }
 
 Wrench wrench_of(const RenderOutput& out) {
@@ -73,11 +73,11 @@ bool Servo::tick() noexcept try {
     return true;
   }
   heartbeat_.rest();
-  links_.device.let_go();
+  links_.device.release();
   return false;
 } catch (...) {  // a renderer breaks its contract, or a frame that was not prepared found no memory
   heartbeat_.rest();
-  links_.device.let_go();
+  links_.device.release();
   note({"an exception in the haptic loop"}, true);
   return false;
 }
@@ -86,7 +86,7 @@ void Servo::one_tick() {
   const double begin_s = steady_s();
   if (!heartbeat_.beat(begin_s)) {
     gate_.restart();
-    if (has_failed() || !links_.device.hold_again())
+    if (has_failed() || !links_.device.rearm())
       note({"the haptic loop hung, and the device was let go"}, true);
   }
   row_.since_last_tick_s = last_number_ < 0 ? 0 : static_cast<float>(begin_s - last_tick_s_);
@@ -95,7 +95,7 @@ void Servo::one_tick() {
 
   DeviceReading reading;
   DeviceFault fault = links_.device.read(reading);
-  if (is_let_go(fault)) reading = last_reading_, fault = {};  // the next beat tells
+  if (is_released(fault)) reading = last_reading_, fault = {};  // the next beat tells
   last_reading_ = reading;
   if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer holds still and lets go
   row_.device = placement_.in_world(reading);
@@ -103,24 +103,25 @@ void Servo::one_tick() {
   const double read_s = steady_s();
   take_frame(row_);
   row_.out = links_.renderer.step(row_.device, static_cast<double>(row_.number) / rate_hz_);
-  const double made_s = steady_s();
-  row_.step_s = static_cast<float>(made_s - read_s);
+  const double command_time_s = steady_s();
+  row_.step_s = static_cast<float>(command_time_s - read_s);
 
-  row_.written = gate_.pass(made_s, reading, fault, placement_.to_device(wrench_of(row_.out)), begin_s);
+  row_.written =
+      gate_.pass(command_time_s, reading, fault, placement_.to_device(wrench_of(row_.out)), begin_s);
   const DeviceFault refused = links_.device.write(row_.written);
   row_.gate = gate_.state();
   if (refused) {
-    if (!is_let_go(refused)) gate_.latch(refused);
-    links_.device.let_go();
+    if (!is_released(refused)) gate_.latch(refused);
+    links_.device.release();
   }
   note(fault, true);
-  if (!is_let_go(refused)) note(refused, true);
+  if (!is_released(refused)) note(refused, true);
   if (row_.gate == GateState::latched) note(gate_.reason(), false);
   latched_.store(row_.gate == GateState::latched, std::memory_order_release);
   if (row_.taken >= 0) {
     row_.latency_s = static_cast<float>(steady_s() - links_.frames.front().sensed_s);
   }
-  if (LiveTick* const slot = links_.rows.room()) {
+  if (LiveTick* const slot = links_.rows.next_slot()) {
     *slot = row_;
     links_.rows.push();
   } else {

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/hdf5_seal.h"
+#include "analysis/storage/file_digest.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -163,7 +163,7 @@ SensorFrame SessionReader::frame(std::size_t i) const {
   return frame;
 }
 
-bool looks_like_session(const std::filesystem::path& file) {
+bool has_result_header(const std::filesystem::path& file) {
   std::string opening(kResultOpening.size(), '\0');
   std::ifstream(file, std::ios::binary).read(opening.data(), static_cast<std::streamsize>(opening.size()));
   return opening == kResultOpening;

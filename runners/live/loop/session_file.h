@@ -15,7 +15,7 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kSessionSchema = "remote-touch-session/1";
+inline constexpr const char* kSessionSchema = "remote-touch-session/2";
 
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as they
 // were written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's
@@ -74,6 +74,6 @@ class SessionReader {
 };
 
 // Whether the file begins as one of this program's HDF5 files, which an experiment's JSON does not.
-bool looks_like_session(const std::filesystem::path& file);
+bool has_result_header(const std::filesystem::path& file);
 
 }  // namespace remote_touch

@@ -25,7 +25,7 @@ std::string missing_path(const std::string& path) {
 Parameters parameters(SessionScene::Settings& s) {
   return path_alone(s.path);
 }
-std::string conflict(const SessionScene::Settings& s) {
+std::string validate(const SessionScene::Settings& s) {
   return missing_path(s.path);
 }
 RecordingPart input_files(const SessionScene::Settings& s) {
@@ -34,7 +34,7 @@ RecordingPart input_files(const SessionScene::Settings& s) {
 Parameters parameters(SessionHand::Settings& s) {
   return path_alone(s.path);
 }
-std::string conflict(const SessionHand::Settings& s) {
+std::string validate(const SessionHand::Settings& s) {
   return missing_path(s.path);
 }
 RecordingPart input_files(const SessionHand::Settings& s) {

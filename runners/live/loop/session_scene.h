@@ -42,7 +42,7 @@ class SessionScene final : public Scenario {
 };
 
 Parameters parameters(SessionScene::Settings& s);
-std::string conflict(const SessionScene::Settings& s);
+std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
 // The device of the session at its ticks; between them, and where one was missed, as at the one before.
@@ -64,7 +64,7 @@ class SessionHand final : public Trajectory {
 };
 
 Parameters parameters(SessionHand::Settings& s);
-std::string conflict(const SessionHand::Settings& s);
+std::string validate(const SessionHand::Settings& s);
 RecordingPart input_files(const SessionHand::Settings& s);
 
 // The experiment of a session, as JSON: what was run, with the recorded frames and hand.

@@ -86,12 +86,12 @@ std::optional<freenect_frame_mode> colour_mode() {
 // well.
 constexpr int kShifts = 2048;
 std::array<std::uint16_t, kShifts> depth_of_shifts() {
-  constexpr double kPlane_mm = 1200, kBase_mm = 75, kPixel_mm = 1.042, kFarthest_mm = 10000;
+  constexpr double kPlane_mm = 1200, kBase_mm = 75, kPixel_mm = 1.042, kMaxDepth_mm = 10000;
   std::array<std::uint16_t, kShifts> depth_mm{};
   for (int shift = 0; shift + 1 < kShifts; ++shift) {  // the last one tells that nothing was measured
     const double shift_mm = ((shift - 800) / 4.0 - 0.375) * kPixel_mm;
     const double z_mm = kPlane_mm * kBase_mm / (kBase_mm - shift_mm);
-    if (z_mm > 0 && z_mm < kFarthest_mm) depth_mm[shift] = static_cast<std::uint16_t>(z_mm);
+    if (z_mm > 0 && z_mm < kMaxDepth_mm) depth_mm[shift] = static_cast<std::uint16_t>(z_mm);
   }
   return depth_mm;
 }

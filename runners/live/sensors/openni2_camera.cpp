@@ -17,11 +17,11 @@ namespace remote_touch {
 
 namespace {
 
-using openni2::driver_folder, openni2::is_file, openni2::said;
+using openni2::driver_folder, openni2::is_file, openni2::error_text;
 using openni2::read_from, openni2::wait_for;
 
 // The player of recordings shortens pauses to 2 s.
-constexpr double kLongestPause_s = 5;
+constexpr double kMaxPause_s = 5;
 
 // 0: no distance along the axis, but the shift that the sensor measures.
 double metres_per_unit(openni::PixelFormat format) {
@@ -121,7 +121,7 @@ Openni2Camera::Openni2Camera(const std::string& address) {
   // Registered depth is that which the colour camera would see.
   describe(view_.has_colour ? colour_ : depth_);
   if (depth_.start() != openni::STATUS_OK)
-    refuse("depth does not start (" + said() + "); another program may be using the camera");
+    refuse("depth does not start (" + error_text() + "); another program may be using the camera");
   last_sign_s_ = steady_s();
 }
 
@@ -150,15 +150,17 @@ void Openni2Camera::open_device(const std::string& address) {
              known);
   }
   if (device_.open(uri.c_str()) != openni::STATUS_OK)
-    refuse("cannot be opened (" + said() + ")" + (is_file(uri) ? "; allowed a whole .oni recording" : ""));
+    refuse("cannot be opened (" + error_text() + ")" +
+           (is_file(uri) ? "; allowed a whole .oni recording" : ""));
 }
 
 void Openni2Camera::open_depth() {
   if (depth_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK)
-    refuse("has no depth (" + said() + "); allowed a depth camera or a recording of one");
+    refuse("has no depth (" + error_text() + "); allowed a depth camera or a recording of one");
   if (!device_.isFile()) {
     const std::optional<openni::VideoMode> mode = best_depth_mode(depth_);
-    if (mode && depth_.setVideoMode(*mode) != openni::STATUS_OK) refuse("refuses its own mode: " + said());
+    if (mode && depth_.setVideoMode(*mode) != openni::STATUS_OK)
+      refuse("refuses its own mode: " + error_text());
   }
   mode_ = depth_.getVideoMode();
   view_.metres_per_unit = metres_per_unit(mode_.getPixelFormat());
@@ -209,21 +211,21 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
   const double give_up_s = steady_s() + timeout_s;
   while (true) {
     if (loss_->is_lost()) return fail("was disconnected");
-    const double left_s = give_up_s - steady_s();
+    const double remaining_s = give_up_s - steady_s();
     // In parts, since no lost camera ends the wait. 0 looks without waiting.
-    const double part_ms = std::clamp(std::ceil(1e3 * left_s), 0.0, 50.0);
+    const double part_ms = std::clamp(std::ceil(1e3 * remaining_s), 0.0, 50.0);
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
     if (status == openni::STATUS_OK) return take(frame);
-    if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + said() + ")");
-    if (frame_count_ > 0 && steady_s() - last_sign_s_ > kLongestPause_s)
+    if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + error_text() + ")");
+    if (frame_count_ > 0 && steady_s() - last_sign_s_ > kMaxPause_s)
       return fail("plays no further; allowed a recording without damage");
-    if (left_s <= 0) return SensorState::waiting;
+    if (remaining_s <= 0) return SensorState::waiting;
   }
 }
 
 SensorState Openni2Camera::take(SensorFrame& frame) {
   const openni::VideoFrameRef taken = read_from(depth_);
-  if (!taken.isValid()) return fail("a frame cannot be read (" + said() + ")");
+  if (!taken.isValid()) return fail("a frame cannot be read (" + error_text() + ")");
   const double arrived_s = last_sign_s_ = steady_s();
   // At once, before the next one takes its place.
   if (view_.has_colour && wait_for(colour_, openni::TIMEOUT_NONE) == openni::STATUS_OK)

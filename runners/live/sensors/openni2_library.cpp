@@ -23,7 +23,7 @@ std::mutex& count_mutex() {
 
 }  // namespace
 
-std::string said() {
+std::string error_text() {
   std::string text = openni::OpenNI::getExtendedError();
   for (char& c : text)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
@@ -46,7 +46,7 @@ bool is_file(const std::string& address) {
 Library::Library() {
   const std::lock_guard lock(count_mutex());
   if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
-  const std::string reason = said();
+  const std::string reason = error_text();
   openni::OpenNI::shutdown();
   throw InputError("openni2",
                    "does not start (" + reason + "); allowed drivers (lib*.so.0) in " + driver_folder());

@@ -10,7 +10,7 @@
 namespace remote_touch::openni2 {
 
 // The library's own words for its last error, in one line.
-std::string said();
+std::string error_text();
 
 // Where the library looks for drivers: beside itself.
 std::string driver_folder();

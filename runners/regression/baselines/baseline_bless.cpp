@@ -8,12 +8,12 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_comparison.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/sha256.h"
-#include "analysis/storage/whole_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/regression/baselines/program_run.h"
@@ -65,7 +65,7 @@ void require_sense(const Blessing& blessing) {
   if (blank) throw InputError("--reason", "missing; allowed a sentence: why these numbers are right");
   if (blessing.also.empty() && !blessing.one_compiler)
     throw InputError(
-        "--also",
+        "--other-build",
         "missing; allowed a build of the same source by another compiler (scripts/bless makes one), "
         "or --one-compiler");
   if (!blessing.run.empty() && !blessing.sweep.empty())
@@ -202,8 +202,8 @@ std::string bless(const Blessing& blessing) {
   const Measured measured =
       measure_spread(blessing.folder, baseline, programs, scratch.path(), blessing.stop);
   if (measured.compilers.size() < 2 && !blessing.one_compiler)
-    throw InputError("--also", "by the same compiler, " + *measured.compilers.begin() +
-                                   "; allowed a build by another compiler, or --one-compiler");
+    throw InputError("--other-build", "by the same compiler, " + *measured.compilers.begin() +
+                                          "; allowed a build by another compiler, or --one-compiler");
 
   const std::filesystem::path file = file_of(blessing.folder, baseline);
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);

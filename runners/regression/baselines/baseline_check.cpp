@@ -126,7 +126,7 @@ std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder
     if (!parts.contains(part) && !is_tested_elsewhere)
       missing.push_back({part, State::changed, "has no baseline"});
   };
-  for (const StoredText& experiment : stored_experiments())
+  for (const EmbeddedText& experiment : embedded_experiments())
     require(std::string("experiment ") + experiment.name);
   for (const auto& entry : scenarios()) require(std::string("scenario ") + entry.name);
   for (const auto& entry : fixtures())

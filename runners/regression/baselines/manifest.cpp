@@ -5,7 +5,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
 
@@ -74,7 +74,7 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
   Json list = Json::array();
   for (const Baseline& baseline : manifest.baselines) list.push_back(json_of(baseline));
   const std::string text = Json({{"complete", manifest.complete}, {"baselines", list}}).dump(2) + "\n";
-  write_whole_file(manifest_file(folder), text.data(), text.size());
+  write_file_atomically(manifest_file(folder), text.data(), text.size());
 }
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline) {

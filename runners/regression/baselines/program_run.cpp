@@ -43,9 +43,9 @@ void redirect(int stream, const char* file) {
 // Its status. Signals that this program gets are handed on.
 int end_of(pid_t child, const std::atomic<bool>* stop) {
   int status = 0;
-  bool told = false;
+  bool signalled = false;
   while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (stop && *stop && !told) ::kill(child, SIGTERM), told = true;
+    if (stop && *stop && !signalled) ::kill(child, SIGTERM), signalled = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   if (stop && *stop) throw Interrupted{};

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_comparison.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/sweeps/sweep_file.h"
@@ -54,11 +54,11 @@ void add(const std::string& variant, const std::vector<Column>& reference, const
          Tolerances& spread) {
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const ColumnComparison found = compare_columns(reference[i], other.at(i), {});
-    if (!found.problem.empty() || found.not_numbers > 0 || (found.outside > 0 && found.largest == 0))
+    if (!found.problem.empty() || found.not_numbers > 0 || (found.outside > 0 && found.max == 0))
       throw InputError(reference[i].name, "differs with " + variant + " in what has no tolerance (row " +
                                               std::to_string(found.first_outside.value_or(0)) + ")" +
                                               (found.problem.empty() ? "" : ": " + found.problem));
-    if (found.largest > 0) spread[found.name].absolute = std::max(spread[found.name].absolute, found.largest);
+    if (found.max > 0) spread[found.name].absolute = std::max(spread[found.name].absolute, found.max);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/whole_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "runners/regression/comparison/comparison_text.h"
 #include "runners/settings/json_parameters.h"
 
@@ -31,7 +31,7 @@ Json column_json(const ColumnComparison& column) {
           {"rows", column.rows},
           {"outside", column.outside},
           {"not_numbers", column.not_numbers},
-          {"largest", column.largest},
+          {"max", column.max},
           {"rms", column.rms},
           {"first_difference", optional_json(column.first_difference)},
           {"first_outside", optional_json(column.first_outside)}};
@@ -61,11 +61,11 @@ Json divergence_json(const Divergence& found) {
           {"time_s", found.time_s},
           {"quantity", found.quantity},
           {"deviation", found.deviation},
-          {"parted", found.parted},
+          {"first_difference", found.first_difference},
           {"cause", name_of(found.cause)},
-          {"because", found.because},
+          {"explanation", found.explanation},
           {"situation", name_of(found.situation)},
-          {"seen", found.seen},
+          {"observation", found.observation},
           {"frame", found.frame},
           {"rows_from_tick", found.first_row},
           {"baseline", rows_json(found.baseline)},
@@ -88,8 +88,8 @@ Json region_json(const SweepComparison& sweep, const RegionComparison& region) {
           {"difference", interval(region.difference)},
           {"baseline_events", region.baseline_events},
           {"candidate_events", region.candidate_events},
-          {"baseline_share", interval(region.baseline_share)},
-          {"candidate_share", interval(region.candidate_share)},
+          {"baseline_fraction", interval(region.baseline_fraction)},
+          {"candidate_fraction", interval(region.candidate_fraction)},
           {"unpaired", region.unpaired},
           {"mean_difference", region.mean.mean},
           {"mean_interval", interval({region.mean.low, region.mean.high})},
@@ -110,7 +110,7 @@ Json sweep_json(const SweepComparison& sweep) {
                                 {"event", measure.event},
                                 {"runs", measure.compared},
                                 {"outside", measure.outside},
-                                {"largest", measure.largest_deviation},
+                                {"max", measure.max_deviation},
                                 {"rms", measure.rms_deviation}});
   if (sweep.first)
     json["first_difference"] = {{"cell", sweep.first->place},
@@ -179,11 +179,11 @@ std::string case_xml(const ReportSuite& suite, const ReportCase& one) {
 }
 
 // "2 of 867 rows outside, the largest deviation 0.25"; empty for none.
-std::string outside_text(std::int64_t outside, std::int64_t of, const char* things, double largest) {
+std::string outside_text(std::int64_t outside, std::int64_t of, const char* things, double max) {
   if (outside == 0) return {};
   char text[160];
   std::snprintf(text, sizeof text, "%lld of %lld %s outside, the largest deviation %.6g",
-                static_cast<long long>(outside), static_cast<long long>(of), things, largest);
+                static_cast<long long>(outside), static_cast<long long>(of), things, max);
   return text;
 }
 
@@ -221,15 +221,14 @@ ReportSuite suite_of(const ResultComparison& comparison, const std::string& name
       std::string why = column.problem;
       if (!why.empty() && column.outside > 0) why += "; ";
       why += outside_text(static_cast<std::int64_t>(column.outside), static_cast<std::int64_t>(column.rows),
-                          "rows", column.largest);
+                          "rows", column.max);
       suite.cases.push_back({column.name, column.is_same() ? State::passed : State::failed, why});
     }
   if (comparison.sweep && comparison.sweep->problems.empty())
     for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i) {
       const MeasureComparison& measure = comparison.sweep->measures[i];
-      suite.cases.push_back(
-          {measure.name, state_of(*comparison.sweep, i, comparison.paired),
-           outside_text(measure.outside, measure.compared, "runs", measure.largest_deviation)});
+      suite.cases.push_back({measure.name, state_of(*comparison.sweep, i, comparison.paired),
+                             outside_text(measure.outside, measure.compared, "runs", measure.max_deviation)});
     }
   const State whole = comparison.outcome == Outcome::same        ? State::passed
                       : comparison.outcome == Outcome::regressed ? State::failed
@@ -252,7 +251,7 @@ std::string junit(const std::vector<ReportSuite>& suites) {
 }
 
 void write_report(const std::filesystem::path& file, const std::string& text) {
-  write_whole_file(file, text.data(), text.size());
+  write_file_atomically(file, text.data(), text.size());
 }
 
 }  // namespace remote_touch

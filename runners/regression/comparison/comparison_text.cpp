@@ -15,11 +15,11 @@ std::string text(const char* format, Values... values) {
 }
 
 void print_columns(const TraceComparison& comparison) {
-  std::printf("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "largest", "rms", "outside",
+  std::printf("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "max", "rms", "outside",
               "tolerance");
   for (const ColumnComparison& column : comparison.columns) {
     std::printf("  %-28s %-6s %9zu %12.4g %12.4g %8.3g%%  %s", column.name.c_str(), column.units.c_str(),
-                column.rows, column.largest, column.rms,
+                column.rows, column.max, column.rms,
                 column.rows == 0
                     ? 0.0
                     : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows),
@@ -53,23 +53,24 @@ std::string row_text(const Column& column, std::size_t row) {
 void print_divergence(const Divergence& found) {
   std::printf("first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
               found.quantity.c_str(), found.deviation);
-  if (found.parted != found.tick)
-    std::printf("  within the tolerances the runs part at tick %zu; what follows is there\n", found.parted);
-  std::printf("  cause   %s: %s\n", name_of(found.cause), found.because.c_str());
+  if (found.first_difference != found.tick)
+    std::printf("  within the tolerances the runs part at tick %zu; what follows is there\n",
+                found.first_difference);
+  std::printf("  cause   %s: %s\n", name_of(found.cause), found.explanation.c_str());
   if (found.cause != found.situation)
-    std::printf("  there   %s: %s\n", name_of(found.situation), found.seen.c_str());
+    std::printf("  there   %s: %s\n", name_of(found.situation), found.observation.c_str());
   std::printf("  frames  %s\n", found.frame.c_str());
-  const std::size_t here = found.parted - found.first_row;
+  const std::size_t here = found.first_difference - found.first_row;
   for (std::size_t i = 0; i < found.baseline.size(); ++i) {
     const Column &ours = found.baseline[i], &theirs = found.candidate[i];
     const std::string was = row_text(ours, here), is = row_text(theirs, here);
     const std::string name = ours.name + (ours.units == "1" ? "" : " / " + ours.units);
     const std::string before = row_text(ours, 0);
-    const bool told = here > 0 && (before != was || was != is);  // what rests is told once
-    if (told) std::printf("  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
-    const char* label = told ? "" : name.c_str();
+    const bool is_shown = here > 0 && (before != was || was != is);  // what rests is told once
+    if (is_shown) std::printf("  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
+    const char* label = is_shown ? "" : name.c_str();
     if (was == is) {
-      std::printf("  %-26s tick %-9zu %s\n", label, found.parted, was.c_str());
+      std::printf("  %-26s tick %-9zu %s\n", label, found.first_difference, was.c_str());
     } else {
       std::printf("  %-26s   baseline     %s\n", label, was.c_str());
       std::printf("  %-26s   candidate    %s\n", "", is.c_str());
@@ -92,16 +93,16 @@ const char* word_for(Judgement judgement) {
 }
 
 void print_measures(const SweepComparison& sweep) {
-  std::printf("  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "largest", "rms", "outside",
+  std::printf("  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "max", "rms", "outside",
               "tolerance");
   for (const MeasureComparison& measure : sweep.measures)
     std::printf("  %-22s %-6s %9lld %12.4g %12.4g %9lld  %s\n", measure.name.c_str(), measure.units.c_str(),
-                static_cast<long long>(measure.compared), measure.largest_deviation, measure.rms_deviation,
+                static_cast<long long>(measure.compared), measure.max_deviation, measure.rms_deviation,
                 static_cast<long long>(measure.outside), tolerance_text(measure.tolerance).c_str());
 }
 
 // What is told of a region: all of an event's, and of other measures the whole and what changed.
-bool is_told(const SweepComparison& sweep, std::size_t region, std::size_t measure) {
+bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t measure) {
   return region == 0 || sweep.measures[measure].event ||
          sweep.at(region, measure).judgement == Judgement::changed;
 }
@@ -114,14 +115,14 @@ void print_regions(const SweepComparison& sweep) {
     std::printf("  %s by region: %s, more / less in the candidate, interval of the difference of shares, p\n",
                 sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference");
     for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
-      if (!is_told(sweep, r, m)) continue;
+      if (!is_reported(sweep, r, m)) continue;
       const RegionComparison& region = sweep.at(r, m);
       const std::string values =
           event ? text("%.3f (%.3f to %.3f)  %.3f (%.3f to %.3f)",
                        region.pairs > 0 ? region.baseline_events / static_cast<double>(region.pairs) : 0.0,
-                       region.baseline_share.first, region.baseline_share.second,
+                       region.baseline_fraction.first, region.baseline_fraction.second,
                        region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
-                       region.candidate_share.first, region.candidate_share.second)
+                       region.candidate_fraction.first, region.candidate_fraction.second)
                 : text("%.4g (%.4g to %.4g)", region.mean.mean, region.mean.low, region.mean.high);
       std::printf("    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  p %.3g  %s  %s\n",
                   static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
@@ -24,12 +24,12 @@ ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
   };
   result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
   for (const char* name :
-       {"command", "version", "git_commit", "git_dirty", "sources", "compiler", "flags", "isa"})
+       {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler", "flags", "isa"})
     if (attribute(baseline, name) != attribute(candidate, name))
       result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
                                   attribute(candidate, name));
   for (const ChangedInput& input :
-       changed_inputs(attribute(baseline, "inputs"), attribute(candidate, "inputs")))
+       changed_inputs(attribute(baseline, "input_digests"), attribute(candidate, "input_digests")))
     result.provenance.push_back("input " + input.path + " " + input.before + " against " + input.now);
   return result;
 }
@@ -97,12 +97,12 @@ void judge_exactly(ResultComparison& result) {
 }
 
 // The measures that are of this judgement, over the whole or in any region.
-std::string measures_that_are(const SweepComparison& sweep, Judgement wanted, bool in_parts) {
+std::string measures_that_are(const SweepComparison& sweep, Judgement requested, bool in_parts) {
   std::string names;
   for (std::size_t measure = 0; measure < sweep.measures.size(); ++measure) {
     bool found = false;
     for (std::size_t region = 0; region < (in_parts ? sweep.regions.size() : 1); ++region)
-      found |= sweep.at(region, measure).judgement == wanted;
+      found |= sweep.at(region, measure).judgement == requested;
     if (found) names += (names.empty() ? "" : ", ") + sweep.measures[measure].name;
   }
   return names;

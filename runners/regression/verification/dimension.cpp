@@ -25,7 +25,7 @@ constexpr Unit kUnits[] = {
     {"_s", {0, 1, 0}},         {"_hz", {0, -1, 0}},      {"_Nm", {1, 0, 1}},
     {"_N", {0, 0, 1}},         {"_Ns", {0, 1, 1}},       {"_kg", {-1, 2, 1}},
     {"_deg", {0, 0, 0}},       {"_rad", {0, 0, 0}},      {"_px", {0, 0, 0}},
-    {"_share", {0, 0, 0}},     {"_ratio", {0, 0, 0}},
+    {"_fraction", {0, 0, 0}},  {"_ratio", {0, 0, 0}},    {"_probability", {0, 0, 0}},
 };
 
 std::optional<Dimension> known_dimension(const std::string& name) {
@@ -57,9 +57,9 @@ struct Changer {
     }
     value = changed;
   }
-  void keep_whole() const {
+  void keep_integer() const {
     if (change.factor(known_dimension(p.name).value_or(Dimension{})) == 1) return;
-    throw InputError(p.name, "a whole number cannot follow a change of units; allowed a real number");
+    throw InputError(p.name, "an integer cannot follow a change of units; allowed a real number");
   }
 
   void operator()(double* value) const { multiply(*value, p.name); }
@@ -70,8 +70,8 @@ struct Changer {
     for (std::size_t i = 0; i < rows.values->size(); ++i)
       multiply((*rows.values)[i], rows.columns[i % rows.columns.size()]);
   }
-  void operator()(const int*) const { keep_whole(); }
-  void operator()(const std::uint64_t*) const { keep_whole(); }
+  void operator()(const int*) const { keep_integer(); }
+  void operator()(const std::uint64_t*) const { keep_integer(); }
   void operator()(const bool*) const {}
   void operator()(const std::string*) const {}
   void operator()(const Choice&) const {}
@@ -94,13 +94,13 @@ void change_units(const Parameters& parameters, const UnitChange& change) {
   for (const Parameter& p : parameters) std::visit(Changer{p, change}, p.value);
 }
 
-double largest_length_m(const Parameters& parameters) {
-  double largest = 0;
+double max_length_m(const Parameters& parameters) {
+  double max = 0;
   for (const Parameter& p : parameters)
     if (double* const* value = std::get_if<double*>(&p.value);
         value && dimension_of(p.name) == Dimension{1, 0, 0})
-      largest = std::max(largest, std::abs(**value));
-  return largest;
+      max = std::max(max, std::abs(**value));
+  return max;
 }
 
 }  // namespace remote_touch

@@ -31,11 +31,11 @@ struct UnitChange {
 Dimension dimension_of(const std::string& name);
 
 // Multiplies every number by its factor, columns of Rows each by their own. Choices, texts, switches and
-// whole numbers stay. Throws InputError for a name without a known dimension, a whole number that would have
+// integers stay. Throws InputError for a name without a known dimension, an integer that would have
 // to change, and a number that leaves its allowed range.
 void change_units(const Parameters& parameters, const UnitChange& change);
 
 // The largest number among the parameters that is a length, m; 0 without one.
-double largest_length_m(const Parameters& parameters);
+double max_length_m(const Parameters& parameters);
 
 }  // namespace remote_touch

@@ -14,15 +14,15 @@ namespace remote_touch {
 
 namespace {
 
-using RendererBlueprint = Blueprint<Renderer, double, const Kernels&>;
+using RendererFactory = Factory<Renderer, double, const Kernels&>;
 using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or at least in some where it is one that lets go"};
 // Share of the ticks. Direct rendering lets the HIP through, and a mesh that moves leaves it behind: they
 // push back only in the moments before.
-double least_touch(HeldBy held_by) {
-  return held_by == HeldBy::nothing || held_by == HeldBy::mesh ? 0.02 : 0.5;
+double min_touch(ContactModel contact_model) {
+  return contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ? 0.02 : 0.5;
 }
 
 // The renderer to check, as often as it is needed.
@@ -31,34 +31,34 @@ class Subject {
   Subject(const RendererEntry& entry, const std::vector<std::string>& assignments, const Kernels& kernels)
       : entry_(entry), assignments_(assignments), kernels_(kernels) {}
 
-  std::unique_ptr<RendererBlueprint> blueprint() const {
+  std::unique_ptr<RendererFactory> factory() const {
     Json configuration = Json::object();
     for (const std::string& assignment : assignments_) apply_override(configuration, assignment);
-    auto blueprint = entry_.make();
-    read_parameters(configuration, blueprint->settings(), "", false);
-    const std::string contradiction = blueprint->contradiction();
-    if (!contradiction.empty()) throw InputError(contradiction);
-    return blueprint;
+    auto factory = entry_.make();
+    read_parameters(configuration, factory->settings(), "", false);
+    const std::string problem = factory->validate();
+    if (!problem.empty()) throw InputError(problem);
+    return factory;
   }
   Outputs play(const MetamorphicScene& scene) const {
-    const auto renderer = blueprint()->build(scene.haptic_rate_hz, kernels_);
+    const auto renderer = factory()->build(scene.haptic_rate_hz, kernels_);
     return remote_touch::play(scene, *renderer);
   }
   Outputs play(const Variation& run) const {
-    const auto changed = blueprint();
+    const auto changed = factory();
     change_units(changed->settings(), run.units);
     if (run.other_stiffness_N_per_m) *stiffness(changed->settings()) = *run.other_stiffness_N_per_m;
     const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
     return remote_touch::play(run.scene, *renderer);
   }
-  double least_touch_share() const { return least_touch(entry_.held_by); }
+  double min_touch_fraction() const { return min_touch(entry_.contact_model); }
   Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
-    const auto settings_of = blueprint();
+    const auto settings_of = factory();
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
-    run.reach_m = largest_length_m(parameters);
-    run.fits_a_sheet = entry_.held_by == HeldBy::sheet;
-    run.order_matters = entry_.held_by == HeldBy::mesh;
+    run.reach_m = max_length_m(parameters);
+    run.fits_a_sheet = entry_.contact_model == ContactModel::sheet;
+    run.order_matters = entry_.contact_model == ContactModel::mesh;
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }
@@ -78,13 +78,13 @@ class Subject {
 };
 
 // Violated in the tick with which too many are without a force.
-CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double least) {
-  const double allowed = (1 - least) * static_cast<double>(outputs.size());
+CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double min) {
+  const double allowed = (1 - min) * static_cast<double>(outputs.size());
   Comparison count{.deviations = {{"ticks without force", "1", allowed}}};
   count.ticks = static_cast<int>(outputs.size());
   for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
     if (!outputs[tick].force_N.isZero(0)) continue;
-    if (++count.deviations.front().largest > allowed && count.first_violation < 0)
+    if (++count.deviations.front().max > allowed && count.first_violation < 0)
       count.first_violation = static_cast<int>(tick);
   }
   return {kTouch.name, kTouch.meaning, scene.name, "the other checks say little without touch", count, {}};
@@ -106,7 +106,7 @@ std::string remark_on(const CheckResult& failed, const Subject& subject, const M
 std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
   const Outputs outputs = subject.play(scene);
   const Variation unvaried = subject.unvaried(scene, outputs);
-  std::vector<CheckResult> results{touch(scene, outputs, subject.least_touch_share())};
+  std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction())};
   for (const MetamorphicRelation& relation : metamorphic_relations()) {
     Variation run = unvaried;
     if (!relation.vary(run)) continue;
@@ -124,7 +124,7 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop) {
-  if (entry.freedoms == Freedoms::six)
+  if (entry.degrees_of_freedom == DegreesOfFreedom::six)
     throw InputError(
         entry.name,
         "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/experiment/blueprint.h"
+#include "runners/experiment/factory.h"
 #include "runners/regression/verification/output_comparison.h"
 
 namespace remote_touch {

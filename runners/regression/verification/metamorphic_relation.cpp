@@ -23,7 +23,7 @@ bool other_instructions(Variation& run) {
 
 // --- the points ---
 
-bool look_at_all(Variation& run) {
+bool search_all_points(Variation& run) {
   search_by_grid(run, 0);
   return true;
 }
@@ -260,7 +260,7 @@ const MetamorphicRelation kRelations[] = {
     {"repeat", "a second renderer answers the same", kExact, kSameSum, repeat},
     {"instruction-set", "the kernels of another x86-64 level answer the same", kExact, kSameSum,
      other_instructions},
-    {"search-all", "looking at every point finds what a search finds", kExact, kSameSum, look_at_all},
+    {"search-all", "looking at every point finds what a search finds", kExact, kSameSum, search_all_points},
     {"search-grid", "another grid finds the same", kExact, kSameSum, use_other_grid},
     {"order", "the order of the points does not matter", kExact, "sums do not depend on order: equal bits",
      shuffle},

@@ -30,9 +30,9 @@ constexpr std::size_t kQuantities = 6;
 std::array<double, kQuantities> differences(const RenderOutput& a, const RenderOutput& b, bool rounded) {
   // Far from the points the weights of a normal are as small as their own rounding.
   const bool normal_counts = !rounded || a.state != ContactState::free;
-  return {std::max({difference(a.proxy_W, b.proxy_W), difference(a.carried_m, b.carried_m),
+  return {std::max({difference(a.proxy_W, b.proxy_W), difference(a.frame_correction_m, b.frame_correction_m),
                     difference(a.slave_W, b.slave_W)}),
-          difference(a.nearest_m, b.nearest_m),
+          difference(a.nearest_distance_m, b.nearest_distance_m),
           difference(a.force_N, b.force_N),
           difference(a.surface_velocity_m_per_s, b.surface_velocity_m_per_s),
           normal_counts ? difference(a.normal_W, b.normal_W) : 0,
@@ -40,11 +40,11 @@ std::array<double, kQuantities> differences(const RenderOutput& a, const RenderO
 }
 
 std::vector<Deviation> none_yet(const std::vector<RenderOutput>& expected, const OutputTolerance& tolerance) {
-  double largest_force_N = 0;
-  for (const RenderOutput& out : expected) largest_force_N = std::max(largest_force_N, out.force_N.norm());
+  double max_force_N = 0;
+  for (const RenderOutput& out : expected) max_force_N = std::max(max_force_N, out.force_N.norm());
   return {{"position", "m", tolerance.position_m},
           {"nearest", "m", tolerance.position_m},
-          {"force", "N", tolerance.force_share * largest_force_N},
+          {"force", "N", tolerance.force_fraction * max_force_N},
           {"velocity", "m/s", tolerance.velocity_m_per_s},
           {"normal", "1", tolerance.normal},
           {"other", "1", 0}};
@@ -62,7 +62,7 @@ Comparison compare(const std::vector<RenderOutput>& expected, const std::vector<
     const auto now = differences(a, b, tolerance.rounded);
     for (std::size_t i = 0; i < kQuantities; ++i) {
       Deviation& deviation = result.deviations[i];
-      deviation.largest = std::max(deviation.largest, now[i]);
+      deviation.max = std::max(deviation.max, now[i]);
       if (now[i] > deviation.tolerance && result.first_violation < 0)
         result.first_violation = static_cast<int>(tick);
     }

@@ -10,7 +10,7 @@ namespace remote_touch {
 // How far two runs may differ; 0 everywhere: equal bits, but for the sign of a zero.
 struct OutputTolerance {
   double position_m = 0;
-  double force_share = 0;  // of the largest force in the run
+  double force_fraction = 0;  // of the largest force in the run
   double velocity_m_per_s = 0;
   double normal = 0;
   bool rounded = false;  // true: steps are not compared, and normals only where a point is touched
@@ -22,7 +22,7 @@ struct Deviation {
                          // "normal", or "other": 1 where state, steps, counts, frame or status differ
   const char* unit;
   double tolerance = 0;
-  double largest = 0;  // infinite where a number was expected and there is none, or the other way round
+  double max = 0;  // infinite where a number was expected and there is none, or the other way round
 };
 
 struct Comparison {

@@ -29,7 +29,8 @@ void change_units(CloudView& view, const UnitChange& change) {
 }
 
 void change_units(RenderOutput& out, const UnitChange& change) {
-  out.proxy_W *= change.length, out.nearest_m *= change.length, out.carried_m *= change.length;
+  out.proxy_W *= change.length, out.nearest_distance_m *= change.length,
+      out.frame_correction_m *= change.length;
   out.slave_W *= change.length;
   out.force_N *= change.force;
   out.surface_velocity_m_per_s *= change.factor({1, -1, 0});
@@ -63,7 +64,7 @@ void move_rigidly(Variation& variation, const RigidTransform& motion) {
   const auto turn = [&](Vec3& direction) { direction = motion.linear() * direction; };
   for (RenderOutput& out : variation.expected) {
     out.proxy_W = motion * out.proxy_W, out.slave_W = motion * out.slave_W;
-    turn(out.force_N), turn(out.normal_W), turn(out.carried_m);
+    turn(out.force_N), turn(out.normal_W), turn(out.frame_correction_m);
   }
 }
 
@@ -73,7 +74,7 @@ void mirror(Variation& variation, int axis) {
   for (Vec3& hip : variation.scene.hip_W) flip(hip);
   for (CloudView& view : variation.scene.views) change_points(view.cloud, [&](Vec3 p) { return flip(p), p; });
   for (RenderOutput& out : variation.expected)
-    flip(out.proxy_W), flip(out.force_N), flip(out.normal_W), flip(out.carried_m), flip(out.slave_W);
+    flip(out.proxy_W), flip(out.force_N), flip(out.normal_W), flip(out.frame_correction_m), flip(out.slave_W);
 }
 
 void search_by_grid(Variation& variation, double cell_m) {

@@ -70,8 +70,8 @@ std::vector<Vec3> polyline(const std::vector<Knot>& knots) {
   for (int tick = 0; tick < kTicks; ++tick) {
     while (next + 1 < knots.size() && tick >= knots[next].tick) ++next;
     const Knot &a = knots[next - 1], &b = knots[next];
-    const double share = std::min(1.0, static_cast<double>(tick - a.tick) / (b.tick - a.tick));
-    path.push_back(a.hip_L + share * (b.hip_L - a.hip_L));
+    const double fraction = std::min(1.0, static_cast<double>(tick - a.tick) / (b.tick - a.tick));
+    path.push_back(a.hip_L + fraction * (b.hip_L - a.hip_L));
   }
   return path;
 }

@@ -9,7 +9,7 @@
 namespace remote_touch {
 
 // The most raw bytes for one byte of a block: the longest back reference makes 264 bytes of 3.
-constexpr std::size_t kLzfMostExpansion = 88;
+constexpr std::size_t kLzfMaxExpansion = 88;
 
 // Expands a block to exactly raw_size bytes. Throws InputError about file if the block is cut short, refers
 // to bytes before its start, or makes another number of bytes; nothing outside the block or the result is

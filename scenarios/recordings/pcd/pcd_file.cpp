@@ -41,16 +41,16 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 // Before anything is allocated: could the bytes behind the header hold the points that it claims?
 void check_claimed_size(const std::string& file, const PcdHeader& header, std::size_t data_bytes) {
-  std::size_t most = data_bytes / header.point_bytes;
+  std::size_t max = data_bytes / header.point_bytes;
   if (header.encoding == "ascii") {
-    most = (data_bytes + 1) / (2 * header.point_values);  // a digit and a separator
+    max = (data_bytes + 1) / (2 * header.point_values);  // a digit and a separator
   } else if (header.encoding == "binary_compressed") {
-    most = data_bytes * kLzfMostExpansion / header.point_bytes;
+    max = data_bytes * kLzfMaxExpansion / header.point_bytes;
   }
-  if (header.points <= most) return;
+  if (header.points <= max) return;
   throw InputError(file, "POINTS = " + std::to_string(header.points) + ": the " + std::to_string(data_bytes) +
                              " bytes of " + std::string(header.encoding) + " data hold at most " +
-                             std::to_string(most));
+                             std::to_string(max));
 }
 
 // Also nan and inf, which from_chars reads in every spelling of printf.

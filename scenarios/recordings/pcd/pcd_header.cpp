@@ -20,15 +20,15 @@ constexpr std::array<std::string_view, 10> kKeywords = {"VERSION", "FIELDS", "SI
 
 // Lengths of one dimension are held to an int: the image layout counts in int, and width * height fits 64
 // bits.
-constexpr std::size_t kMostPixels = std::numeric_limits<int>::max();
+constexpr std::size_t kMaxPixels = std::numeric_limits<int>::max();
 
 // No length in a header may be 0; signs, fractions and trailing letters are refused.
-std::size_t whole_number(const std::string& file, const std::string& keyword, std::string_view word,
-                         std::size_t most) {
+std::size_t integer_value(const std::string& file, const std::string& keyword, std::string_view word,
+                          std::size_t max) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > most) {
-    throw InputError(file, keyword + " = " + shown(word) + ": allowed 1 to " + std::to_string(most));
+  if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > max) {
+    throw InputError(file, keyword + " = " + shown(word) + ": allowed 1 to " + std::to_string(max));
   }
   return value;
 }
@@ -73,8 +73,8 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
   const Words& types = entry(file, entries, "TYPE", n);
   const Words counts = entries.contains("COUNT") ? entry(file, entries, "COUNT", n) : Words(n, "1");
   for (std::size_t f = 0; f < n; ++f) {
-    PcdField field{names[f], types[f].front(), whole_number(file, "SIZE", sizes[f], 8)};
-    field.count = whole_number(file, "COUNT", counts[f], std::numeric_limits<int>::max());
+    PcdField field{names[f], types[f].front(), integer_value(file, "SIZE", sizes[f], 8)};
+    field.count = integer_value(file, "COUNT", counts[f], std::numeric_limits<int>::max());
     if (!std::has_single_bit(field.size)) {
       throw InputError(file, "SIZE = " + shown(sizes[f]) + ": allowed 1, 2, 4, 8");
     }
@@ -113,11 +113,11 @@ std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& h
 
 // WIDTH, HEIGHT and POINTS, which must agree.
 void read_lengths(const std::string& file, const Entries& entries, PcdHeader& header) {
-  header.width = whole_number(file, "WIDTH", entry(file, entries, "WIDTH", 1)[0], kMostPixels);
-  header.height = whole_number(file, "HEIGHT", entry(file, entries, "HEIGHT", 1)[0], kMostPixels);
+  header.width = integer_value(file, "WIDTH", entry(file, entries, "WIDTH", 1)[0], kMaxPixels);
+  header.height = integer_value(file, "HEIGHT", entry(file, entries, "HEIGHT", 1)[0], kMaxPixels);
   const std::size_t product = header.width * header.height;
   const std::string_view points = entry(file, entries, "POINTS", 1)[0];
-  header.points = whole_number(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
+  header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;
   throw InputError(file,
                    "POINTS = " + shown(points) + ": allowed WIDTH * HEIGHT = " + std::to_string(product));

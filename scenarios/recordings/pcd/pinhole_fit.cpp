@@ -8,8 +8,8 @@
 namespace remote_touch {
 namespace {
 
-constexpr double kMostResidual_px = 0.5;  // beyond it a point would belong to a neighbour pixel
-constexpr double kRounding_px = 1e-6;     // for a reader that evaluates the projection in another order
+constexpr double kMaxResidual_px = 0.5;  // beyond it a point would belong to a neighbour pixel
+constexpr double kRounding_px = 1e-6;    // for a reader that evaluates the projection in another order
 
 // An image axis: pixel = focal * ratio + centre, where ratio is x/z or y/z.
 struct AxisFit {
@@ -56,7 +56,7 @@ std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int h
   const auto v = fit_axis(cloud.y, cloud.z, [=](std::size_t i) { return i / columns; });
   if (!u || !v || !(u->focal > 0) || !(v->focal > 0)) return std::nullopt;
   const double residual = std::max(u->residual, v->residual);
-  if (!(residual < kMostResidual_px)) return std::nullopt;
+  if (!(residual < kMaxResidual_px)) return std::nullopt;
   const CameraIntrinsics camera{width, height, u->focal, v->focal, u->centre, v->centre};
   return ImageLayout{camera, RigidTransform::Identity(), residual + kRounding_px};
 }

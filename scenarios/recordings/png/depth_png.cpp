@@ -182,7 +182,7 @@ std::string PngFile::pixel_format() const {
 
 }  // namespace
 
-DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double farthest_m) {
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
   PngFile png(file);
   if (png.colour_type() != PNG_COLOR_TYPE_GRAY || png.bit_depth() != 16) {
     throw InputError(file.string(),
@@ -193,7 +193,7 @@ DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_u
   for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
     const int value = bytes[2 * i] << 8 | bytes[2 * i + 1];  // PNG is big-endian
     const double z_m = value * metres_per_unit;
-    depth.z_m[i] = value == 0 || z_m > farthest_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
+    depth.z_m[i] = value == 0 || z_m > max_depth_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
   }
   return depth;
 }

@@ -10,9 +10,9 @@
 namespace remote_touch {
 
 // A 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
-// measurement) and every z beyond farthest_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
+// measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
 // finite. Throws InputError if the file is missing, cut short, damaged or of another pixel format.
-DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double farthest_m);
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m);
 
 // Pixel (u, v) is element v * width + u, as 0xRRGGBB; sets width and height. Allowed are RGB and grey of up
 // to 8 bits a channel (alpha is dropped), and palettes. Samples are taken as stored: no gamma or colour

@@ -56,7 +56,7 @@ TEST(CompareColumns, CountsAndMeasuresWhatIsOutside) {
   EXPECT_EQ(c.outside, 1u);
   EXPECT_EQ(c.first_difference, 1u);
   EXPECT_EQ(c.first_outside, 1u);
-  EXPECT_DOUBLE_EQ(c.largest, 0.5);
+  EXPECT_DOUBLE_EQ(c.max, 0.5);
   EXPECT_DOUBLE_EQ(c.rms, std::sqrt((0.25 + 0.01) / 4));
   EXPECT_TRUE(compare_columns(numbers({1, 2}), numbers({1, 2}), {}).is_same());
 }
@@ -65,14 +65,14 @@ TEST(CompareColumns, CountsAndMeasuresWhatIsOutside) {
 TEST(CompareColumns, TinyDifferencesAreDifferences) {
   const auto c = compare_columns(numbers({1e-20}), numbers({2e-20}), {});
   EXPECT_FALSE(c.is_same());
-  EXPECT_DOUBLE_EQ(c.largest, 1e-20);
+  EXPECT_DOUBLE_EQ(c.max, 1e-20);
 }
 
 TEST(CompareColumns, AVectorsDeviationIsALength) {
   const auto c = compare_columns(numbers({0, 0, 0, 3, 0, 4}, 3), numbers({0, 3, 4, 3, 0, 4}, 3), {1, 0});
   EXPECT_EQ(c.rows, 2u);
   EXPECT_EQ(c.outside, 1u);
-  EXPECT_DOUBLE_EQ(c.largest, 5);
+  EXPECT_DOUBLE_EQ(c.max, 5);
   // Relative to the length of the baseline's row, here 5.
   EXPECT_TRUE(compare_columns(numbers({3, 0, 4}, 3), numbers({3, 0, 4.4}, 3), {0, 0.1}).is_same());
   EXPECT_FALSE(compare_columns(numbers({3, 0, 4}, 3), numbers({3, 0, 4.6}, 3), {0, 0.1}).is_same());
@@ -82,7 +82,7 @@ TEST(CompareColumns, AVectorsDeviationIsALength) {
 TEST(CompareColumns, TheSmallestVectorsAreToldApart) {
   const auto c = compare_columns(numbers({0, 1e-170, 0}, 3), numbers({0, 2e-170, 0}, 3), {});
   EXPECT_EQ(c.outside, 1u);
-  EXPECT_DOUBLE_EQ(c.largest, 1e-170);
+  EXPECT_DOUBLE_EQ(c.max, 1e-170);
   EXPECT_EQ(compare_columns(numbers({0, 5e-324, 0}, 3), numbers({0, 0, 0}, 3), {}).outside, 1u);
 }
 
@@ -100,7 +100,7 @@ TEST(CompareColumns, NoNumberIsNeverAPassAgainstANumber) {
     const auto c = compare_columns(numbers({none, 1}), numbers({0, 1}), {1e9, 1e9});
     EXPECT_EQ(c.outside, 1u);
     EXPECT_EQ(c.not_numbers, 1u);
-    EXPECT_EQ(c.largest, 0);
+    EXPECT_EQ(c.max, 0);
     EXPECT_FALSE(compare_columns(numbers({0, 1}), numbers({none, 1}), {1e9, 1e9}).is_same());
     EXPECT_TRUE(compare_columns(numbers({none, 1}), numbers({none, 1}), {}).is_same());
   }
@@ -131,7 +131,7 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   };
   const auto c = compare_columns(state({0, 1}), state({0, 0}), {5, 0});
   EXPECT_EQ(c.outside, 1u);
-  EXPECT_EQ(c.largest, 0);
+  EXPECT_EQ(c.max, 0);
   EXPECT_EQ(compare_columns(state({0}), state({0}, {"free", "touching"}), {}).problem,
             "other names of values");
   const Column hash = {"h", "1", "", std::vector<std::uint64_t>{1, 2}, 1, {}};
@@ -143,7 +143,7 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   const Column counts = {"n", "1", "", std::vector<std::int32_t>{10, 20}, 1, {}};
   Column more = counts;
   more.values = std::vector<std::int32_t>{10, 22};
-  EXPECT_EQ(compare_columns(counts, more, {}).largest, 2);
+  EXPECT_EQ(compare_columns(counts, more, {}).max, 2);
   EXPECT_TRUE(compare_columns(counts, more, {2, 0}).is_same());
 }
 

@@ -19,8 +19,8 @@ TEST(Causes, Drift) {
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(found.cause, Cause::drift);
   EXPECT_EQ(found.situation, Cause::drift);
-  EXPECT_HAS(found.because, "no frame came in and the state, ");
-  EXPECT_HAS(found.because, "did not change");
+  EXPECT_HAS(found.explanation, "no frame came in and the state, ");
+  EXPECT_HAS(found.explanation, "did not change");
 }
 
 TEST(Causes, FrameUpdate) {
@@ -29,7 +29,7 @@ TEST(Causes, FrameUpdate) {
   const std::string frame = "frame " + std::to_string(integers(columns, "frame_index")[tick]);
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }));
   EXPECT_EQ(found.cause, Cause::frame_update);
-  EXPECT_EQ(found.because, frame + " came in with this tick, the same in both");
+  EXPECT_EQ(found.explanation, frame + " came in with this tick, the same in both");
   // A tick before and a tick after it are none.
   for (const std::size_t other : {tick - 1, tick + 1})
     EXPECT_NE(divergence(after([&](Columns& c) { proxy_x(c, other) += 1e-9; })).cause, Cause::frame_update);
@@ -60,14 +60,14 @@ TEST(Causes, StateTransition) {
   leaves = steady;
   integers(leaves, "state")[quiet] = 0;
   const std::string stays = "contact to contact", goes = "contact to free";
-  EXPECT_EQ(divergence(compare(steady, leaves)).because, "baseline " + stays + ", candidate " + goes);
-  EXPECT_EQ(divergence(compare(leaves, steady)).because, "baseline " + goes + ", candidate " + stays);
+  EXPECT_EQ(divergence(compare(steady, leaves)).explanation, "baseline " + stays + ", candidate " + goes);
+  EXPECT_EQ(divergence(compare(leaves, steady)).explanation, "baseline " + goes + ", candidate " + stays);
   EXPECT_EQ(divergence(compare(leaves, steady)).cause, Cause::state_transition);
   // There is none before the first tick.
   integers(steady, "frame_index")[0] = integers(leaves, "frame_index")[0] = -1;
   integers(leaves, "state")[0] = 2 - integers(steady, "state")[0];
   EXPECT_EQ(divergence(compare(steady, leaves)).cause, Cause::state_transition);
-  EXPECT_EQ(divergence(compare(steady, leaves)).because, "baseline free, candidate entrenched");
+  EXPECT_EQ(divergence(compare(steady, leaves)).explanation, "baseline free, candidate entrenched");
 }
 
 TEST(Causes, EveryInput) {
@@ -83,18 +83,18 @@ TEST(Causes, EveryInput) {
       proxy_x(c, tick) += 1;  // what follows from it
     }));
     EXPECT_EQ(found.cause, Cause::input) << name;
-    EXPECT_EQ(found.because, std::string(name) + " differs; the renderer was given something else");
+    EXPECT_EQ(found.explanation, std::string(name) + " differs; the renderer was given something else");
   }
   const Divergence all = divergence(after([&](Columns& c) {
     for (const auto& [name, change] : inputs) change(c);
   }));
-  EXPECT_HAS(all.because, "time, hip_position, frame_hash differs");
+  EXPECT_HAS(all.explanation, "time, hip_position, frame_hash differs");
   // A device that turns.
   Columns turning = lift(), turned;
   turning.push_back({"hip_orientation", "1", "", std::vector<double>(4 * length(), 0.5), 4, {}});
   turned = turning;
   numbers(turned, "hip_orientation")[4 * tick] = -0.5;
-  EXPECT_HAS(divergence(compare(turning, turned)).because, "hip_orientation differs");
+  EXPECT_HAS(divergence(compare(turning, turned)).explanation, "hip_orientation differs");
 }
 
 // Which frame is in use is the renderer's own doing when both were given the same.
@@ -106,7 +106,7 @@ TEST(Causes, AFrameThatOneDidNotTakeIsAFrameUpdate) {
     };
     const Divergence found = divergence(after(change));
     EXPECT_EQ(found.cause, Cause::frame_update);
-    EXPECT_HAS(found.because, "one did not take the newest");
+    EXPECT_HAS(found.explanation, "one did not take the newest");
   }
 }
 
@@ -116,7 +116,7 @@ TEST(Causes, TheTruthAloneIsAnInput) {
   const Change truth = [&](Columns& c) { numbers(c, "signed_distance")[tick] += 1e-3; };
   const Divergence alone = divergence(after(truth));
   EXPECT_EQ(alone.cause, Cause::input);
-  EXPECT_HAS(alone.because, "signed_distance (the true surface) differs");
+  EXPECT_HAS(alone.explanation, "signed_distance (the true surface) differs");
   const Divergence follows = divergence(after([&](Columns& c) {
     truth(c);
     proxy_x(c, tick) += 1e-3;
@@ -129,9 +129,9 @@ TEST(Causes, TheConfigurationIsTheCauseAndTheSituationIsToldBeside) {
   const Texts differences = {"renderer.r1_m 0.004 against 0.005", "seed 1 against 2"};
   const Divergence found = divergence(after([&](Columns& c) { proxy_x(c, tick) += 1e-9; }, {}, differences));
   EXPECT_EQ(found.cause, Cause::configuration);
-  EXPECT_EQ(found.because, "renderer.r1_m 0.004 against 0.005, seed 1 against 2");
+  EXPECT_EQ(found.explanation, "renderer.r1_m 0.004 against 0.005, seed 1 against 2");
   EXPECT_EQ(found.situation, Cause::frame_update);
-  EXPECT_HAS(found.seen, "came in with this tick");
+  EXPECT_HAS(found.observation, "came in with this tick");
 }
 
 // Configuration before input before frame update before state transition before drift: at a tick that is
@@ -178,7 +178,7 @@ TEST(Causes, WithoutFramesAndStates) {
   proxy_x(changed, 200) += 1;
   const Divergence found = divergence(compare(bare, changed));
   EXPECT_EQ(found.cause, Cause::drift);
-  EXPECT_HAS(found.because, "the state, unknown,");
+  EXPECT_HAS(found.explanation, "the state, unknown,");
   EXPECT_EQ(found.frame, "unknown: the traces have no frame_index here");
 }
 

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "tests/analysis/comparison/made_sweeps.h"
+#include "tests/analysis/comparison/example_sweeps.h"
 
 namespace remote_touch {
 namespace {

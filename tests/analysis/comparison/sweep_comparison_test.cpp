@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/analysis/comparison/made_sweeps.h"
+#include "tests/analysis/comparison/example_sweeps.h"
 
 namespace remote_touch {
 namespace {
@@ -48,7 +48,7 @@ TEST(CompareSweeps, NamesTheFirstDifference) {
   EXPECT_EQ(c.first->candidate, 2e-20);
   EXPECT_EQ(c.measures[1].outside, 2);
   EXPECT_EQ(c.measures[1].first_outside, 23u);
-  EXPECT_EQ(c.measures[1].largest_deviation, 1);
+  EXPECT_EQ(c.measures[1].max_deviation, 1);
   EXPECT_NEAR(c.measures[1].rms_deviation, std::sqrt(1.0 / 30), 1e-15);
   EXPECT_EQ(c.measures[0].first_outside, 25u);
 }
@@ -77,7 +77,7 @@ TEST(CompareSweeps, ANumberAgainstNoneIsNeverAPass) {
       const SweepComparison c = compare(a, b, {{"*", {1, 1}}});
       EXPECT_EQ(c.exact, ExactVerdict::different);
       EXPECT_EQ(c.measures[1].outside, 1);
-      EXPECT_EQ(c.measures[1].largest_deviation, 0);
+      EXPECT_EQ(c.measures[1].max_deviation, 0);
       EXPECT_EQ(c.at(0, 1).unpaired, 1);
       EXPECT_EQ(c.at(0, 1).pairs, 5395);
       EXPECT_EQ(whole(c, 1), Judgement::changed);
@@ -256,8 +256,8 @@ TEST(RegionComparison, CountsEventsByHand) {
   EXPECT_EQ(first.up, 7);
   EXPECT_EQ(first.down, 3);
   EXPECT_EQ(first.difference, paired_difference_interval(7, 3, 49));
-  EXPECT_EQ(first.baseline_share, wilson_interval(20, 49));
-  EXPECT_EQ(first.candidate_share, wilson_interval(24, 49));
+  EXPECT_EQ(first.baseline_fraction, wilson_interval(20, 49));
+  EXPECT_EQ(first.candidate_fraction, wilson_interval(24, 49));
   EXPECT_NEAR(first.sign_p, 0.34375, 1e-15);  // (1 + 10 + 45 + 120) / 512
   EXPECT_EQ(first.symmetry_p, 1);
   EXPECT_EQ(c.at(0, 0).up, 8);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
@@ -113,10 +113,10 @@ TEST(TickHashes, WhatIsWrittenComesBack) {
 TEST(TickHashes, OtherFilesAndDamageAreRefused) {
   const TestFolder folder("tick_hashes_test");
   const fs::path trace = stored(folder, "trace.h5", walk(100));
-  EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/1");
+  EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/2");
   write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(trace), 1), {});
   EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(folder / "h.h5"), 1); }),
-             "is of schema remote-touch-hashes/1");
+             "is of schema remote-touch-hashes/2");
   const std::string whole = bytes_of(folder / "h.h5");
   for (std::size_t i = 0; i < whole.size(); i += 397) {
     std::string flipped = whole;

@@ -46,7 +46,7 @@ TEST(CompareTraces, FindsTheFirstDivergentTickOfEveryColumn) {
           find(candidate, column.name).values);
     }));
     EXPECT_EQ(found.tick, tick) << column.name;
-    EXPECT_EQ(found.parted, tick) << column.name;
+    EXPECT_EQ(found.first_difference, tick) << column.name;
     EXPECT_EQ(found.quantity, column.name);
     EXPECT_DOUBLE_EQ(found.time_s, 0.001 * static_cast<double>(tick));
     EXPECT_NEAR(found.deviation, column.width == 3 ? std::sqrt(3.0) : 1, 1e-12) << column.name;
@@ -116,7 +116,7 @@ TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
   EXPECT_EQ(found.tick, later);
   EXPECT_EQ(found.quantity, "proxy_position");
   EXPECT_NEAR(found.deviation, 1e-3, 1e-12);
-  EXPECT_EQ(found.parted, quiet);
+  EXPECT_EQ(found.first_difference, quiet);
   EXPECT_EQ(found.cause, Cause::drift);
   EXPECT_EQ(found.first_row, quiet - 1);
   EXPECT_EQ(find(found.candidate, "force").length(), 2u);
@@ -133,7 +133,7 @@ TEST(CompareTraces, RunsPartBeforeTheyLeaveTheTolerance) {
   const TraceComparison wide = after(change, {{"*", {0.1, 0}}});
   EXPECT_TRUE(wide.is_same());
   EXPECT_FALSE(wide.divergence);
-  EXPECT_NEAR(wide.columns[2].largest, 1e-3, 1e-12);
+  EXPECT_NEAR(wide.columns[2].max, 1e-3, 1e-12);
 }
 
 TEST(CompareTraces, ATolerancesNameIsAColumnOrAllOthers) {
@@ -241,10 +241,10 @@ TEST(CompareTraces, FilesAreAsGoodAsMemory) {
                         held = compare(baseline, candidate, tolerances);
   const Divergence from_files = divergence(stored), from_memory = divergence(held);
   EXPECT_EQ(from_files.tick, 4500u);
-  EXPECT_EQ(from_files.parted, 4096u);
+  EXPECT_EQ(from_files.first_difference, 4096u);
   EXPECT_EQ(from_files.quantity, "force");
   EXPECT_EQ(from_files.deviation, from_memory.deviation);
-  EXPECT_EQ(from_files.because, from_memory.because);
+  EXPECT_EQ(from_files.explanation, from_memory.explanation);
   EXPECT_EQ(from_files.frame, from_memory.frame);
   ASSERT_EQ(from_files.baseline.size(), from_memory.baseline.size());
   for (std::size_t i = 0; i < from_files.baseline.size(); ++i) {
@@ -253,7 +253,7 @@ TEST(CompareTraces, FilesAreAsGoodAsMemory) {
   }
   ASSERT_EQ(stored.columns.size(), held.columns.size());
   for (std::size_t i = 0; i < stored.columns.size(); ++i)
-    EXPECT_EQ(stored.columns[i].largest, held.columns[i].largest);
+    EXPECT_EQ(stored.columns[i].max, held.columns[i].max);
 }
 
 }  // namespace

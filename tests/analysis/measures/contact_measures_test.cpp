@@ -16,8 +16,8 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Tick {
-  double signed_distance_m = 0.005, nearest_m = 0.005;
-  Vec3 force_N = Vec3::Zero(), hip_m = Vec3::Zero();
+  double signed_distance_m = 0.005, nearest_distance_m = 0.005;
+  Vec3 force_N = Vec3::Zero(), hip_position_m = Vec3::Zero();
   int frame = 0;
   ContactState state = ContactState::contact;
 };
@@ -30,8 +30,8 @@ Trace trace_of(const std::vector<Tick>& ticks) {
     out.force_N = tick.force_N;
     out.state = tick.state;
     out.frame_index = tick.frame;
-    out.nearest_m = tick.nearest_m;
-    trace.append(0.01 * static_cast<double>(trace.length()), {tick.hip_m}, out,
+    out.nearest_distance_m = tick.nearest_distance_m;
+    trace.append(0.01 * static_cast<double>(trace.length()), {tick.hip_position_m}, out,
                  {tick.signed_distance_m, tick.signed_distance_m, 0});
   }
   return trace;
@@ -76,10 +76,10 @@ TEST(ContactMeasures, TheEndIsTheLastTick) {
 
 TEST(ContactMeasures, TicksWithAForce) {
   const Trace trace = trace_of({pushed(0, 0), pushed(1e-12, 0), pushed(-2, 1), pushed(0, 1), pushed(0, 2)});
-  EXPECT_EQ(force_share(trace), 0.4);
+  EXPECT_EQ(force_fraction(trace), 0.4);
   EXPECT_EQ(last_force_time_s(trace), 0.02);
-  EXPECT_EQ(force_share(trace_of({pushed(0, 0)})), 0);
-  EXPECT_EQ(force_share(Trace()), 0);
+  EXPECT_EQ(force_fraction(trace_of({pushed(0, 0)})), 0);
+  EXPECT_EQ(force_fraction(Trace()), 0);
   EXPECT_TRUE(std::isnan(last_force_time_s(trace_of({pushed(0, 0)}))));
 }
 
@@ -117,7 +117,7 @@ TEST(ContactMeasures, AreInTheTable) {
            {"mean_distance", mean_distance_m},
            {"distance_sd", distance_sd_m},
            {"end_distance", end_distance_m},
-           {"force_share", force_share},
+           {"force_fraction", force_fraction},
            {"last_force_time", last_force_time_s},
            {"rms_force_jump", rms_force_jump_N},
            {"force_noise", force_noise_N},

@@ -25,7 +25,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
     out.steps = tick.steps;
     out.converged = tick.converged;
     out.frame_index = tick.frame;
-    out.nearest_m = tick.nearest;
+    out.nearest_distance_m = tick.nearest;
     trace.append(0.001 * static_cast<double>(trace.length()), {}, out,
                  {tick.signed_distance, tick.signed_distance, 0});
   }
@@ -36,16 +36,16 @@ TEST(Measures, PopThroughIsJudgedAtTheEnd) {
   EXPECT_EQ(popped_through(trace_of({{-0.01}, {0.005}})), 0);
   EXPECT_EQ(popped_through(trace_of({{0.005}, {-1e-9}})), 1);
   EXPECT_EQ(popped_through(Trace()), 0);
-  EXPECT_EQ(largest_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
+  EXPECT_EQ(max_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(largest_penetration_m(trace_of({{unknown}, {0.005}, {unknown}})), 0);
-  EXPECT_TRUE(std::isnan(largest_penetration_m(trace_of({{unknown}, {unknown}}))));
+  EXPECT_EQ(max_penetration_m(trace_of({{unknown}, {0.005}, {unknown}})), 0);
+  EXPECT_TRUE(std::isnan(max_penetration_m(trace_of({{unknown}, {unknown}}))));
 }
 
 TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(wrong_side_share(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
-  EXPECT_TRUE(std::isnan(wrong_side_share(trace_of({{unknown}}))));
+  EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
+  EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{unknown}}))));
 }
 
 TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {
@@ -58,8 +58,8 @@ TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {
 
 TEST(Measures, ForceJumpsCountAtUpdatesWithForceOnBothSides) {
   const auto tick = [](double force, int frame) { return Tick{0.005, force, frame}; };
-  EXPECT_EQ(largest_force_jump_N(trace_of({tick(1, 0), tick(5, 0), tick(7, 1), tick(0, 2), tick(9, 3)})), 2);
-  EXPECT_EQ(largest_force_N(trace_of({tick(1, 0), tick(5, 0), tick(-7, 1)})), 7);
+  EXPECT_EQ(max_force_jump_N(trace_of({tick(1, 0), tick(5, 0), tick(7, 1), tick(0, 2), tick(9, 3)})), 2);
+  EXPECT_EQ(max_force_N(trace_of({tick(1, 0), tick(5, 0), tick(-7, 1)})), 7);
 }
 
 TEST(Measures, StepsAndConvergence) {
@@ -67,9 +67,9 @@ TEST(Measures, StepsAndConvergence) {
   quick.steps = 2, slow.steps = 30, slow.converged = false;
   const Trace trace = trace_of({quick, quick, slow, quick});
   EXPECT_EQ(mean_steps(trace), 9);
-  EXPECT_EQ(largest_steps(trace), 30);
-  EXPECT_EQ(unconverged_share(trace), 0.25);
-  EXPECT_EQ(non_finite_share(trace), 0);
+  EXPECT_EQ(max_steps(trace), 30);
+  EXPECT_EQ(unconverged_fraction(trace), 0.25);
+  EXPECT_EQ(non_finite_fraction(trace), 0);
 }
 
 }  // namespace

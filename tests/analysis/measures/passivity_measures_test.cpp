@@ -8,7 +8,7 @@ namespace remote_touch {
 namespace {
 
 struct Tick {
-  double force_N = 0, hip_m = 0;
+  double force_N = 0, hip_position_m = 0;
   int frame = 0;
 };
 
@@ -18,7 +18,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
     RenderOutput out;
     out.force_N = {0, tick.force_N, 0};
     out.frame_index = tick.frame;
-    trace.append(0.001 * static_cast<double>(trace.length()), {Vec3(0, tick.hip_m, 0)}, out, {});
+    trace.append(0.001 * static_cast<double>(trace.length()), {Vec3(0, tick.hip_position_m, 0)}, out, {});
   }
   return trace;
 }
@@ -28,22 +28,22 @@ TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
   double squares = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double depth = 0.01 * std::sin(3.14159265358979 * i / 1000);
-    if (i > 0) squares += (depth + ticks.back().hip_m) * (depth + ticks.back().hip_m);
+    if (i > 0) squares += (depth + ticks.back().hip_position_m) * (depth + ticks.back().hip_position_m);
     ticks.push_back({600 * depth, -depth, i / 33});
   }
   // But for what sampling feeds in: each force is held while the hand moves on, k / 2 (sum of steps^2) in
   // all.
-  EXPECT_NEAR(largest_energy_given_J(trace_of(ticks)), 300 * squares, 1e-9);
+  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * squares, 1e-9);
   for (Tick& tick : ticks) tick.force_N *= tick.frame < 16 ? 1 : 1.5;  // stiffer on the way out
-  EXPECT_NEAR(largest_energy_given_J(trace_of(ticks)), 0.5 * 0.03, 2e-3);
+  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 0.5 * 0.03, 2e-3);
 }
 
 TEST(PassivityMeasures, TheLargestIsThatOfAnyTime) {
   // 2 J to the hand, then 5 J from it.
   const Trace trace = trace_of({{1, 0}, {1, 2}, {1, -3}});
-  EXPECT_EQ(largest_energy_given_J(trace), 2);
-  EXPECT_EQ(largest_energy_given_J(trace_of({{1, 0}, {1, -1}, {1, -3}})), 0);
-  EXPECT_EQ(largest_energy_given_J(trace_of({})), 0);
+  EXPECT_EQ(max_energy_injected_J(trace), 2);
+  EXPECT_EQ(max_energy_injected_J(trace_of({{1, 0}, {1, -1}, {1, -3}})), 0);
+  EXPECT_EQ(max_energy_injected_J(trace_of({})), 0);
 }
 
 TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
@@ -58,9 +58,9 @@ TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
                                 {7, 12, 4},
                                 {7, 20, 4}});
   EXPECT_EQ(mean_energy_per_update_J(trace), 0.5);
-  EXPECT_EQ(largest_energy_per_update_J(trace), 3);
+  EXPECT_EQ(max_energy_per_update_J(trace), 3);
   EXPECT_TRUE(std::isnan(mean_energy_per_update_J(trace_of({{9, 0, 0}, {9, 1, 1}}))));
-  EXPECT_TRUE(std::isnan(largest_energy_per_update_J(trace_of({}))));
+  EXPECT_TRUE(std::isnan(max_energy_per_update_J(trace_of({}))));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(Segmentation, CountsPixelsWithDepthAndThoseWithoutApart) {
   EXPECT_EQ(score.of_class_without_depth, 2);
   EXPECT_DOUBLE_EQ(score.recall(), 2.0 / 3);
   EXPECT_DOUBLE_EQ(score.precision(), 2.0 / 3);
-  EXPECT_DOUBLE_EQ(score.depth_share(), 3.0 / 5);
+  EXPECT_DOUBLE_EQ(score.depth_fraction(), 3.0 / 5);
   EXPECT_EQ(score.recall_interval(), wilson_interval(2, 3));
   EXPECT_EQ(score.precision_interval(), wilson_interval(2, 3));
 }
@@ -39,7 +39,7 @@ TEST(Segmentation, FramesAddUp) {
 
 TEST(Segmentation, OfNothingThereIsNoShare) {
   const SegmentationScore none = score_segmentation({}, {}, {});
-  EXPECT_TRUE(std::isnan(none.recall()) && std::isnan(none.precision()) && std::isnan(none.depth_share()));
+  EXPECT_TRUE(std::isnan(none.recall()) && std::isnan(none.precision()) && std::isnan(none.depth_fraction()));
   const SegmentationScore unpicked = score_segmentation({0, 0}, {1, 0}, {1, 1});
   EXPECT_EQ(unpicked.recall(), 0);
   EXPECT_TRUE(std::isnan(unpicked.precision()));

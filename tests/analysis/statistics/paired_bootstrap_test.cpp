@@ -31,7 +31,7 @@ TEST(PairedBootstrap, QuantilesAreThoseOfAllDraws) {
   const std::vector<double> exact = all_means(group);
   const MeanDifference drawn = bootstrap_mean({group}, 7, 40000);
   // 40000 draws know a share of 0.025 to about 0.0008.
-  const auto at = [&](double share) { return exact[static_cast<std::size_t>(share * exact.size())]; };
+  const auto at = [&](double fraction) { return exact[static_cast<std::size_t>(fraction * exact.size())]; };
   EXPECT_GE(drawn.low, at(0.025 - 0.004));
   EXPECT_LE(drawn.low, at(0.025 + 0.004));
   EXPECT_GE(drawn.high, at(0.975 - 0.004));

@@ -34,7 +34,7 @@ TEST(SignTest, IsThatOfAFairCoin) {
 
 TEST(SignTest, IsTheSumOfTheTails) {
   for (int n = 1; n <= 50; ++n) {
-    double choose = 1, tail = 0;  // whole numbers below 2^53
+    double choose = 1, tail = 0;  // integers below 2^53
     for (int k = 0; 2 * k < n; ++k) {
       tail += choose;
       const double p = std::min(1.0, std::ldexp(tail, 1 - n));
@@ -55,7 +55,7 @@ TEST(SignTest, IsMcNemarsExactTest) {
   EXPECT_NEAR(sign_test(86, 150), 3.716e-5, 5e-9);
 }
 
-// Against sums of whole numbers of any length.
+// Against sums of integers of any length.
 TEST(SignTest, IsPreciseFarOut) {
   EXPECT_NEAR(sign_test(86, 150) / 3.715936139571442342e-5, 1, 1e-12);
   EXPECT_NEAR(sign_test(400, 600) / 2.728464156066018426e-10, 1, 1e-12);
@@ -146,7 +146,7 @@ TEST(PairedDifferenceInterval, IsSymmetricAndBounded) {
       }
 }
 
-// Pairs drawn with known probabilities, by whole numbers alone. By enumeration it covers 93.7 % for
+// Pairs drawn with known probabilities, by integers alone. By enumeration it covers 93.7 % for
 // 20 pairs of which most differ and 94.6 % or more in the other cases, up to all of them where few differ.
 TEST(PairedDifferenceInterval, CoversAsOftenAsItSays) {
   constexpr int kExperiments = 10000;
@@ -167,8 +167,8 @@ TEST(PairedDifferenceInterval, CoversAsOftenAsItSays) {
         const double difference = (truth.plus - truth.minus) / 1000.0;
         covered += low <= difference && difference <= high ? 1 : 0;
       }
-      const double least = pairs == 20 && truth.plus == 400 ? 0.932 : 0.941;
-      EXPECT_GT(covered, least * kExperiments) << pairs << " " << truth.plus << " " << truth.minus;
+      const double min = pairs == 20 && truth.plus == 400 ? 0.932 : 0.941;
+      EXPECT_GT(covered, min * kExperiments) << pairs << " " << truth.plus << " " << truth.minus;
       if (pairs == 300 && truth.plus >= 50) {
         EXPECT_NEAR(covered, 0.95 * kExperiments, 0.01 * kExperiments) << truth.plus << " " << truth.minus;
       }

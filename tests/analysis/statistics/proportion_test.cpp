@@ -35,11 +35,11 @@ TEST(WilsonInterval, EndsAreZDeviationsAway) {
     for (int runs = 1; runs <= 60; runs += 7)
       for (int events = 0; events <= runs; ++events) {
         const auto [low, high] = wilson_interval(events, runs, z);
-        const double share = static_cast<double>(events) / runs;
-        EXPECT_LE(low, share);
-        EXPECT_GE(high, share);
-        EXPECT_NEAR(share - low, z * std::sqrt(low * (1 - low) / runs), 1e-9);
-        EXPECT_NEAR(high - share, z * std::sqrt(high * (1 - high) / runs), 1e-9);
+        const double fraction = static_cast<double>(events) / runs;
+        EXPECT_LE(low, fraction);
+        EXPECT_GE(high, fraction);
+        EXPECT_NEAR(fraction - low, z * std::sqrt(low * (1 - low) / runs), 1e-9);
+        EXPECT_NEAR(high - fraction, z * std::sqrt(high * (1 - high) / runs), 1e-9);
       }
 }
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/hdf5_seal.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch {
@@ -43,7 +43,7 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
     EXPECT_FALSE(std::filesystem::exists(file)) << "before it is whole";
     out.finish();
   }
-  EXPECT_EQ(seal_of(file), Seal::intact);
+  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
   EXPECT_EQ(files_in(folder), 1u);
   const Hdf5Reader in(file);
   EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/1");
@@ -70,7 +70,7 @@ TEST(Hdf5Appender, AFileThatWasThereStaysUntilTheNewOneIsWhole) {
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
   Hdf5Appender out(file);
   out.finish();
-  EXPECT_EQ(seal_of(file), Seal::intact);
+  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
 }
 
 TEST(Hdf5Appender, TellsWhereItCannotWrite) {

@@ -149,11 +149,11 @@ TEST(NextRound, TheEventIsTheMeasureAboveItsThreshold) {
   }
   RefinementRule r = rule({2});
   EXPECT_EQ(next_round(result, r), Runs{});  // neither is above 0.5
-  r.above = 0.01;
+  r.threshold = 0.01;
   EXPECT_EQ(next_round(result, r), Runs{result.run(1, 0)});
-  r.above = 0.02;
+  r.threshold = 0.02;
   EXPECT_EQ(next_round(result, r), Runs{});
-  r.above = 0.01, r.measure = "other";
+  r.threshold = 0.01, r.measure = "other";
   EXPECT_EQ(next_round(result, r), Runs{});  // all NaN, which is above nothing
 }
 

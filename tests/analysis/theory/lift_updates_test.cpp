@@ -26,7 +26,7 @@ TEST(LiftUpdates, QuantitiesOfALiftWithoutNoise) {
     EXPECT_NEAR(update.velocity_m_per_s, 0.1 + 3 * accelerated / 30.0, 1e-9) << update.frame;
     if (update.frame <= 16) continue;
     EXPECT_NEAR(update.estimate_m_per_s, 0.1 + 3 * (accelerated - 1) / 30.0, 0.02) << update.frame;
-    EXPECT_NEAR(update.carried_m, update.estimate_m_per_s / 30, 1e-9);
+    EXPECT_NEAR(update.frame_correction_m, update.estimate_m_per_s / 30, 1e-9);
     EXPECT_NEAR(update.normal_error, 0, 1e-6);
     EXPECT_NEAR(update.thickness_m, 0, 2e-4);  // the proxy sits a little low between the points
     EXPECT_TRUE(update.above_before && update.above_after);
@@ -42,8 +42,8 @@ TEST(LiftUpdates, MarginIsTheHeightOverTheNewPlane) {
   for (std::size_t i = 1; i < trace.length(); ++i) {
     if (!trace.frame_update(i)) continue;
     const double plane = trace.proxy(i).y() - trace.signed_distance_m[i];
-    EXPECT_NEAR(updates.at(next).margin_m(0.00499, 30), trace.proxy(i - 1).y() + trace.carried(i).y() - plane,
-                1e-12);
+    EXPECT_NEAR(updates.at(next).margin_m(0.00499, 30),
+                trace.proxy(i - 1).y() + trace.frame_correction(i).y() - plane, 1e-12);
     ++next;
   }
   EXPECT_EQ(next, updates.size());
@@ -90,7 +90,7 @@ TEST(LiftNoise, FindsTheMomentsOfSyntheticLifts) {
   EXPECT_NEAR(effect.velocity_bias_m_per_s, 0.05, 0.005);
   EXPECT_NEAR(effect.velocity_sd_m_per_s, 0.1, 0.004);
   EXPECT_NEAR(effect.gain, 0.3, 0.03);
-  EXPECT_NEAR(effect.margin_sd_m, 0.001, 3e-5);  // carried_m is 0 here: only the thickness scatters
+  EXPECT_NEAR(effect.margin_sd_m, 0.001, 3e-5);  // frame_correction_m is 0 here: only the thickness scatters
   EXPECT_NEAR(lift_means(lifts.front(), {20}).thickness_m, 0.004, 1e-3);
   EXPECT_TRUE(std::isnan(lift_means(lifts.front(), {50}).thickness_m));
 }

@@ -11,7 +11,7 @@ struct Tick {
   int step;
   bool running;
   int missed;
-  double ended_m = std::nan("");
+  double sequence_distance_m = std::nan("");
 };
 
 // A tick every millisecond.
@@ -20,7 +20,8 @@ Trace trace_of(const std::vector<Tick>& ticks) {
   for (const Tick& tick : ticks) {
     RenderOutput out;
     GuidanceOutput guidance;
-    guidance.ended_m = tick.ended_m, guidance.ended_rad = 30 * tick.ended_m;
+    guidance.sequence_distance_m = tick.sequence_distance_m,
+    guidance.sequence_angle_rad = 30 * tick.sequence_distance_m;
     guidance.sequence_step = tick.step, guidance.sequence_running = tick.running;
     guidance.sequence_missed = tick.missed;
     out.guidance = guidance;

@@ -19,8 +19,8 @@ namespace {
 using namespace depth_cases;
 
 struct Deviation {
-  double largest_deg = 0, rms_deg = 0;
-  double largest_share = 0;  // of a point's distance from the camera, that it is off by
+  double max_deg = 0, rms_deg = 0;
+  double max_fraction = 0;  // of a point's distance from the camera, that it is off by
   std::size_t normals = 0, undecided = 0;
 };
 
@@ -46,7 +46,7 @@ Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
     }
     const Vec3 p_C = X_CW * reference.cloud.point(i);
     const double off_m = (cloud.point(i) - reference.cloud.point(i)).norm();
-    d.largest_share = std::max(d.largest_share, off_m / p_C.norm());
+    d.max_fraction = std::max(d.max_fraction, off_m / p_C.norm());
     if (!(reference.middle[i] > kClearLine)) {  // NaN for a single point
       EXPECT_FALSE(has_normal(cloud, i)) << i;
       continue;
@@ -57,7 +57,7 @@ Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
     }
     EXPECT_TRUE(has_normal(cloud, i)) << i;
     const double angle = angle_deg(cloud.normal(i), reference.cloud.normal(i));
-    d.largest_deg = std::max(d.largest_deg, angle), d.rms_deg += angle * angle, ++d.normals;
+    d.max_deg = std::max(d.max_deg, angle), d.rms_deg += angle * angle, ++d.normals;
   }
   d.rms_deg = d.normals ? std::sqrt(d.rms_deg / static_cast<double>(d.normals)) : 0;
   return d;
@@ -66,16 +66,16 @@ Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
 // The aim is 0.05 degrees. A filtered depth is off by 8e-6, the error of the weights, of the differences to
 // its neighbours.
 void expect_as_reference(const std::string& what, const scenes::DepthScene& scene, const Settings& settings,
-                         double most_undecided = 0) {
+                         double max_undecided = 0) {
   const RigidTransform X_WC = some_pose();
   const ReferenceDepth reference = reference_depth_pipeline(settings, scene.depth, scene.camera, X_WC);
   const Deviation d = deviation(processed(scene, settings, X_WC), reference);
-  EXPECT_LE(d.largest_deg, 0.05) << what;
+  EXPECT_LE(d.max_deg, 0.05) << what;
   EXPECT_LE(d.rms_deg, 0.001) << what;
-  EXPECT_LE(d.largest_share, 2e-6) << what;
-  EXPECT_LE(static_cast<double>(d.undecided), most_undecided * static_cast<double>(d.normals)) << what;
+  EXPECT_LE(d.max_fraction, 2e-6) << what;
+  EXPECT_LE(static_cast<double>(d.undecided), max_undecided * static_cast<double>(d.normals)) << what;
   printf("%s: %zu normals, largest %.5f deg, rms %.6f deg, points %.2g, undecided %zu\n", what.c_str(),
-         d.normals, d.largest_deg, d.rms_deg, d.largest_share, d.undecided);
+         d.normals, d.max_deg, d.rms_deg, d.max_fraction, d.undecided);
 }
 
 TEST(DepthPipeline, AgreesWithTheEquations) {

@@ -15,7 +15,8 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kDegree = 3.14159265358979323846 / 180;
 inline const RigidTransform kIdentity = RigidTransform::Identity();
-inline const std::vector<double> kNoDepth = {kNaN, 0.0, -0.0, -1.0, kInfinity, -kInfinity, 1e300, kDeepest_m};
+inline const std::vector<double> kNoDepth = {kNaN,      0.0,        -0.0,  -1.0,
+                                             kInfinity, -kInfinity, 1e300, kMaxDepth_m};
 
 using Settings = DepthPipelineSettings;
 
@@ -57,8 +58,8 @@ inline scenes::DepthScene noisy_waves(int width, int height, double sigma_m = 0.
   return scene;
 }
 
-inline scenes::DepthScene with_holes(scenes::DepthScene scene, double share = 0.3) {
-  scenes::add_holes(scene.depth, share, 5, kNoDepth);
+inline scenes::DepthScene with_holes(scenes::DepthScene scene, double fraction = 0.3) {
+  scenes::add_holes(scene.depth, fraction, 5, kNoDepth);
   return scene;
 }
 

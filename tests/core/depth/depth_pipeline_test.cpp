@@ -208,9 +208,9 @@ TEST(DepthPipeline, ANarrowFilterKeepsAStepAndTakesAwayAsMuchNoise) {
   };
   const scenes::StepSmear wide = with(0.025), narrow = with(0.010);
   printf("sigma_f 0.025 m: largest error %.2f mm, noise x %.3f; 0.010 m: %.2f mm, x %.3f\n",
-         1e3 * wide.largest_error_m, wide.noise_gain, 1e3 * narrow.largest_error_m, narrow.noise_gain);
-  EXPECT_NEAR(wide.largest_error_m, 0.008, 0.0005);
-  EXPECT_NEAR(narrow.largest_error_m, 0.0008, 0.0002);
+         1e3 * wide.max_error_m, wide.noise_gain, 1e3 * narrow.max_error_m, narrow.noise_gain);
+  EXPECT_NEAR(wide.max_error_m, 0.008, 0.0005);
+  EXPECT_NEAR(narrow.max_error_m, 0.0008, 0.0002);
   EXPECT_NEAR(narrow.noise_gain / wide.noise_gain, 1, 0.15);
   EXPECT_LT(wide.noise_gain, 0.13);  // 1/9 of 81 equal weights
 }
@@ -234,12 +234,12 @@ TEST(DepthPipeline, AllocatesNothingAfterTheFirstFrame) {
 TEST(DepthPipeline, RefusesWhatDoesNotFit) {
   Settings even;
   even.filter_window = 8;
-  EXPECT_EQ(conflict(even), "filter_window = 8: allowed odd numbers, 3 to 15");
+  EXPECT_EQ(validate(even), "filter_window = 8: allowed odd numbers, 3 to 15");
   EXPECT_THROW(DepthPipeline(even, best()), std::invalid_argument);
   even = {};
   even.normal_window = 10;
-  EXPECT_EQ(conflict(even), "normal_window = 10: allowed odd numbers, 3 to 15");
-  EXPECT_EQ(conflict(Settings{}), "");
+  EXPECT_EQ(validate(even), "normal_window = 10: allowed odd numbers, 3 to 15");
+  EXPECT_EQ(validate(Settings{}), "");
   Settings settings;
   for (const Parameter& parameter : parameters(settings))
     EXPECT_TRUE(parameter.help.find("(7.") != std::string::npos ||

@@ -85,7 +85,7 @@ ReferenceDepth reference_depth_pipeline(const DepthPipelineSettings& settings, c
                                         const CameraIntrinsics& camera, const RigidTransform& X_WC) {
   const Points raw = unprojected(camera, [&](int u, int v) {
     const double z = depth.z_m[static_cast<std::size_t>(v * depth.width + u)];
-    return z > 0 && z < kDeepest_m ? z : kNaN;
+    return z > 0 && z < kMaxDepth_m ? z : kNaN;
   });
   const Points points = settings.filter ? filtered(settings, raw) : raw;
   ReferenceDepth reference;

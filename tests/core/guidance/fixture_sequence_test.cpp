@@ -25,7 +25,7 @@ SequenceStep not_before(SequenceStep s, double time_s) {
   return s;
 }
 
-const SequenceStep kAtOnce = step(StepStart::previous, StepEnd::at_once);
+const SequenceStep kAtOnce = step(StepStart::previous, StepEnd::immediately);
 const SequenceStep kReach = step(StepStart::previous, StepEnd::reached);
 
 // What is put in, and what is to come of it.
@@ -44,7 +44,7 @@ void play(std::vector<SequenceStep> steps, const std::vector<Tick>& ticks) {
   for (const Tick& tick : ticks) {
     SCOPED_TRACE("at " + std::to_string(tick.time_s) + " s");
     std::vector<int> begun;
-    sequence.look_at(tick.buttons);
+    sequence.set_buttons(tick.buttons);
     while (true) {
       if (sequence.begins(tick.time_s)) begun.push_back(sequence.current());
       if (!sequence.ends(tick.time_s, tick.reached)) break;
@@ -74,15 +74,15 @@ TEST(FixtureSequence, AStepCanBeDoneInTheTickThatItBeginsIn) {
 }
 
 TEST(FixtureSequence, BeginsWithAPressOfItsButtonAlone) {
-  play({step(StepStart::button, StepEnd::at_once, 3)}, {{0, 0, false, 0, false, 0},
-                                                        {0.001, 0b0111, false, 0, false, 0},
-                                                        {0.002, 0b1111, false, 1, false, 0, {0}}});
-  play({step(StepStart::button, StepEnd::at_once, 31)},
+  play({step(StepStart::button, StepEnd::immediately, 3)}, {{0, 0, false, 0, false, 0},
+                                                            {0.001, 0b0111, false, 0, false, 0},
+                                                            {0.002, 0b1111, false, 1, false, 0, {0}}});
+  play({step(StepStart::button, StepEnd::immediately, 31)},
        {{0, 0, false, 0, false, 0}, {0.001, 0x80000000, false, 1, false, 0, {0}}});
 }
 
 TEST(FixtureSequence, OnePressIsTakenByOneStep) {
-  const SequenceStep press = step(StepStart::button, StepEnd::at_once);
+  const SequenceStep press = step(StepStart::button, StepEnd::immediately);
   play({press, press, press}, {{0, 1, false, 1, false, 0, {0}},
                                {0.001, 1, false, 1, false, 0},  // still down
                                {0.002, 0, false, 1, false, 0},
@@ -99,27 +99,28 @@ TEST(FixtureSequence, OnePressDoesNotBeginAndEndAStep) {
 }
 
 TEST(FixtureSequence, TwoButtonsThatGoDownTogetherAreTwoPresses) {
-  play({step(StepStart::button, StepEnd::at_once, 0), step(StepStart::button, StepEnd::at_once, 5)},
+  play({step(StepStart::button, StepEnd::immediately, 0), step(StepStart::button, StepEnd::immediately, 5)},
        {{0, 0b100001, false, 2, false, 0, {0, 1}}});
 }
 
 TEST(FixtureSequence, APressBeforeItsStepIsUpDoesNotCount) {
-  play({kReach, step(StepStart::button, StepEnd::at_once)}, {{0, 0, false, 0, true, 0, {0}},
-                                                             {0.001, 1, false, 0, true, 0},
-                                                             {0.002, 1, true, 1, false, 0},  // only held
-                                                             {0.003, 0, false, 1, false, 0},
-                                                             {0.004, 1, false, 2, false, 0, {1}}});
+  play({kReach, step(StepStart::button, StepEnd::immediately)}, {{0, 0, false, 0, true, 0, {0}},
+                                                                 {0.001, 1, false, 0, true, 0},
+                                                                 {0.002, 1, true, 1, false, 0},  // only held
+                                                                 {0.003, 0, false, 1, false, 0},
+                                                                 {0.004, 1, false, 2, false, 0, {1}}});
   // In the very tick that ends the step before it does.
-  play({kReach, step(StepStart::button, StepEnd::at_once)},
+  play({kReach, step(StepStart::button, StepEnd::immediately)},
        {{0, 0, false, 0, true, 0, {0}}, {0.001, 1, true, 2, false, 0, {1}}});
 }
 
 TEST(FixtureSequence, APressBeforeTheTimeOfItsStepDoesNotCount) {
-  play({not_before(step(StepStart::button, StepEnd::at_once), 0.002)}, {{0, 0, false, 0, false, 0},
-                                                                        {0.001, 1, false, 0, false, 0},
-                                                                        {0.002, 1, false, 0, false, 0},
-                                                                        {0.003, 0, false, 0, false, 0},
-                                                                        {0.004, 1, false, 1, false, 0, {0}}});
+  play({not_before(step(StepStart::button, StepEnd::immediately), 0.002)},
+       {{0, 0, false, 0, false, 0},
+        {0.001, 1, false, 0, false, 0},
+        {0.002, 1, false, 0, false, 0},
+        {0.003, 0, false, 0, false, 0},
+        {0.004, 1, false, 1, false, 0, {0}}});
 }
 
 TEST(FixtureSequence, BeginsAtItsTimeAndNotBefore) {
@@ -144,7 +145,7 @@ TEST(FixtureSequence, EveryTickThatIsADeadlineMissesExactlyThen) {
     FixtureSequence sequence({not_before(with_deadline(kReach, 0.1), begun / 1000.0)});
     int tick = 0;
     while (!sequence.is_over()) {
-      sequence.look_at(0), sequence.begins(tick / 1000.0), sequence.ends(tick / 1000.0, false);
+      sequence.set_buttons(0), sequence.begins(tick / 1000.0), sequence.ends(tick / 1000.0, false);
       ASSERT_LE(++tick, begun + 101);
     }
     EXPECT_EQ(tick - 1, begun + 100);
@@ -180,17 +181,17 @@ TEST(FixtureSequence, WhatHasNotBegunMissesNothing) {
 
 TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
   SequenceStep s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.fixture = "valve";
-  EXPECT_EQ(conflict(s), "fixture = \"valve\": allowed none for wait, unless done = reached");
+  EXPECT_EQ(validate(s), "fixture = \"valve\": allowed none for wait, unless done = reached");
   s.done = StepEnd::reached;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.fixture = "";
-  EXPECT_EQ(conflict(s), "fixture = \"\": allowed the label of a fixture");
+  EXPECT_EQ(validate(s), "fixture = \"\": allowed the label of a fixture");
   s.action = FixtureAction::lock, s.fixture = "valve";
-  EXPECT_EQ(conflict(s), "done = reached: allowed for activate and wait");
+  EXPECT_EQ(validate(s), "done = reached: allowed for activate and wait");
   s.action = FixtureAction::activate;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Vec3 direction(std::mt19937& random) {
 GuidanceSettings against_the_plane() {
   GuidanceSettings s;
   s.orientation = GuidedOrientation::plane;
-  s.turn_deg = {10, -50, 120};
+  s.rotation_deg = {10, -50, 120};
   s.approach_axis = {0.2, 0.3, -0.9};
   return s;
 }
@@ -32,7 +32,7 @@ GuidanceSettings against_the_plane() {
 
 TEST(GuidanceGoal, FixedLiesBeforeTheTargetAgainstTheTurnedAxis) {
   GuidanceSettings s;
-  s.turn_deg = {0, 0, 90}, s.approach_axis = {0.5, 0, 0};  // turned to y
+  s.rotation_deg = {0, 0, 90}, s.approach_axis = {0.5, 0, 0};  // turned to y
   s.standoff_m = 0.1, s.offset_m = {0, 0, 0.01};
   const auto goal = guidance_goal(s, target({1, 2, 3}, {0, 0, 1}), {0.02, 0, 0});
   ASSERT_TRUE(goal);
@@ -72,7 +72,7 @@ TEST(GuidanceGoal, APlaneBehindIsTurnedTo) {
   for (const double aside : {0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-5, 4.4e-5, 4.6e-5, 1e-4, 1e-2}) {
     for (int i = 0; i < 20; ++i) {
       GuidanceSettings s = against_the_plane();
-      s.turn_deg.setZero(), s.approach_axis = i < 3 ? Vec3(Vec3::Unit(i)) : direction(random);
+      s.rotation_deg.setZero(), s.approach_axis = i < 3 ? Vec3(Vec3::Unit(i)) : direction(random);
       const Vec3 axis = s.approach_axis.normalized();
       const Vec3 normal = (axis + aside * axis.cross(direction(random)).normalized()).normalized();
       const auto goal = guidance_goal(s, target({1, 2, 3}, normal));
@@ -95,7 +95,7 @@ TEST(GuidanceGoal, WithoutAPlaneIsFixed) {
 
 TEST(GuidanceGoal, NeedsEnoughPoints) {
   GuidanceSettings s;
-  s.fewest_points = 7;
+  s.min_points = 7;
   GuidanceTarget seen = target({1, 2, 3});
   seen.points = 6;
   EXPECT_FALSE(guidance_goal(s, seen));
@@ -106,16 +106,16 @@ TEST(GuidanceGoal, NeedsEnoughPoints) {
 
 TEST(GuidanceGoal, AnAxisWithoutLengthIsRefused) {
   GuidanceSettings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.approach_axis = {5e-4, 0, 0};
-  EXPECT_EQ(conflict(s), "approach_axis: allowed 0.001 or longer");
+  EXPECT_EQ(validate(s), "approach_axis: allowed 0.001 or longer");
 }
 
 // --- wrench ---
 
 GuidanceSettings without_limits() {
   GuidanceSettings s;
-  s.largest_force_N = s.largest_torque_Nm = 1e9;
+  s.max_force_N = s.max_torque_Nm = 1e9;
   return s;
 }
 
@@ -175,12 +175,12 @@ TEST(GuidanceWrench, AFixtureHasAStiffnessOfItsOwnOrThatOfTheSettings) {
 
 TEST(GuidanceWrench, IsCutToItsLargestLengths) {
   GuidanceSettings s;
-  s.largest_force_N = 3, s.largest_torque_Nm = 0.1;
+  s.max_force_N = 3, s.max_torque_Nm = 0.1;
   const ToolPose goal{{1, 2, 0}, rotation({0, 0, 150 * kDegree})};
   const Wrench wrench = guidance_wrench(s, -1, goal, {});
   EXPECT_LT((wrench.force_N - 3 * Vec3(1, 2, 0).normalized()).norm(), 1e-12);
   EXPECT_LT((wrench.torque_Nm - Vec3(0, 0, 0.1)).norm(), 1e-12);
-  s.largest_force_N = s.largest_torque_Nm = 0;
+  s.max_force_N = s.max_torque_Nm = 0;
   EXPECT_EQ(guidance_wrench(s, -1, goal, {}).force_N, Vec3::Zero());
   EXPECT_EQ(guidance_wrench(s, -1, goal, {}).torque_Nm, Vec3::Zero());
 }

@@ -64,7 +64,7 @@ using Switches = std::shared_ptr<FixtureSwitches>;
 GuidedRenderer guided(Inner kind, const std::vector<FixtureValues>& fixtures,
                       std::vector<SequenceStep> steps = {}, const GuidanceSettings& settings = plain(),
                       const Switches& switches = std::make_shared<FixtureSwitches>()) {
-  EXPECT_EQ(conflict(fixtures, steps), "");
+  EXPECT_EQ(validate(fixtures, steps), "");
   return {inner(kind), settings, fixtures, std::move(steps), switches};
 }
 
@@ -104,7 +104,7 @@ TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
     EXPECT_EQ(out.force_N, Vec3(plain_out.force_N + wrench.force_N));
     EXPECT_EQ(out.proxy_W, plain_out.proxy_W);
     EXPECT_EQ(out.status, plain_out.status);
-    EXPECT_TRUE(out.guidance->pulls);
+    EXPECT_TRUE(out.guidance->active);
     EXPECT_EQ(out.guidance->goal_W, goal.p_W);
     EXPECT_EQ(out.tool.has_value(), GetParam() == Inner::tool);
     if (out.tool) {
@@ -128,7 +128,7 @@ TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
 
 void expect_no_guidance(const RenderOutput& out) {
   ASSERT_TRUE(out.guidance);
-  EXPECT_FALSE(out.guidance->pulls);
+  EXPECT_FALSE(out.guidance->active);
   EXPECT_EQ(out.guidance->force_N, Vec3::Zero());
   EXPECT_EQ(out.guidance->torque_Nm, Vec3::Zero());
   EXPECT_TRUE(out.guidance->goal_W.array().isNaN().all());
@@ -149,7 +149,7 @@ TEST_P(EveryRenderer, NothingPullsBeforeAFrameOrWithoutATarget) {
   r.on_frame(frame({few}, 1));
   expect_no_guidance(r.step(device(kAbove), 0.002));
   r.on_frame(frame({target(kLeft)}, 2));
-  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->pulls);
+  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->active);
   r.on_frame(frame({GuidanceTarget{}}, 3));
   expect_no_guidance(r.step(device(kAbove), 0.004));
 }
@@ -160,7 +160,7 @@ TEST_P(EveryRenderer, ADeviceThatIsNotFiniteIsNotPulled) {
   r.step(device(kAbove), 0);
   expect_no_guidance(r.step(device({kNaN, 0, 0}), 0.001));
   expect_no_guidance(r.step(device({0, 2e6, 0}), 0.002));
-  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->pulls);
+  EXPECT_TRUE(r.step(device(kAbove), 0.003).guidance->active);
 }
 
 TEST_P(EveryRenderer, AStaleFrameLeavesTheTarget) {
@@ -205,10 +205,10 @@ TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
       // To wait for it is no action.
       {{until_reached(step(wait, "valve"))}, true},
       {{until_reached(step(wait, "valve")), step(activate, "valve")}, false}};
-  for (const auto& [steps, pulls] : cases) {
+  for (const auto& [steps, active] : cases) {
     GuidedRenderer r = guided(Inner::proxy, {guide("valve")}, steps);
     r.on_frame(frame({target(kLeft)}));
-    EXPECT_EQ(r.step(device(kAbove), 0).guidance->pulls, pulls) << steps.size();
+    EXPECT_EQ(r.step(device(kAbove), 0).guidance->active, active) << steps.size();
   }
 }
 
@@ -301,9 +301,9 @@ TEST(GuidedRenderer, TellsWhereTheTaskIs) {
   EXPECT_TRUE(told.sequence_running && told.sequence_step == 0 && told.sequence_missed == 0);
   told = *r.step(device(kAbove), 0.51).guidance;
   EXPECT_TRUE(!told.sequence_running && told.sequence_step == 1 && told.sequence_missed == 1);
-  EXPECT_TRUE(told.pulls) << "a step that is missed undoes nothing";
+  EXPECT_TRUE(told.active) << "a step that is missed undoes nothing";
   told = *r.step(device(kAbove, Vec3::Zero(), 1), 0.52).guidance;
-  EXPECT_TRUE(!told.pulls && told.sequence_step == 2);
+  EXPECT_TRUE(!told.active && told.sequence_step == 2);
 }
 
 TEST_P(EveryRenderer, AStepAllocatesNothing) {

@@ -55,7 +55,7 @@ Real radius_of(const PointCloud& cloud, std::size_t i) {
 }
 
 // (4.1), (4.2), (5.8) as printed, with r_n of (5.5).
-void expect_survey(const Survey& got, const PointCloud& cloud, const Vec3& p) {
+void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& p) {
   Real nearest = kInfinity, normal[3] = {0, 0, 0}, weights = 0, stiffness = 0;
   int touching = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -77,7 +77,7 @@ void expect_survey(const Survey& got, const PointCloud& cloud, const Vec3& p) {
   EXPECT_NEAR(got.stiffness_sum, static_cast<double>(stiffness), 0x1p20 * rounding);  // a coarser grid
 }
 
-TEST(Survey, AgreesWithTheEquations) {
+TEST(ContactQuery, AgreesWithTheEquations) {
   const PointCloud at = scenes::random_cloud(40, 0.01, 2);
   for (const bool with_radius : {false, true})
     for (const bool with_stiffness : {false, true}) {
@@ -85,11 +85,12 @@ TEST(Survey, AgreesWithTheEquations) {
       const GatheredPoints points = columns(cloud);
       for (const Kernels* kernels : every_level())
         for (std::size_t i = 0; i < at.size(); ++i)
-          expect_survey(kernels->survey(points.view(), at.point(i).data(), kRegions), cloud, at.point(i));
+          expect_query(kernels->contact_query(points.view(), at.point(i).data(), kRegions), cloud,
+                       at.point(i));
     }
 }
 
-TEST(Survey, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
+TEST(ContactQuery, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
   const PointCloud cloud = random_points(601, 0.012, 3, true, true), at = scenes::random_cloud(20, 0.01, 4);
   const GatheredPoints plain = columns(cloud);
   std::vector<std::size_t> order(640);  // the last ones stand for far points
@@ -106,10 +107,10 @@ TEST(Survey, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
     }
     const GatheredPoints other = columns(mixed);
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const Survey first = every_level()[0]->survey(plain.view(), at.point(i).data(), kRegions);
+      const ContactQuery first = every_level()[0]->contact_query(plain.view(), at.point(i).data(), kRegions);
       ASSERT_GT(first.touching, 0);
       for (const Kernels* kernels : every_level()) {
-        const Survey got = kernels->survey(other.view(), at.point(i).data(), kRegions);
+        const ContactQuery got = kernels->contact_query(other.view(), at.point(i).data(), kRegions);
         EXPECT_EQ(std::memcmp(&got, &first, sizeof got), 0) << kernels->isa << " " << seed;
       }
     }
@@ -117,7 +118,7 @@ TEST(Survey, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
 }
 
 // A point without a stiffness of its own is one with the renderer's, bit for bit.
-TEST(Survey, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
+TEST(ContactQuery, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
   const PointCloud at = scenes::random_cloud(20, 0.01, 4);
   for (const bool with_radius : {false, true}) {
     PointCloud some = random_points(601, 0.012, 3, with_radius, true), filled = some;
@@ -127,48 +128,48 @@ TEST(Survey, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
     const GatheredPoints with_nan = columns(some), with_own = columns(filled);
     for (std::size_t i = 0; i < at.size(); ++i) {
       const Vec3 p = at.point(i);
-      const Survey want = every_level()[0]->survey(with_own.view(), p.data(), kRegions);
-      expect_survey(want, filled, p);
+      const ContactQuery want = every_level()[0]->contact_query(with_own.view(), p.data(), kRegions);
+      expect_query(want, filled, p);
       for (const Kernels* kernels : every_level()) {
-        const Survey got = kernels->survey(with_nan.view(), p.data(), kRegions);
+        const ContactQuery got = kernels->contact_query(with_nan.view(), p.data(), kRegions);
         EXPECT_EQ(std::memcmp(&got, &want, sizeof got), 0) << kernels->isa;
       }
     }
   }
 }
 
-TEST(Survey, WeightFallsFromOneAtR1ToZeroAtR3) {
+TEST(ContactQuery, WeightFallsFromOneAtR1ToZeroAtR3) {
   const double halfway = 0.5 * (kRegions.r1 + kRegions.r3);  // (1/2)^4 (4/2 + 1) = 3/16
   const std::pair<double, double> cases[] = {
       {0.001, 1}, {kRegions.r1, 1}, {halfway, 0.1875}, {kRegions.r3, 0}, {0.5, 0}};
   for (const Kernels* kernels : every_level())
     for (const auto& [distance, psi] : cases) {
       const GatheredPoints one = columns(one_point({0, 0, -distance}));
-      const Survey got = kernels->survey(one.view(), kOrigin.data(), kRegions);
+      const ContactQuery got = kernels->contact_query(one.view(), kOrigin.data(), kRegions);
       EXPECT_NEAR(got.normal_sum[2], psi, kOnGrid) << distance;
       EXPECT_EQ(got.normal_sum[0], 0);
       EXPECT_EQ(got.nearest, distance);
     }
 }
 
-TEST(Survey, PointAtTheProxyGivesNoDirection) {
+TEST(ContactQuery, PointAtTheProxyGivesNoDirection) {
   const GatheredPoints alone = columns(one_point(kOrigin)), none = columns({});
   for (const Kernels* kernels : every_level()) {
-    const Survey got = kernels->survey(alone.view(), kOrigin.data(), kRegions);
+    const ContactQuery got = kernels->contact_query(alone.view(), kOrigin.data(), kRegions);
     EXPECT_EQ(Vec3(got.normal_sum), kOrigin);
     EXPECT_EQ(got.nearest, 0);
     EXPECT_EQ(got.touching, 1);
-    EXPECT_EQ(kernels->survey(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
+    EXPECT_EQ(kernels->contact_query(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
   }
 }
 
-TEST(Survey, TouchingIncludesR2) {
+TEST(ContactQuery, TouchingIncludesR2) {
   PointCloud cloud;
   for (const double d : {kRegions.r2, nextafter(kRegions.r2, 1.0), nextafter(kRegions.r2, 0.0)})
     cloud.append({0, d, 0}), cloud.append({-d, 0, 0});
   const GatheredPoints points = columns(cloud);
   for (const Kernels* kernels : every_level())
-    EXPECT_EQ(kernels->survey(points.view(), kOrigin.data(), kRegions).touching, 4);
+    EXPECT_EQ(kernels->contact_query(points.view(), kOrigin.data(), kRegions).touching, 4);
 }
 
 // Roots of |x - p - d u| = r by the quadratic formula, which long double can afford.
@@ -204,41 +205,41 @@ TEST(FirstHit, ClosedFormsForOnePoint) {
 
 TEST(WayOut, ClosedFormsForOnePoint) {
   for (const Kernels* kernels : every_level()) {
-    const auto way_out = [&](const Vec3& x, double r_f = 0) {
-      return kernels->way_out(columns(one_point(x, r_f)).view(), kOrigin.data(), Vec3::UnitY().eval().data(),
-                              kReach, kRegions.r1);
+    const auto exit_distance = [&](const Vec3& x, double r_f = 0) {
+      return kernels->exit_distance(columns(one_point(x, r_f)).view(), kOrigin.data(),
+                                    Vec3::UnitY().eval().data(), kReach, kRegions.r1);
     };
-    EXPECT_NEAR(way_out({0, -0.003, 0}), 0.002, 1e-17);
-    EXPECT_NEAR(way_out({0, 0.003, 0}), 0.008, 1e-17);
-    EXPECT_NEAR(way_out({0.003, 0, 0}), 0.004, 1e-17);
-    EXPECT_NEAR(way_out({0, 0, 0.006}, 0.005), 0.008, 1e-17) << "r_f moves both radii out";
-    EXPECT_EQ(way_out({0, -kRegions.r1, 0}), 0) << "at r1 is not within r1";
-    EXPECT_GT(way_out({0, -nextafter(kRegions.r1, 0.0), 0}), 0);
+    EXPECT_NEAR(exit_distance({0, -0.003, 0}), 0.002, 1e-17);
+    EXPECT_NEAR(exit_distance({0, 0.003, 0}), 0.008, 1e-17);
+    EXPECT_NEAR(exit_distance({0.003, 0, 0}), 0.004, 1e-17);
+    EXPECT_NEAR(exit_distance({0, 0, 0.006}, 0.005), 0.008, 1e-17) << "r_f moves both radii out";
+    EXPECT_EQ(exit_distance({0, -kRegions.r1, 0}), 0) << "at r1 is not within r1";
+    EXPECT_GT(exit_distance({0, -nextafter(kRegions.r1, 0.0), 0}), 0);
   }
 }
 
 TEST(Roots, SmallestAheadAndLargestWithinR1OfManyPoints) {
-  const PointCloud at = scenes::random_cloud(200, 0.06, 6), way = scenes::random_cloud(200, 1, 7);
+  const PointCloud at = scenes::random_cloud(200, 0.06, 6), displacement = scenes::random_cloud(200, 1, 7);
   int hits = 0, entrenched = 0;
   for (const bool with_radius : {false, true}) {
     const PointCloud cloud = random_points(600, 0.06, 5, with_radius, false);
     const GatheredPoints points = columns(cloud);
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const Vec3 p = at.point(i), u = way.point(i).normalized();
-      Real first = kInfinity, longest = 0;
+      const Vec3 p = at.point(i), u = displacement.point(i).normalized();
+      Real first = kInfinity, max_length = 0;
       for (std::size_t j = 0; j < cloud.size(); ++j) {
         const Real r_f = radius_of(cloud, j);
         const Roots r = roots(cloud.point(j), p, u, kReach + r_f);
         if (r.real && r.along > 0 && r.near > 0) first = std::min(first, r.near);
-        if ((cloud.point(j) - p).norm() < kRegions.r1 + r_f) longest = std::max(longest, r.far);
+        if ((cloud.point(j) - p).norm() < kRegions.r1 + r_f) max_length = std::max(max_length, r.far);
       }
       for (const Kernels* kernels : every_level()) {
         const double hit = kernels->first_hit(points.view(), p.data(), u.data(), kReach);
-        const double out = kernels->way_out(points.view(), p.data(), u.data(), kReach, kRegions.r1);
+        const double out = kernels->exit_distance(points.view(), p.data(), u.data(), kReach, kRegions.r1);
         ASSERT_TRUE(hit == first || std::abs(hit - first) < 1e-13);  // no ray here grazes a point closer
-        ASSERT_NEAR(out, static_cast<double>(longest), 1e-15);       // some roundings of a centimetre
+        ASSERT_NEAR(out, static_cast<double>(max_length), 1e-15);    // some roundings of a centimetre
       }
-      hits += first<kInfinity, entrenched += longest> 0;
+      hits += first<kInfinity, entrenched += max_length> 0;
     }
   }
   EXPECT_GT(hits, 100);
@@ -283,10 +284,10 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
     for (const std::size_t length : lengths)
       for (const double reach : {0.007, 0.0, kInfinity})
         for (const bool named : {false, true}) {
-          const std::size_t room = before + length + kLanes;
+          const std::size_t buffer = before + length + kLanes;
           std::vector<double> out[5];
-          for (auto& column : out) column.assign(room + 1, -1);
-          std::vector<std::uint32_t> index(room + 1, 77);
+          for (auto& column : out) column.assign(buffer + 1, -1);
+          std::vector<std::uint32_t> index(buffer + 1, 77);
           const std::size_t count = kernels->append_within(
               {cloud.x.data(), cloud.y.data(), cloud.z.data(),
                named ? cloud.fixture_radius_m.data() : nullptr, cloud.stiffness_N_per_m.data(),
@@ -307,7 +308,7 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
           }
           ASSERT_EQ(count, n);
           EXPECT_EQ(out[0][before - 1], -1) << "wrote before the end";
-          EXPECT_TRUE(out[0][room] == -1 && index[room] == 77) << "wrote beyond the room";
+          EXPECT_TRUE(out[0][buffer] == -1 && index[buffer] == 77) << "wrote beyond the room";
         }
 }
 

@@ -28,9 +28,9 @@ struct Patch {
     std::sort(regions.begin(), regions.end(),
               [](const Sphere& a, const Sphere& b) { return a.centre.x() < b.centre.x(); });
     tree.add(regions);
-    const std::size_t room = regions.size() + 2 * kLanes;
-    for (auto* column : {&gap, &nx, &ny, &nz}) column->assign(room, -7);
-    number.assign(room, 7);
+    const std::size_t buffer = regions.size() + 2 * kLanes;
+    for (auto* column : {&gap, &nx, &ny, &nz}) column->assign(buffer, -7);
+    number.assign(buffer, 7);
   }
   SphereRun run() const {
     SphereRun run = tree.run(0);
@@ -55,14 +55,16 @@ TEST(NearRegions, SameAsAPlainLoopOnEveryLevel) {
         const std::size_t count = kernels->append_near_regions(patch.run(), leaf, margin, patch.near(), 2);
         std::size_t n = 2;
         for (std::uint32_t i = 0; i < regions; ++i) {
-          const Vec3 way = middle - patch.regions[i].centre;
+          const Vec3 displacement = middle - patch.regions[i].centre;
           const double gap = gap_m(leaf, patch.regions[i]);
           if (!(gap <= margin)) continue;
           ASSERT_LT(n, count);
           EXPECT_EQ(patch.number[n], 500 + i);
           EXPECT_EQ(patch.gap[n], gap);
           const Vec3 normal(patch.nx[n], patch.ny[n], patch.nz[n]);
-          EXPECT_LT((normal - (way.norm() > 0 ? way.normalized() : Vec3(Vec3::UnitY()))).norm(), 1e-15);
+          EXPECT_LT(
+              (normal - (displacement.norm() > 0 ? displacement.normalized() : Vec3(Vec3::UnitY()))).norm(),
+              1e-15);
           ++n;
         }
         ASSERT_EQ(count, n);
@@ -80,10 +82,10 @@ TEST(NearRegions, TheNearestIsFoundAtItsOwnGap) {
     for (std::size_t j = 1; j < patch.regions.size(); ++j)
       if (gap_m(leaf, patch.regions[j]) < gap_m(leaf, patch.regions[nearest])) nearest = j;
     for (const Kernels* kernels : every_level()) {
-      const double least_m = gap_m(leaf, patch.regions[nearest]);
-      ASSERT_EQ(kernels->append_near_regions(patch.run(), leaf, least_m, patch.near(), 0), 1u);
+      const double min_m = gap_m(leaf, patch.regions[nearest]);
+      ASSERT_EQ(kernels->append_near_regions(patch.run(), leaf, min_m, patch.near(), 0), 1u);
       EXPECT_EQ(patch.number[0], 500 + nearest);
-      EXPECT_EQ(patch.gap[0], least_m);
+      EXPECT_EQ(patch.gap[0], min_m);
     }
   }
 }
@@ -113,18 +115,18 @@ struct PlainChoice {
       regions.push_back({patch.gap[i], {patch.nx[i], patch.ny[i], patch.nz[i]}});
   }
   const Region* deepest() const {
-    const Region* least = nullptr;
+    const Region* min = nullptr;
     for (const Region& region : regions)
-      if (!region.gone && (!least || region.gap < least->gap)) least = &region;
-    return least;
+      if (!region.gone && (!min || region.gap < min->gap)) min = &region;
+    return min;
   }
-  void keep(const Region& kept, double motion, double alike, double most) {
+  void keep(const Region& kept, double motion, double alike, double max) {
     for (Region& other : regions) {
       if (other.gone) continue;
       const double cosine = other.n.x() * kept.n.x() + (other.n.y() * kept.n.y() + other.n.z() * kept.n.z());
       const double rise = other.gap - kept.gap;
       const bool stands = rise * rise >= motion * motion * (2 - 2 * cosine) && cosine >= alike;
-      other.gone = &other == &kept || stands || other.gap > most;
+      other.gone = &other == &kept || stands || other.gap > max;
       count -= other.gone ? 1 : 0;
     }
   }
@@ -139,20 +141,20 @@ TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
     for (const int regions : {1, 7, 8, 9, 15, 16, 17, 40, 41, 65, 400})
       for (const double alike : {-2.0, 0.9})
         for (const double motion : {0.0, 0.001, 0.01})
-          for (const double most : {-0.004, 0.01, 0.04}) {
+          for (const double max : {-0.004, 0.01, 0.04}) {
             Patch patch(regions);
             const NearRegions near = patch.near();
             std::size_t found = kernels->append_near_regions(patch.run(), leaf, 0.04, near, 0);
             PlainChoice plain(patch, found);
-            LeftRegions left{kernels->deepest_region(near, found), found};
+            RemainingRegions left{kernels->deepest_region(near, found), found};
             const PlainChoice::Region* kept = plain.deepest();
             while (kept) {
               const std::size_t at = left.deepest;
               ASSERT_LT(at, left.count) << kernels->isa << ' ' << regions;
               ASSERT_EQ(patch.gap[at], kept->gap) << kernels->isa << ' ' << regions;
               ASSERT_EQ(Vec3(patch.nx[at], patch.ny[at], patch.nz[at]), kept->n);
-              plain.keep(*kept, motion, alike, most);
-              left = kernels->next_deepest_region(near, left.count, at, motion, alike, most);
+              plain.keep(*kept, motion, alike, max);
+              left = kernels->next_deepest_region(near, left.count, at, motion, alike, max);
               ASSERT_GE(left.count, plain.count);
               closed_up += left.count < found ? 1 : 0;
               found = left.count;
@@ -173,7 +175,7 @@ TEST(NearRegions, OfEquallyDeepOnesTheFirstIsNext) {
         const double a = 0.05 * static_cast<double>(i);
         patch.gap[i] = -0.001, patch.nx[i] = std::cos(a), patch.ny[i] = std::sin(a), patch.nz[i] = 0;
       }
-      LeftRegions left{kernels->deepest_region(patch.near(), count), count};
+      RemainingRegions left{kernels->deepest_region(patch.near(), count), count};
       for (std::size_t i = 0; i < count; ++i) {
         const double a = 0.05 * static_cast<double>(i);
         ASSERT_LT(left.deepest, left.count) << kernels->isa;

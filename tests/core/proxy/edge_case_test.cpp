@@ -28,7 +28,7 @@ TEST(EdgeCase, Float32PointsOneMetreAway) {
   hold(renderer, Vec3(1, 1.02, 1), 1);
   for (int tick = 1; tick < 300; ++tick) {
     const RenderOutput out = renderer.step({Vec3(1 + 1e-4 * tick / 3, 0.99, 1)}, 0.001 * tick);
-    ASSERT_NEAR(out.nearest_m, kContactRadius, kShell) << tick;
+    ASSERT_NEAR(out.nearest_distance_m, kContactRadius, kShell) << tick;
     ASSERT_GT(out.force_N.y(), 5) << tick;
   }
 }
@@ -43,7 +43,7 @@ TEST(EdgeCase, APointExactlyAtTheProxy) {
   EXPECT_TRUE(stuck.proxy_W.allFinite());
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 5, 0.001);
   EXPECT_TRUE(out.proxy_W.allFinite());
-  EXPECT_GE(out.nearest_m, kContactRadius - kShell);  // out it came
+  EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);  // out it came
 }
 
 TEST(EdgeCase, SymmetricPointsHaveNoNormal) {
@@ -103,7 +103,7 @@ TEST(EdgeCase, ACloudOfOnePoint) {
   hold(renderer, Vec3(0.001, 0.02, 0), 1);
   const RenderOutput out = hold(renderer, Vec3(0, -0.01, 0), 100);
   // In line with the HIP above the point, or slipped round it: never nearer than the contact radius.
-  EXPECT_GE(out.nearest_m, kContactRadius - kShell);
+  EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);
 }
 
 TEST(EdgeCase, HipJumpsAcrossTheCloud) {

@@ -33,7 +33,7 @@ double nearest(const PointCloud& cloud, const Vec3& p) {
   return smallest;
 }
 
-Survey with_normal_sum(const Vec3& sum) {
+ContactQuery with_normal_sum(const Vec3& sum) {
   return {0, {sum.x(), sum.y(), sum.z()}, 0, 0, 0};
 }
 
@@ -73,8 +73,8 @@ TEST(FreeStep, LandsInTheContactShellAMetreAway) {
     // The rounding of positions of a metre, with much room; the shell is 1e-5 m to either side.
     EXPECT_NEAR(nearest(cloud, p + s), kDefault.contact_radius_m(), 1e-12);
     EXPECT_LT(s.cross(hip - p).norm(), 1e-16) << "the step leads towards the HIP";
-    for (const double share : {0.2, 0.5, 0.8, 0.95, 0.999})
-      EXPECT_GE(nearest(cloud, p + share * s), kDefault.contact_radius_m()) << "nothing is met before";
+    for (const double fraction : {0.2, 0.5, 0.8, 0.95, 0.999})
+      EXPECT_GE(nearest(cloud, p + fraction * s), kDefault.contact_radius_m()) << "nothing is met before";
   }
 }
 
@@ -90,12 +90,12 @@ TEST(FreeStep, DoesNotTunnelThroughALonePointFarAhead) {
 
 TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
   const PointCloud cloud = scenes::random_cloud(500, 0.03, 3);
-  const PointCloud from = scenes::random_cloud(400, 0.03, 4), way = scenes::random_cloud(400, 1, 5);
+  const PointCloud from = scenes::random_cloud(400, 0.03, 4), path_length = scenes::random_cloud(400, 1, 5);
   const auto search = std::make_shared<BruteForceSearch>(cloud);
   Neighbourhood kept = around(cloud);
   int met = 0, missed = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const Vec3 p = from.point(i), u = way.point(i).normalized();
+    const Vec3 p = from.point(i), u = path_length.point(i).normalized();
     if (nearest(cloud, p) <= kDefault.r2_m) continue;
     Neighbourhood hopping = around(cloud);  // has no list yet
     GatheredPoints all;
@@ -119,9 +119,9 @@ TEST(FreeStep, UnhinderedItIsTheWayToTheHipBitForBit) {
   PointCloud aside;
   aside.append({0, -1, 0});
   Neighbourhood near = around(aside);
-  const PointCloud ways = scenes::random_cloud(100, 0.3, 6);
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, ways.point(i), kDefault), ways.point(i));
+  const PointCloud directions = scenes::random_cloud(100, 0.3, 6);
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, directions.point(i), kDefault), directions.point(i));
   EXPECT_EQ(free_step(near, {0.1, 0.2, 0.3}, Vec3::Zero(), kDefault), Vec3(0, 0, 0));
 }
 
@@ -141,9 +141,11 @@ TEST(FreeStep, PrintedRootPullsTheProxyBackToPointsBehind) {
 }
 
 TEST(EntrenchedStep, GetsAllPointsOut) {
-  const PointCloud offsets = scenes::random_cloud(4000, 0.0028, 7), ways = scenes::random_cloud(100, 1, 8);
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const Vec3 p = Vec3(0.3, -0.2, 0.9) + ways.point(i), normal = ways.point((i + 1) % 100).normalized();
+  const PointCloud offsets = scenes::random_cloud(4000, 0.0028, 7),
+                   directions = scenes::random_cloud(100, 1, 8);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Vec3 p = Vec3(0.3, -0.2, 0.9) + directions.point(i),
+               normal = directions.point((i + 1) % 100).normalized();
     PointCloud inside;
     for (std::size_t j = 40 * i; j < 40 * i + 40; ++j) inside.append(p + offsets.point(j));
     GatheredPoints points;
@@ -179,10 +181,11 @@ TEST(EntrenchedStep, WithoutANormalItGoesBackFromTheHip) {
 }
 
 TEST(ContactStep, StaysInTheTangentPlaneWhenTheHipIsBelowIt) {
-  const PointCloud normals = scenes::random_cloud(200, 1, 9), ways = scenes::random_cloud(200, 0.02, 10);
+  const PointCloud normals = scenes::random_cloud(200, 1, 9),
+                   directions = scenes::random_cloud(200, 0.02, 10);
   int below = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    const Vec3 n = normals.point(i).normalized(), u = ways.point(i);
+    const Vec3 n = normals.point(i).normalized(), u = directions.point(i);
     const Vec3 s = contact_step(n, u, kDefault), tangential = u - u.dot(n) * n;
     const bool inside = u.dot(n) < 0;
     const Vec3 goal = inside ? tangential : u;
@@ -212,10 +215,11 @@ TEST(ContactStep, ShareBelowR1AndSmallStepsFromThere) {
 TEST(ExitRule, AHipOutsideFreesTheProxyAlongTheNormal) {
   ProxyParameters out;
   out.exit_rule = ExitRule::out_of_contact;
-  const PointCloud normals = scenes::random_cloud(200, 1, 9), ways = scenes::random_cloud(200, 0.02, 10);
+  const PointCloud normals = scenes::random_cloud(200, 1, 9),
+                   directions = scenes::random_cloud(200, 0.02, 10);
   int outside = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    const Vec3 n = normals.point(i).normalized(), u = ways.point(i), s = contact_step(n, u, out);
+    const Vec3 n = normals.point(i).normalized(), u = directions.point(i), s = contact_step(n, u, out);
     if (u.dot(n) < 0) {
       EXPECT_EQ(s, contact_step(n, u, kDefault)) << "below the surface nothing changes";
       continue;
@@ -244,8 +248,8 @@ TEST(ExitRule, TwoStepsFreeTheProxy) {
       ASSERT_EQ(classify(nearest(cloud, p), out), ContactState::contact);
       int steps = 0;
       for (; steps < 9 && classify(nearest(cloud, p), out) == ContactState::contact; ++steps) {
-        const Survey survey = scenes::kernels().survey(near.around(p).view(), p.data(), regions);
-        p += contact_step(unit_normal(survey, kUp), Vec3(0.003, 0.02, 0) - p, out);
+        const ContactQuery query = scenes::kernels().contact_query(near.around(p).view(), p.data(), regions);
+        p += contact_step(unit_normal(query, kUp), Vec3(0.003, 0.02, 0) - p, out);
       }
       EXPECT_EQ(classify(nearest(cloud, p), out), ContactState::free);
       EXPECT_LE(steps, 2) << height;

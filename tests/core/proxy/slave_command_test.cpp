@@ -44,7 +44,7 @@ TEST(SlaveCommand, FollowsTheProxyWhereItIsOutside) {
 TEST(SlaveCommand, IsHeldWhileTheProxyIsInsideARegion) {
   for (const int closing : {0, 10}) {
     ProxyParameters p;
-    p.closing_steps = closing;
+    p.max_exit_steps = closing;
     ProxyRenderer renderer = scenes::renderer(p);
     renderer.on_frame(scenes::frame(PointCloud{}));
     const Vec3 before(0, 0, 0), later(0.001, 0.1, 0);

@@ -115,9 +115,9 @@ inline Better nearest_to_hip_around(const PointCloud& cloud, const Vec3& p, cons
   const PointCloud close = close_to(cloud, p, margin + 3 * radius);
   Better best{p, std::numeric_limits<double>::infinity()};
   for (int k = 0; k < directions; ++k) {
-    const Vec3 way = draw.direction();
-    for (const double share : {1.0, 0.5, 0.2, 0.05, 0.01}) {
-      const std::optional<Vec3> x = brought_out(close, p + share * radius * way, margin);
+    const Vec3 displacement = draw.direction();
+    for (const double fraction : {1.0, 0.5, 0.2, 0.05, 0.01}) {
+      const std::optional<Vec3> x = brought_out(close, p + fraction * radius * displacement, margin);
       if (!x || (*x - p).norm() > radius || !((hip - *x).norm() < best.distance)) continue;
       best = {*x, (hip - *x).norm()};
     }

@@ -54,7 +54,7 @@ std::vector<ProxyParameters> settings() {
       for (const int steps : {30, 31}) {
         ProxyParameters p;
         p.velocity_estimate = velocity, p.exit_rule = rule, p.steps_per_tick = steps;
-        p.closing_steps = 0;  // as printed
+        p.max_exit_steps = 0;  // as printed
         all.push_back(p);
       }
   return all;
@@ -70,9 +70,9 @@ TEST(UnionOfSpheres, WhatIsReportedIsTrue) {
     int ticks = 0, near = 0, at_hip = 0;
     walk_all(p, [&](const PointCloud& cloud, const Vec3& hip, const RenderOutput& out) {
       const double truth = nearest_region(cloud, out.proxy_W);
-      ASSERT_EQ(std::isfinite(out.nearest_m), truth <= p.r3_m);
-      if (std::isfinite(out.nearest_m)) {
-        ASSERT_NEAR(out.nearest_m, truth, 1e-16);
+      ASSERT_EQ(std::isfinite(out.nearest_distance_m), truth <= p.r3_m);
+      if (std::isfinite(out.nearest_distance_m)) {
+        ASSERT_NEAR(out.nearest_distance_m, truth, 1e-16);
         ++near;
       }
       const ContactState state = truth < p.r1_m    ? ContactState::entrenched
@@ -127,7 +127,7 @@ TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
   for (ProxyParameters p : settings())
     for (const int closing : {1, 10}) {
       if (closing == 1 && p.velocity_estimate) continue;
-      p.closing_steps = closing;
+      p.max_exit_steps = closing;
       int closed = 0, used_up = 0, touching = 0;
       walk_all(p, [&](const PointCloud& cloud, const Vec3&, const RenderOutput& out) {
         ASSERT_GE(nearest_region(cloud, out.proxy_W), p.r1_m - 1e-16);
@@ -148,7 +148,7 @@ TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutside) {
 TEST(UnionOfSpheres, ClosingStepsEndEveryTickOutsideAMovingCloud) {
   for (const double m_per_s : {0.02, 0.1, 0.3}) {
     ProxyParameters p;
-    p.closing_steps = 10;
+    p.max_exit_steps = 10;
     for (unsigned i = 0; i < kUnions; ++i) {
       const PointCloud still = spheres::random_union(100 + i, half_width(i));
       PointCloud cloud = still;
@@ -270,14 +270,14 @@ double mean_stiffness(const PointCloud& cloud, const Vec3& p, double own) {
 // With one step a tick the force starts from the position that the tick before ended in. Largest relative
 // deviation of force / (|u| - r_c) from what is expected there.
 template <class Expected>
-double largest_deviation(const PointCloud& cloud, double own, Expected expected, int& asked) {
+double max_deviation(const PointCloud& cloud, double own, Expected expected, int& asked) {
   ProxyParameters p;
   p.velocity_estimate = false, p.steps_per_tick = 1, p.stiffness_N_per_m = own;
   ProxyRenderer renderer = scenes::renderer(p);
   renderer.on_frame(scenes::frame(cloud));
   spheres::HandPath path(77, 0.03);
   RenderOutput before;
-  double largest = 0;
+  double max = 0;
   asked = 0;
   for (int tick = 0; tick <= 2000; ++tick) {
     const Vec3 hip = path.at(tick);
@@ -285,11 +285,11 @@ double largest_deviation(const PointCloud& cloud, double own, Expected expected,
     const double pull = (hip - before.proxy_W).norm() - p.contact_radius_m();
     if (before.state == ContactState::contact && pull > 1e-4) {
       const double want = expected(before.proxy_W);
-      largest = std::max(largest, std::abs(out.force_N.norm() / pull - want) / want), ++asked;
+      max = std::max(max, std::abs(out.force_N.norm() / pull - want) / want), ++asked;
     }
     before = out;
   }
-  return largest;
+  return max;
 }
 
 TEST(UnionOfSpheres, OneStiffnessStaysItHoweverManyPointsThereAre) {
@@ -298,7 +298,7 @@ TEST(UnionOfSpheres, OneStiffnessStaysItHoweverManyPointsThereAre) {
     cloud.stiffness_N_per_m.assign(cloud.size(), 600);
     int asked = 0;
     const auto everywhere = [](const Vec3&) { return 600.0; };
-    EXPECT_LT(largest_deviation(cloud, 250, everywhere, asked), 1e-9) << count;
+    EXPECT_LT(max_deviation(cloud, 250, everywhere, asked), 1e-9) << count;
     EXPECT_GT(asked, 100) << count;
   }
 }
@@ -316,7 +316,7 @@ TEST(UnionOfSpheres, SeveralStiffnessesGiveTheirWeightedMean) {
       return k;
     };
     int asked = 0;
-    EXPECT_LT(largest_deviation(cloud, 250, mean, asked), 1e-9) << count;
+    EXPECT_LT(max_deviation(cloud, 250, mean, asked), 1e-9) << count;
     EXPECT_GT(asked, 100) << count;
     EXPECT_GT(highest, 1.2 * lowest) << "the mean says something";
   }

@@ -132,11 +132,11 @@ TEST(Noise, IsRightAtTheEndsAndSeamsOfItsFunctions) {
 
 TEST(Noise, BoundIsTightAndHolds) {
   const Words counter = philox_inverse({0, 0, 0, 0x80000000}, {7, 8});
-  const Normals largest = draw({{7, 8}, {counter[1], counter[2], counter[3]}}, {counter[0]});
-  EXPECT_NEAR(largest[0][0], static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
-  EXPECT_NEAR(largest[2][0], -static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
-  EXPECT_LT(largest[0][0], kLargestNormal);
-  EXPECT_GT(largest[0][0], kLargestNormal - 1e-3);
+  const Normals max = draw({{7, 8}, {counter[1], counter[2], counter[3]}}, {counter[0]});
+  EXPECT_NEAR(max[0][0], static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
+  EXPECT_NEAR(max[2][0], -static_cast<double>(std::sqrt(64 * std::log(Real{2}))), kRounding);
+  EXPECT_LT(max[0][0], kMaxNormal);
+  EXPECT_GT(max[0][0], kMaxNormal - 1e-3);
 }
 
 TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
@@ -164,20 +164,18 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
   const Normals normals = draw(stream, every);
   for (const double x : {0.0, 0.5, -2.0, 3.5})
     for (const double z : {0.0, 1.0, -2.5}) {
-      const std::vector<std::uint64_t> asks(kCount, asks_of(std::abs(x), x));
+      const std::vector<std::uint64_t> asks(kCount, word_bounds(std::abs(x), x));
       std::vector<std::vector<std::uint32_t>> found;
       for (const Kernels* kernels : every_level()) {
         found.emplace_back(kCount + kLanes);
-        found.back().resize(kernels->candidates(stream, kFirst, kCount, asks.data(), asks_of(std::abs(z), z),
-                                                found.back().data()));
+        found.back().resize(kernels->candidates(stream, kFirst, kCount, asks.data(),
+                                                word_bounds(std::abs(z), z), found.back().data()));
         ASSERT_EQ(found.back(), found.front()) << kernels->isa;
       }
-      const auto is_asked = [](double normal, double least) {
-        return least == 0 || (least > 0 ? normal >= least : normal <= least);
+      const auto is_asked = [](double normal, double min) {
+        return min == 0 || (min > 0 ? normal >= min : normal <= min);
       };
-      const auto has_sign = [](double normal, double least) {
-        return least == 0 || (normal > 0) == (least > 0);
-      };
+      const auto has_sign = [](double normal, double min) { return min == 0 || (normal > 0) == (min > 0); };
       std::size_t next = 0;
       for (std::uint32_t i = 0; i < kCount; ++i) {
         const bool is_found = next < found[0].size() && found[0][next] == kFirst + i;
@@ -200,7 +198,7 @@ TEST(Uniforms, AreTheWordsOfPhilox) {
   const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
   for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
     for (const std::uint32_t point : {0u, 1u, 77u, ~0u}) {
-      const auto got = uniforms(noise_stream(key, NoiseUse::delivery, frame), point);
+      const auto got = uniforms(noise_stream(key, NoiseUse::transport, frame), point);
       const Words want = philox({point, frame | 2u << 28, 4000000001, 17}, {0x9abcdef0, 0x12345678});
       for (std::size_t k = 0; k < 4; ++k)
         EXPECT_EQ(got[k], static_cast<double>((static_cast<Real>(want[k]) + 0.5L) * 0x1p-32L))
@@ -223,7 +221,7 @@ TEST(Uniforms, AreEvenlySpread) {
   constexpr std::uint32_t kCount = 50000;
   double mean[4] = {}, square[4] = {}, product = 0;
   for (std::uint32_t frame = 0; frame < kCount; ++frame) {
-    const auto u = uniforms(noise_stream({11}, NoiseUse::delivery, frame), 0);
+    const auto u = uniforms(noise_stream({11}, NoiseUse::transport, frame), 0);
     for (std::size_t k = 0; k < 4; ++k)
       mean[k] += (u[k] - 0.5) / kCount, square[k] += (u[k] - 0.5) * (u[k] - 0.5) / kCount;
     product += (u[0] - 0.5) * (u[1] - 0.5) / kCount;
@@ -246,7 +244,7 @@ TEST(Noise, EveryPartOfTheKeyGivesItsOwnNoise) {
   const std::vector<NoiseStream> streams{noise_stream(base, use, 8),
                                          noise_stream(base, use, 9),
                                          noise_stream(base, NoiseUse::depth, 8),
-                                         noise_stream(base, NoiseUse::delivery, 8),
+                                         noise_stream(base, NoiseUse::transport, 8),
                                          noise_stream({6, 6, 7}, use, 8),
                                          noise_stream({5 + (std::uint64_t{1} << 32), 6, 7}, use, 8),
                                          noise_stream({5, 7, 7}, use, 8),
@@ -280,7 +278,7 @@ TEST(Noise, IsStandardNormal) {
     EXPECT_LT(std::abs(correlation(next, column)), 5 / std::sqrt(n)) << "between neighbours";
 
     std::sort(column.begin(), column.end());
-    EXPECT_LT(std::max(-column.front(), column.back()), kLargestNormal);
+    EXPECT_LT(std::max(-column.front(), column.back()), kMaxNormal);
     double distance = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const double cumulative = 0.5 * std::erfc(-column[i] / std::sqrt(2.0)), rank = static_cast<double>(i);

@@ -120,16 +120,16 @@ TEST(SurfaceVelocity, IntervalIsBetweenTheCaptures) {
 }
 
 TEST(SurfaceVelocity, PredictionIsBoundedWhenFramesStayAway) {
-  const double longest = 0.1;
-  SurfaceVelocity velocity(longest);
+  const double max_length = 0.1;
+  SurfaceVelocity velocity(max_length);
   velocity.on_frame(0, kUp);
   velocity.on_frame(kInterval, kUp);
   velocity.on_step(0.005 * kUp);
   const double v = velocity.m_per_s();
-  EXPECT_NEAR(velocity.on_frame(kInterval + 60, kUp).y(), v * longest, 1e-16);
+  EXPECT_NEAR(velocity.on_frame(kInterval + 60, kUp).y(), v * max_length, 1e-16);
   velocity.on_step(0.001 * kUp);
   // What it was carried and the step, over the true time.
-  EXPECT_NEAR(velocity.m_per_s(), (v * longest + 0.001) / 60, 1e-15);
+  EXPECT_NEAR(velocity.m_per_s(), (v * max_length + 0.001) / 60, 1e-15);
   EXPECT_NEAR(velocity.on_frame(2 * kInterval + 60, kUp).y(), velocity.m_per_s() * kInterval, 1e-15);
 }
 

@@ -105,7 +105,7 @@ TEST(GodObject, NeverPassesAMeshThatRests) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     cloud.x[i] += noise.x[i], cloud.y[i] += 3 * noise.y[i], cloud.z[i] += noise.z[i];
   GodObjectRenderer r = over(cloud);
-  GridMesh mesh(kDefault.edge_limit_m);
+  GridMesh mesh(kDefault.max_edge_length_m);
   BruteForceSearch search(cloud);
   mesh.reserve(search.size());
   GatheredPoints points;
@@ -120,7 +120,7 @@ TEST(GodObject, NeverPassesAMeshThatRests) {
     Vec3 from = p;
     while (const auto hit = mesh.first_crossing(from, Vec3(p.x(), 0.1, p.z()))) {
       ++count;
-      from.y() += hit->share() * (0.1 - from.y()) + 1e-9;
+      from.y() += hit->fraction() * (0.1 - from.y()) + 1e-9;
     }
     return count % 2 == 0;
   };
@@ -181,9 +181,9 @@ TEST(GodObject, TakesTheStiffnessOfThePoints) {
 
 TEST(GodObject, TheOffsetMustBeSmallBesideTheEdges) {
   GodObjectParameters p;
-  EXPECT_EQ(conflict(p), "");
-  p.edge_limit_m = 0.00005;
-  EXPECT_EQ(conflict(p), "surface_offset_m = 1e-05: allowed up to a tenth of edge_limit_m = 5e-05");
+  EXPECT_EQ(validate(p), "");
+  p.max_edge_length_m = 0.00005;
+  EXPECT_EQ(validate(p), "surface_offset_m = 1e-05: allowed up to a tenth of max_edge_length_m = 5e-05");
 }
 
 }  // namespace

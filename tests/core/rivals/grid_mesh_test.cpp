@@ -99,7 +99,7 @@ TEST(GridMesh, IsTheSameForEverySearchAndHasAllThatMeetTheBall) {
     const auto a = all.first_crossing(from, to), b = near.first_crossing(from, to);
     ASSERT_EQ(a.has_value(), b.has_value());
     if (a) {
-      EXPECT_EQ(a->share(), b->share());
+      EXPECT_EQ(a->fraction(), b->fraction());
     }
   }
 }
@@ -113,7 +113,7 @@ TEST(GridMesh, NothingPassesBetweenTriangles) {
       const auto down = mesh.first_crossing(at + Vec3(1e-4, 0.001, 0), at - Vec3(1e-4, 0.001, 0));
       const auto up = mesh.first_crossing(at - Vec3(0, 0.001, 0), at + Vec3(0, 0.001, 0));
       ASSERT_TRUE(down && up) << i << " " << j;
-      EXPECT_NEAR(down->share(), 0.5, 1e-12);
+      EXPECT_NEAR(down->fraction(), 0.5, 1e-12);
     }
   EXPECT_FALSE(mesh.first_crossing({0, 0.001, 0}, {0.003, 1e-9, 0}));
   EXPECT_FALSE(mesh.first_crossing({0, 0, 0}, {0, -0.001, 0})) << "from the plane itself there is no side";
@@ -125,17 +125,17 @@ TEST(GridMesh, NothingPassesBetweenTriangles) {
 TEST(PlaneConstraints, OneTwoAndThreePlanes) {
   PlaneConstraints planes(1e-12);
   EXPECT_EQ(planes.nearest({1, 2, 3}).place, Vec3(1, 2, 3));
-  EXPECT_EQ(planes.nearest({1, 2, 3}).held_by, 0);
+  EXPECT_EQ(planes.nearest({1, 2, 3}).active_planes, 0);
   planes.add(Vec3::UnitY(), {5, 1, 5}, 0.5);
   EXPECT_EQ(planes.nearest({1, -2, 3}).place, Vec3(1, 1.5, 3));
   const Vec3 tilted = Vec3(-1, 1, 0).normalized();
   planes.add(tilted, {2, 1.5, 0}, 0);
   EXPECT_NEAR((planes.nearest({2.5, -2, 3}).place - Vec3(2, 1.5, 3)).norm(), 0, 1e-12) << "the valley";
-  EXPECT_EQ(planes.nearest({2.5, -2, 3}).held_by, 2);
-  EXPECT_EQ(planes.nearest({0, -2, 3}).held_by, 1);
+  EXPECT_EQ(planes.nearest({2.5, -2, 3}).active_planes, 2);
+  EXPECT_EQ(planes.nearest({0, -2, 3}).active_planes, 1);
   planes.add(Vec3::UnitZ(), {0, 0, 4}, 0);
   EXPECT_NEAR((planes.nearest({2.5, -2, 3}).place - Vec3(2, 1.5, 4)).norm(), 0, 1e-12) << "the corner";
-  EXPECT_EQ(planes.nearest({2.5, -2, 3}).held_by, 3);
+  EXPECT_EQ(planes.nearest({2.5, -2, 3}).active_planes, 3);
 }
 
 // The nearest of all: no random place that obeys the planes is nearer.
@@ -167,7 +167,7 @@ TEST(PlaneConstraints, PlanesThatLeaveNoRoom) {
   planes.add(Vec3::UnitY(), Vec3::Zero(), 1);
   planes.add(-Vec3::UnitY(), Vec3::Zero(), 1);
   EXPECT_FALSE(planes.nearest(Vec3::Zero()).found);
-  for (std::size_t i = 2; i < PlaneConstraints::kMost; ++i)
+  for (std::size_t i = 2; i < PlaneConstraints::kMaxCount; ++i)
     EXPECT_TRUE(planes.add(Vec3::UnitX(), Vec3::Zero(), 0));
   EXPECT_FALSE(planes.add(Vec3::UnitX(), Vec3::Zero(), 0));
 }

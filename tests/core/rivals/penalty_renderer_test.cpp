@@ -34,7 +34,7 @@ TEST(PenaltyRenderer, PushesByHowFarTheNearestPointIsInTheBall) {
     const RenderOutput out = r.step({Vec3(0, height, 0)}, 0);
     EXPECT_NEAR(out.force_N.y(), kStiffness_N_per_m * (kRadius_m - height), 1e-9);
     EXPECT_NEAR(std::hypot(out.force_N.x(), out.force_N.z()), 0, 1e-9);
-    EXPECT_NEAR(out.nearest_m, height, 1e-12);
+    EXPECT_NEAR(out.nearest_distance_m, height, 1e-12);
     EXPECT_EQ(out.state, ContactState::contact);
     EXPECT_EQ(out.proxy_W, Vec3(0, height, 0));
   }
@@ -96,7 +96,7 @@ TEST(PenaltyRenderer, AnEmptyFrameHoldsNothingAndAStaleOneIsTold) {
   r.on_frame(scenes::frame({}, 1));
   const RenderOutput empty = r.step({Vec3(0, 0.001, 0)}, 0.04);
   EXPECT_TRUE(empty.force_N.isZero(0));
-  EXPECT_TRUE(std::isinf(empty.nearest_m));
+  EXPECT_TRUE(std::isinf(empty.nearest_distance_m));
   r.on_frame(scenes::frame(point_at(Vec3::Zero()), 0));
   const RenderOutput stale = r.step({Vec3(0, 0.001, 0)}, 0.041);
   EXPECT_EQ(stale.status, RenderStatus::stale_frame_dropped);
@@ -106,9 +106,9 @@ TEST(PenaltyRenderer, AnEmptyFrameHoldsNothingAndAStaleOneIsTold) {
 
 TEST(PenaltyRenderer, TheBallMustBeSmallerThanWhereNormalsComeFrom) {
   PenaltyParameters p;
-  EXPECT_EQ(conflict(p), "");
+  EXPECT_EQ(validate(p), "");
   p.contact_radius_m = p.r3_m;
-  EXPECT_EQ(conflict(p), "contact_radius_m = 0.01: allowed below r3_m = 0.01");
+  EXPECT_EQ(validate(p), "contact_radius_m = 0.01: allowed below r3_m = 0.01");
 }
 
 }  // namespace

@@ -66,10 +66,12 @@ TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   const PointCloud from = scenes::random_cloud(400, 0.3, 23), to = scenes::random_cloud(400, 0.06, 24);
   int hits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
-    const Vec3 p = from.point(k), way = to.point(k) - p, u = way.normalized();
+    const Vec3 p = from.point(k), displacement = to.point(k) - p, u = displacement.normalized();
     const double expected = scenes::kernels().first_hit(all.view(), p.data(), u.data(), kContactRadius);
-    EXPECT_EQ(near.first_hit(p, u, kContactRadius, way.norm()), std::min(expected, way.norm())) << k;
-    hits += expected < way.norm() ? 1 : 0;
+    EXPECT_EQ(near.first_hit(p, u, kContactRadius, displacement.norm()),
+              std::min(expected, displacement.norm()))
+        << k;
+    hits += expected < displacement.norm() ? 1 : 0;
   }
   EXPECT_GT(hits, 200);
 }

@@ -33,8 +33,8 @@ Vector<N> nlopt_nearest(const Problem<N>& problem, double tolerance = 1e-10) {
   nlopt_set_xtol_rel(solver, tolerance);
   nlopt_set_maxeval(solver, 200);
   Vector<N> y = problem.target;
-  double least = 0;
-  nlopt_optimize(solver, y.data(), &least);
+  double min = 0;
+  nlopt_optimize(solver, y.data(), &min);
   nlopt_destroy(solver);
   return y;
 }

@@ -94,11 +94,11 @@ inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen:
   for (int step = 0; step < 50 + 10 * count; ++step) {
     const Eigen::VectorXd towards = generators.transpose() * (x - cone.nearest);
     Eigen::Index entering = -1;
-    double most = 1e-12 * x.norm();
+    double max = 1e-12 * x.norm();
     for (Eigen::Index j = 0; j < count; ++j) {
       const auto k = static_cast<std::size_t>(j);
-      if (in[k] || (was_dropped[k] && !may_return) || towards[j] <= most * generators.col(j).norm()) continue;
-      most = towards[j] / generators.col(j).norm(), entering = j;
+      if (in[k] || (was_dropped[k] && !may_return) || towards[j] <= max * generators.col(j).norm()) continue;
+      max = towards[j] / generators.col(j).norm(), entering = j;
     }
     if (entering < 0) return cone;
     in[static_cast<std::size_t>(entering)] = 1;
@@ -110,11 +110,11 @@ inline ConePoint nearest_of_cone(const Eigen::MatrixXd& generators, const Eigen:
       Eigen::VectorXd wanted = Eigen::VectorXd::Zero(count);
       const Eigen::MatrixXd spanning = generators(Eigen::all, basis);
       wanted(basis) = spanning.colPivHouseholderQr().solve(x);
-      double share = 1;
+      double fraction = 1;
       for (const Eigen::Index j : basis)
-        if (wanted[j] <= 0) share = std::min(share, cone.weight[j] / (cone.weight[j] - wanted[j]));
-      cone.weight += share * (wanted - cone.weight);
-      if (share == 1) break;
+        if (wanted[j] <= 0) fraction = std::min(fraction, cone.weight[j] / (cone.weight[j] - wanted[j]));
+      cone.weight += fraction * (wanted - cone.weight);
+      if (fraction == 1) break;
       for (const Eigen::Index j : basis) {
         if (cone.weight[j] > 1e-14) continue;
         cone.weight[j] = 0, ++cone.dropped;
@@ -135,7 +135,7 @@ struct LeastDistance {
   Vector<N> y;
 };
 template <int N>
-LeastDistance<N> least_distance(const Problem<N>& problem) {
+LeastDistance<N> min_distance(const Problem<N>& problem) {
   Eigen::MatrixXd generators(N + 1, problem.size());
   for (int i = 0; i < problem.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);

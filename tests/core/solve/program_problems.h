@@ -65,27 +65,27 @@ Problem<N> problem(Kind kind, int count, Random& random) {
   const Vector<N> wall = vector<N>(random).normalized();
   while (p.size() < count) {
     Vector<N> row = vector<N>(random);
-    double room = 0;
+    double buffer = 0;
     switch (kind) {
       case Kind::fulfillable:
       case Kind::duplicates:
-        room = std::abs(normal(random));
+        buffer = std::abs(normal(random));
         break;
       case Kind::any:
-        room = 1 + normal(random);
+        buffer = 1 + normal(random);
         break;
       case Kind::wedge:
         row = (p.size() % 2 == 0 ? 1 : -1) * wall + angle * row;
-        room = 0.1 * angle * std::abs(normal(random));
+        buffer = 0.1 * angle * std::abs(normal(random));
         break;
       case Kind::patch:
         row = contact<N>(random, curved);
-        room = 0.1 * std::abs(normal(random));
+        buffer = 0.1 * std::abs(normal(random));
         break;
       default:
         break;
     }
-    p.add(row, row.dot(middle) - room);
+    p.add(row, row.dot(middle) - buffer);
     if (kind == Kind::duplicates)
       p.add(row, p.bounds.back()), p.add(3 * row, 3 * p.bounds[p.bounds.size() - 2]);
     if (kind == Kind::equalities && p.size() < N) p.add(-row, -p.bounds.back());
@@ -113,16 +113,16 @@ void expect_proof(const Problem<N>& p, const ProgramResult<N>& result) {
   EXPECT_LT(p.violation(result.y), 1e-12);
   ASSERT_LE(result.active_count, N);
   Vector<N> pull = p.target - result.y;
-  double largest = 1;
+  double max = 1;
   for (int j = 0; j < result.active_count; ++j) {
     const auto i = static_cast<std::size_t>(result.active[j]);
     ASSERT_LT(i, p.rows.size());
     EXPECT_GE(result.multiplier[j], 0);
     EXPECT_LT(std::abs(p.bounds[i] - p.rows[i].dot(result.y)) / p.rows[i].norm(), 1e-12);
     pull += result.multiplier[j] * p.rows[i];
-    largest = std::max(largest, result.multiplier[j] * p.rows[i].norm());
+    max = std::max(max, result.multiplier[j] * p.rows[i].norm());
   }
-  EXPECT_LT(pull.norm(), 1e-12 * largest);
+  EXPECT_LT(pull.norm(), 1e-12 * max);
 }
 
 }  // namespace remote_touch::programs

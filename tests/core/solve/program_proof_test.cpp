@@ -25,7 +25,7 @@ bool expect_right(const Problem<N>& p) {
   if (found)
     expect_proof(p, result);
   else
-    EXPECT_LT(peers::least_distance(p).gap, 1e-7) << "no proof that there is no answer";
+    EXPECT_LT(peers::min_distance(p).gap, 1e-7) << "no proof that there is no answer";
   return found;
 }
 

@@ -12,7 +12,7 @@
 #include "core/tool/motion/look_ahead_motion.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {
@@ -74,7 +74,7 @@ struct Held {
         leaves(leaves_),
         contacts(leaves, ToolParameters{}.look_ahead_m, scenes::kernels()),
         motion({}, *tool, 0.05) {}
-  void frame(const PointCloud& cloud) { contacts.on_frame(formed<RegionTree>(cloud)), updated = true; }
+  void frame(const PointCloud& cloud) { contacts.on_frame(formatted<RegionTree>(cloud)), updated = true; }
   // Ticks until the tool rests.
   void move_to(const ToolPose& device) {
     for (int tick = 0; tick < 200; ++tick)
@@ -135,10 +135,10 @@ TEST(RegionContacts, NoLeafEndsInsideARegion) {
   Held held(kBox, spheres_of_box());
   held.frame(cloud);
   held.pose.p_W = {0, 0.15, 0};
-  const PointCloud ways = scenes::random_cloud(60, 0.08, 4), turns = scenes::random_cloud(60, 1.5, 5);
+  const PointCloud directions = scenes::random_cloud(60, 0.08, 4), turns = scenes::random_cloud(60, 1.5, 5);
   double touching = 0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    held.move_to({ways.point(i), rotation(turns.point(i))});
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    held.move_to({directions.point(i), rotation(turns.point(i))});
     const double deep_m = deepest_m(*held.leaves, held.pose, cloud);
     EXPECT_LT(deep_m, kSettled_m) << i;
     touching += deep_m > -kSettled_m ? 1 : 0;
@@ -176,12 +176,12 @@ TEST(RegionContacts, ComesToRestInAnObtuseCrease) {
       const ToolPose device{{1e-4, 0.025, -2e-4}, rotation({0.02, 0.3, -0.01})};
       held.move_to(device);
       const ToolPose rest = held.pose;
-      double way = 0;
+      double displacement = 0;
       for (int tick = 0; tick < 50; ++tick) {
         held.motion.move(held.pose, device, held.contacts, false);
-        way = std::max(way, (held.pose.p_W - rest.p_W).norm());
+        displacement = std::max(displacement, (held.pose.p_W - rest.p_W).norm());
       }
-      EXPECT_LT(way, 1e-5) << apart_m;
+      EXPECT_LT(displacement, 1e-5) << apart_m;
       EXPECT_LT(deepest_m(*held.leaves, held.pose, cloud), kSettled_m) << apart_m;
     }
   }
@@ -214,7 +214,7 @@ TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
   const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts contacts(one_leaf(0.006), look_ahead_m, scenes::kernels());
-  contacts.on_frame(formed<RegionTree>(cloud));
+  contacts.on_frame(formatted<RegionTree>(cloud));
   int pairs = 0, kept = 0;
   for (int i = 0; i < 100; ++i) {
     const double a = 0.0628 * i, out_m = 0.0505 - 1e-5 * i;
@@ -226,11 +226,11 @@ TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
       bool obeys = true;
       for (const ToolContact& c : near.contacts) obeys = obeys && c.n_T.dot(u) >= c.depth_m;
       for (std::size_t j = 0; obeys && j < cloud.size(); ++j) {
-        const Vec3 way = p_W - cloud.point(j);
-        const double gap_m = way.norm() - 0.006 - kRadius_m;
+        const Vec3 displacement = p_W - cloud.point(j);
+        const double gap_m = displacement.norm() - 0.006 - kRadius_m;
         if (gap_m > look_ahead_m) continue;
         ++pairs;
-        EXPECT_GE(way.normalized().dot(u), -gap_m - 1e-12);
+        EXPECT_GE(displacement.normalized().dot(u), -gap_m - 1e-12);
       }
     }
   }
@@ -240,17 +240,17 @@ TEST(RegionContacts, TheContactsOfALeafStandForAllItsPairs) {
 
 // The same contacts from every level of the kernels, and from whatever was looked at before.
 TEST(RegionContacts, DoNotDependOnTheLevelOrTheLookBefore) {
-  const PointCloud cloud = wheel(), ways = scenes::random_cloud(60, 0.05, 4);
+  const PointCloud cloud = wheel(), directions = scenes::random_cloud(60, 0.05, 4);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));
-  slowest.on_frame(formed<RegionTree>(cloud));
+  slowest.on_frame(formatted<RegionTree>(cloud));
   std::size_t found = 0;
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const ToolPose pose{ways.point(i), rotation(20 * ways.point(i))};
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const ToolPose pose{directions.point(i), rotation(20 * directions.point(i))};
       RegionContacts fresh(spheres_of_box(), look_ahead_m, kernels_for(isa));
-      fresh.on_frame(formed<RegionTree>(cloud));
+      fresh.on_frame(formatted<RegionTree>(cloud));
       const NearContacts a = fresh.near(pose, 0), b = slowest.near(pose, 0);
       EXPECT_EQ(a.deepest_m, b.deepest_m);
       ASSERT_EQ(a.contacts.size(), b.contacts.size());
@@ -291,34 +291,34 @@ TEST(RegionTouch, IsThatOfAllPairs) {
   const double look_ahead_m = ToolParameters{}.look_ahead_m, own = 600;
   const auto leaves = spheres_of_box();
   RegionContacts contacts(leaves, look_ahead_m, scenes::kernels());
-  contacts.on_frame(formed<RegionTree>(cloud));
+  contacts.on_frame(formatted<RegionTree>(cloud));
   int touching = 0, clear = 0;
   for (int i = 0; i < 60; ++i) {
     const ToolPose pose{{0.04, 0.0555 - 2e-4 * i + (i % 4 == 0 ? 0.02 : 0), 0.01},
                         rotation({0.02, 0.1 * i, 0})};
-    double nearest_m = std::numeric_limits<double>::infinity(), weights = 0, weighted = 0;
-    int pairs = 0, tool_leaves = 0;
+    double nearest_distance_m = std::numeric_limits<double>::infinity(), weights = 0, weighted = 0;
+    int pairs = 0, max_tool_leaves = 0;
     for (const Sphere& leaf : leaves->leaves()) {
       const int before = pairs;
       for (std::size_t j = 0; j < cloud.size(); ++j) {
         const double gap_m = (pose.p_W + pose.q_WT * leaf.centre - cloud.point(j)).norm() - leaf.radius_m -
                              cloud.fixture_radius_m[j];
-        if (gap_m <= look_ahead_m) nearest_m = std::min(nearest_m, gap_m);
+        if (gap_m <= look_ahead_m) nearest_distance_m = std::min(nearest_distance_m, gap_m);
         if (gap_m > 1e-4) continue;
         const double k = cloud.stiffness_N_per_m[j], weight = std::clamp((1e-4 - gap_m) / 2e-4, 0.0, 1.0);
         ++pairs, weights += weight, weighted += weight * (std::isnan(k) ? own : k);
       }
-      tool_leaves += pairs > before ? 1 : 0;
+      max_tool_leaves += pairs > before ? 1 : 0;
     }
     const RegionTouch touch = contacts.touched(pose, own);
     EXPECT_EQ(touch.leaf_pairs, pairs);
-    EXPECT_EQ(touch.tool_leaves, tool_leaves);
+    EXPECT_EQ(touch.max_tool_leaves, max_tool_leaves);
     EXPECT_NEAR(touch.stiffness_N_per_m, pairs > 0 ? weighted / weights : own, 1e-6);
-    if (std::isfinite(nearest_m))
-      EXPECT_NEAR(touch.nearest_m, nearest_m, 1e-12);
+    if (std::isfinite(nearest_distance_m))
+      EXPECT_NEAR(touch.nearest_distance_m, nearest_distance_m, 1e-12);
     else
-      EXPECT_EQ(touch.nearest_m, nearest_m);
-    touching += pairs > 0, clear += std::isinf(nearest_m);
+      EXPECT_EQ(touch.nearest_distance_m, nearest_distance_m);
+    touching += pairs > 0, clear += std::isinf(nearest_distance_m);
   }
   EXPECT_GT(touching, 20);
   EXPECT_GT(clear, 10);

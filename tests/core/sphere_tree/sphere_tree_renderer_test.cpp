@@ -57,7 +57,7 @@ TEST(SphereTreeRenderer, ABallIsKeptOutByASpringOfItsDepth) {
   EXPECT_EQ(out.contact_count, 1);
   EXPECT_EQ(out.tool->contact_clusters, 1);
   EXPECT_EQ(out.tool->active_constraints, 1);
-  EXPECT_LT(out.tool->penetration_m, kSettled_m);
+  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
   EXPECT_NEAR((out.normal_W - Vec3::UnitY()).norm(), 0, 1e-6);
   EXPECT_TRUE(out.converged);
 }
@@ -70,7 +70,7 @@ TEST(SphereTreeRenderer, BeyondTheLookAheadNothingIsTold) {
   EXPECT_EQ(out.proxy_W, device.position_W);
   EXPECT_EQ(out.tool->orientation_W.coeffs(), device.orientation_W.normalized().coeffs());
   EXPECT_TRUE(out.force_N.isZero(0) && out.tool->torque_Nm.isZero(0));
-  EXPECT_TRUE(std::isinf(out.nearest_m));
+  EXPECT_TRUE(std::isinf(out.nearest_distance_m));
   EXPECT_EQ(out.state, ContactState::free);
 }
 
@@ -78,9 +78,9 @@ TEST(SphereTreeRenderer, WithinTheLookAheadTheGapIsTold) {
   SphereTreeRenderer r = renderer();
   r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
   const RenderOutput out = held(r, {{0, 0.051, 0}});
-  EXPECT_NEAR(out.nearest_m, 0.001, 1e-12);
+  EXPECT_NEAR(out.nearest_distance_m, 0.001, 1e-12);
   EXPECT_EQ(out.contact_count, 0);
-  EXPECT_EQ(out.tool->penetration_m, 0);
+  EXPECT_EQ(out.tool->tool_penetration_m, 0);
 }
 
 // Points without r_f have no region, and one of them is passed through.
@@ -114,7 +114,7 @@ TEST(SphereTreeRenderer, ARodHeldAtOneEndTurns) {
   EXPECT_GT(rotation_vector(out.tool->orientation_W).z(), 0.02);  // the free end goes on down
   EXPECT_GT(out.tool->torque_Nm.z(), 0.001);
   EXPECT_GT(out.force_N.y(), 0.5);
-  EXPECT_LT(out.tool->penetration_m, kSettled_m);
+  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
 }
 
 TEST(SphereTreeRenderer, AFrameThatSwallowsTheToolPushesItOut) {
@@ -123,7 +123,7 @@ TEST(SphereTreeRenderer, AFrameThatSwallowsTheToolPushesItOut) {
   held(r, {{0, 0.02, 0}});
   r.on_frame(scenes::frame(regions_at({{0, 0, 0}}), 1));
   const RenderOutput out = r.step({{0, 0.02, 0}}, 1);
-  EXPECT_LT(out.tool->penetration_m, kSettled_m);
+  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
   EXPECT_NEAR(out.proxy_W.y(), 0.05, 2e-4);
 }
 
@@ -142,8 +142,8 @@ TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
   std::set<std::string> all, kept;
   for (const Parameter& parameter : parameters(p)) all.insert(parameter.name);
   for (const Parameter& parameter : region_parameters(p)) kept.insert(parameter.name);
-  for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_share",
-                            "velocity_estimate", "longest_prediction_s"}) {
+  for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio",
+                            "velocity_estimate", "max_prediction_s"}) {
     EXPECT_TRUE(all.erase(other)) << other;
   }
   EXPECT_EQ(kept, all);

@@ -172,23 +172,23 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
                    regions = tree_of(random_spheres(4000, 0.05, 2), 100);
   TreeCollision collision(tool, scenes::kernels());
   collision.on_frame(regions);
-  std::vector<LeafPair> room(tool.leaves().size() * regions.leaves().size());
-  std::size_t most = 0, none = 0;
+  std::vector<LeafPair> buffer(tool.leaves().size() * regions.leaves().size());
+  std::size_t max = 0, none = 0;
   for (int i = 0; i < 40; ++i) {
     const ToolPose pose{{0.008 * i - 0.1, 0.004 * i, 0.01}, rotation({0.1 * i, 0.3, -0.05 * i})};
     for (const double margin_m : {-0.001, 0.0, 0.004}) {
       std::vector<LeafPair> expected = every_pair(tool, pose, regions, margin_m);
-      const std::span<const LeafPair> pairs = std::span(room).first(collision.near(pose, margin_m, room));
+      const std::span<const LeafPair> pairs = std::span(buffer).first(collision.near(pose, margin_m, buffer));
       ASSERT_EQ(pairs.size(), expected.size());
       for (std::size_t k = 0; k < pairs.size(); ++k) {
         EXPECT_EQ(pairs[k].tool, expected[k].tool);
         EXPECT_EQ(pairs[k].region, expected[k].region);
         EXPECT_EQ(pairs[k].gap_m, expected[k].gap_m);
       }
-      most = std::max(most, pairs.size()), none += pairs.empty() ? 1 : 0;
+      max = std::max(max, pairs.size()), none += pairs.empty() ? 1 : 0;
     }
   }
-  EXPECT_GT(most, 500u);
+  EXPECT_GT(max, 500u);
   EXPECT_GT(none, 10u);
 }
 
@@ -198,27 +198,27 @@ TEST(TreeCollision, KeepsTheDeepestPairsWhereRoomEnds) {
                    regions = tree_of(random_spheres(4000, 0.05, 2), 100);
   TreeCollision collision(tool, scenes::kernels());
   collision.on_frame(regions);
-  std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), room(100);
-  ASSERT_EQ(collision.near({}, 0.002, room), expected.size());
+  std::vector<LeafPair> expected = every_pair(tool, {}, regions, 0.002), buffer(100);
+  ASSERT_EQ(collision.near({}, 0.002, buffer), expected.size());
   ASSERT_GT(expected.size(), 1000u);
   std::stable_sort(expected.begin(), expected.end(),
                    [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
-  std::stable_sort(room.begin(), room.end(),
+  std::stable_sort(buffer.begin(), buffer.end(),
                    [](const LeafPair& a, const LeafPair& b) { return a.gap_m < b.gap_m; });
-  for (std::size_t i = 0; i < room.size(); ++i) {
-    EXPECT_EQ(room[i].tool, expected[i].tool);
-    EXPECT_EQ(room[i].region, expected[i].region);
+  for (std::size_t i = 0; i < buffer.size(); ++i) {
+    EXPECT_EQ(buffer[i].tool, expected[i].tool);
+    EXPECT_EQ(buffer[i].region, expected[i].region);
   }
   EXPECT_EQ(collision.near({}, 0.002, {}), expected.size());
 }
 
 TEST(TreeCollision, NothingIsNearWhatIsEmptyOrNoNumber) {
   const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
-  std::vector<LeafPair> room(100);
+  std::vector<LeafPair> buffer(100);
   const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
     TreeCollision collision(of, scenes::kernels());
     collision.on_frame(regions);
-    return collision.near(pose, 1, room);
+    return collision.near(pose, 1, buffer);
   };
   EXPECT_GT(count(tool, tool, {}), 100u);
   EXPECT_EQ(count(tool, nothing, {}), 0u);

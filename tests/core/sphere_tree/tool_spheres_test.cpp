@@ -22,13 +22,13 @@ constexpr double kRounding_m = 1e-9;
 
 // One after the other, each that covers most of what is left.
 std::vector<Sphere> plain_cover(const std::vector<Vec3>& points, const std::vector<Sphere>& choice,
-                                double growth_m, std::size_t most) {
+                                double inflation_m, std::size_t max) {
   std::vector<Vec3> left = points;
   std::vector<Sphere> taken;
-  while (!left.empty() && taken.size() <= most) {
+  while (!left.empty() && taken.size() <= max) {
     std::size_t best = 0, best_count = 0;
     const auto covers = [&](const Sphere& sphere, const Vec3& p) {
-      return (p - sphere.centre).norm() <= sphere.radius_m + growth_m;
+      return (p - sphere.centre).norm() <= sphere.radius_m + inflation_m;
     };
     for (std::size_t i = 0; i < choice.size(); ++i) {
       const auto count = static_cast<std::size_t>(
@@ -36,7 +36,7 @@ std::vector<Sphere> plain_cover(const std::vector<Vec3>& points, const std::vect
       if (count > best_count) best = i, best_count = count;
     }
     if (best_count == 0) break;
-    taken.push_back({choice[best].centre, choice[best].radius_m + growth_m});
+    taken.push_back({choice[best].centre, choice[best].radius_m + inflation_m});
     std::erase_if(left, [&](const Vec3& p) { return covers(choice[best], p); });
   }
   return taken;
@@ -50,12 +50,12 @@ TEST(SphereCover, TakesWhatAPlainSearchTakes) {
   for (std::size_t i = 0; i < centres.size(); ++i)
     choice.push_back({centres.point(i), 0.005 + 1e-5 * static_cast<double>(i % 700)});
   const SphereCover cover(places, choice, 0.004);
-  for (const double growth_m : {0.0, 0.004, 0.02}) {
-    const SphereCover::Result result = cover.cover(growth_m, 60);
-    const std::vector<Sphere> expected = plain_cover(places, choice, growth_m, 60);
-    ASSERT_EQ(result.spheres.size(), expected.size()) << growth_m;
+  for (const double inflation_m : {0.0, 0.004, 0.02}) {
+    const SphereCover::Result result = cover.cover(inflation_m, 60);
+    const std::vector<Sphere> expected = plain_cover(places, choice, inflation_m, 60);
+    ASSERT_EQ(result.spheres.size(), expected.size()) << inflation_m;
     for (std::size_t i = 0; i < expected.size(); ++i)
-      EXPECT_EQ(result.spheres[i].centre, expected[i].centre) << growth_m << ", sphere " << i;
+      EXPECT_EQ(result.spheres[i].centre, expected[i].centre) << inflation_m << ", sphere " << i;
   }
 }
 
@@ -67,7 +67,7 @@ TEST(ToolSpheres, CoverTheToolTheCloserTheMoreThereAre) {
       const ToolSpheres made = make_tool_spheres(tool, leaves);
       EXPECT_LE(made.spheres.leaves().size(), static_cast<std::size_t>(leaves));
       EXPECT_LT(made.outside_m, before_m) << leaves;
-      EXPECT_LE(made.outside_m, made.growth_m + kRounding_m) << leaves;
+      EXPECT_LE(made.outside_m, made.inflation_m + kRounding_m) << leaves;
       EXPECT_LT(made.inside_m, kRounding_m) << leaves;
       before_m = std::max(made.outside_m, 1e-4);
     }
@@ -78,21 +78,23 @@ TEST(ToolSpheres, CoverTheToolTheCloserTheMoreThereAre) {
 TEST(ToolSpheres, WhatIsToldOfABoxIsTrue) {
   const Vec3 half_m(0.02, 0.005, 0.01);
   const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
-  const PointCloud ways = scenes::random_cloud(3000, 1, 8);
+  const PointCloud directions = scenes::random_cloud(3000, 1, 8);
   double outside_m = 0, inside_m = 0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  for (std::size_t i = 0; i < directions.size(); ++i) {
     for (const Sphere& leaf : made.spheres.leaves())
       outside_m = std::max(
-          outside_m, scenes::box_distance(half_m, leaf.centre + leaf.radius_m * ways.point(i).normalized()));
-    const Vec3 way = ways.point(i) / ways.point(i).cwiseAbs().maxCoeff();  // one side of the box
-    double least_m = 1;
+          outside_m,
+          scenes::box_distance(half_m, leaf.centre + leaf.radius_m * directions.point(i).normalized()));
+    const Vec3 path_length =
+        directions.point(i) / directions.point(i).cwiseAbs().maxCoeff();  // one side of the box
+    double min_m = 1;
     for (const Sphere& leaf : made.spheres.leaves())
-      least_m = std::min(least_m, (half_m.cwiseProduct(way) - leaf.centre).norm() - leaf.radius_m);
-    inside_m = std::max(inside_m, least_m);
+      min_m = std::min(min_m, (half_m.cwiseProduct(path_length) - leaf.centre).norm() - leaf.radius_m);
+    inside_m = std::max(inside_m, min_m);
   }
-  EXPECT_GT(made.growth_m, 1e-3);  // or there would be nothing to tell
+  EXPECT_GT(made.inflation_m, 1e-3);  // or there would be nothing to tell
   EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
-  EXPECT_LT(outside_m, made.growth_m + 1e-6);
+  EXPECT_LT(outside_m, made.inflation_m + 1e-6);
   EXPECT_LT(inside_m, 5e-5);
 }
 

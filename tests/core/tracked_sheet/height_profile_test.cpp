@@ -37,7 +37,7 @@ TEST(HeightProfile, SmoothingKeepsTheSumAwayFromTheEnds) {
   double before = 0, after = 0;
   for (int b = 0; b < p.bins(); ++b) before += p.count(b), after += s.count(b);
   EXPECT_NEAR(before, after, 1e-9 * before);
-  EXPECT_LT(s.most(), p.most());
+  EXPECT_LT(s.max(), p.max());
 }
 
 TEST(HeightProfile, FindsTheShift) {
@@ -66,8 +66,8 @@ TEST(HeightProfile, NoiseMakesNoValleys) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     const double sigma = 0.2 + 0.014 * seed;
     const HeightProfile p = profile({0}, sigma, 1200, seed).smoothed(std::max(0.2, 0.5 * sigma));
-    const double most = 3.5 * sigma;
-    wrong += p.valley_from(0, 1) < most || p.valley_from(0, -1) < most ? 1 : 0;
+    const double max = 3.5 * sigma;
+    wrong += p.valley_from(0, 1) < max || p.valley_from(0, -1) < max ? 1 : 0;
   }
   EXPECT_LE(wrong, 1);
 }

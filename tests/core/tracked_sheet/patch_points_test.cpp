@@ -95,7 +95,7 @@ TEST(PatchPoints, TheProfileCountsThemOneByOne) {
       if ((p.u - 1) * (p.u - 1) + (p.v + 2) * (p.v + 2) <= 25) expected.add(points.residual(i));
     }
     ASSERT_EQ(profile.bins(), expected.bins());
-    EXPECT_GT(expected.most(), 3);
+    EXPECT_GT(expected.max(), 3);
     for (int bin = 0; bin < profile.bins(); ++bin)
       EXPECT_EQ(profile.count(bin), expected.count(bin)) << kernels->isa << " bin " << bin;
   }

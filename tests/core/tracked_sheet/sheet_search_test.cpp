@@ -42,9 +42,9 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
   ASSERT_GT(points.size(), 100u);
   SheetSearch shown;
   shown.reserve(frame->size(), true, true);
-  const auto room = std::make_shared<GatheredPoints>();
-  room->reserve(frame->size(), true, true);
-  shown.start(region, frame, room);
+  const auto buffer = std::make_shared<GatheredPoints>();
+  buffer->reserve(frame->size(), true, true);
+  shown.start(region, frame, buffer);
   for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place(i), gathered, points.source(i));
   shown.finish();
   shown.reserve(2 * frame->size(), true, true);  // what is shown stays
@@ -62,11 +62,11 @@ TEST(SheetSearch, UnmovedPointsAreThoseOfTheFrame) {
 TEST(SheetSearch, InsideTheRegionOnlyWhatWasAddedIsThere) {
   const std::shared_ptr<const NeighbourSearch> frame = make_search(scenes::flat_grid(100));
   const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), kUnit), 8, 4};
-  const auto room = std::make_shared<GatheredPoints>();
-  room->reserve(frame->size(), true, true);
+  const auto buffer = std::make_shared<GatheredPoints>();
+  buffer->reserve(frame->size(), true, true);
   SheetSearch shown;
   shown.reserve(frame->size(), false, false);
-  shown.start(region, frame, room);
+  shown.start(region, frame, buffer);
   shown.finish();
   EXPECT_TRUE(found(shown, {Vec3::Zero(), 0.03}).empty());
   const auto outside = found(shown, {Vec3(0.05, 0, 0), 0.03});

@@ -18,22 +18,22 @@ using Column = std::vector<double>;
 // Shares as they are told.
 class Told final : public FixtureRule {
  public:
-  Told(const FixtureValues& values, Column shares) : FixtureRule(values), shares_(std::move(shares)) {}
-  Column shares(const PointCloud&) const override { return shares_; }
+  Told(const FixtureValues& values, Column weights) : FixtureRule(values), weights_(std::move(weights)) {}
+  Column weights(const PointCloud&) const override { return weights_; }
 
  private:
-  Column shares_;
+  Column weights_;
 };
 
 struct Rule {
-  Rule(FixtureValues v, Column s) : values(std::move(v)), shares(std::move(s)) {}
+  Rule(FixtureValues v, Column s) : values(std::move(v)), weights(std::move(s)) {}
   FixtureValues values;
-  Column shares;
+  Column weights;
 };
 
 FixtureAssignment assignment(const std::vector<Rule>& rules) {
   std::vector<std::unique_ptr<const FixtureRule>> list;
-  for (const Rule& rule : rules) list.push_back(std::make_unique<Told>(rule.values, rule.shares));
+  for (const Rule& rule : rules) list.push_back(std::make_unique<Told>(rule.values, rule.weights));
   return FixtureAssignment(std::move(list));
 }
 
@@ -205,13 +205,13 @@ TEST(Schedule, ChangesWithTimeWhereItsStrengthDoes) {
 // --- what is refused ---
 
 TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
-  EXPECT_EQ(conflict(FixtureValues{}), "");
-  EXPECT_EQ(conflict(FixtureValues{0, 0, {}}), "");
-  EXPECT_EQ(conflict(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: allowed 0 or more, or -1");
-  EXPECT_EQ(conflict(scheduled({0, 0, 0, 1, 3, 0.5})), "");
-  EXPECT_EQ(conflict(scheduled({0, 0, 1, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
-  EXPECT_EQ(conflict(scheduled({0, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
-  EXPECT_EQ(conflict(scheduled({0, 0, 2, 1, 1, 0})),
+  EXPECT_EQ(validate(FixtureValues{}), "");
+  EXPECT_EQ(validate(FixtureValues{0, 0, {}}), "");
+  EXPECT_EQ(validate(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: allowed 0 or more, or -1");
+  EXPECT_EQ(validate(scheduled({0, 0, 0, 1, 3, 0.5})), "");
+  EXPECT_EQ(validate(scheduled({0, 0, 1, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
+  EXPECT_EQ(validate(scheduled({0, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
+  EXPECT_EQ(validate(scheduled({0, 0, 2, 1, 1, 0})),
             "schedule: time 1.000000: allowed no earlier than the row before");
 }
 

@@ -25,16 +25,16 @@ PointCloud cloud_of(const std::vector<Vec3>& points) {
   return cloud;
 }
 
-void expect_near(const Shares& shares, const Shares& expected) {
-  ASSERT_EQ(shares.size(), expected.size());
-  for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_NEAR(shares[i], expected[i], 1e-12) << i;
+void expect_near(const Shares& weights, const Shares& expected) {
+  ASSERT_EQ(weights.size(), expected.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(weights[i], expected[i], 1e-12) << i;
 }
 
 // --- everywhere ---
 
 TEST(Everywhere, PicksWhatWasMeasured) {
-  EXPECT_EQ(Everywhere({}).shares(cloud_of({{0, 0, 0}, kMissing, {1e6, -1e6, 3}})), (Shares{1, 0, 1}));
-  EXPECT_EQ(Everywhere({}).shares({}), Shares{});
+  EXPECT_EQ(Everywhere({}).weights(cloud_of({{0, 0, 0}, kMissing, {1e6, -1e6, 3}})), (Shares{1, 0, 1}));
+  EXPECT_EQ(Everywhere({}).weights({}), Shares{});
 }
 
 // --- half-space ---
@@ -43,23 +43,23 @@ TEST(HalfSpace, ThePlaneBelongsToIt) {
   HalfSpace::Settings s;
   s.point_m = {0.5, 7, -7};  // along the plane x = 0.5 any point is as good
   const double below = std::nextafter(0.5, 0), above = std::nextafter(0.5, 1);
-  EXPECT_EQ(HalfSpace(s).shares(cloud_of({{0.5, 0, 0}, {below, 0, 0}, {above, 0, 0}, kMissing, {9, 1, 2}})),
+  EXPECT_EQ(HalfSpace(s).weights(cloud_of({{0.5, 0, 0}, {below, 0, 0}, {above, 0, 0}, kMissing, {9, 1, 2}})),
             (Shares{1, 0, 1, 0, 1}));
 }
 
 TEST(HalfSpace, TheNormalPointsIntoIt) {
   HalfSpace::Settings s;
   s.normal = {0, -1, 0};
-  EXPECT_EQ(HalfSpace(s).shares(cloud_of({{3, 0.1, 0}, {3, -0.1, 0}, {-3, 0, 5}})), (Shares{0, 1, 1}));
+  EXPECT_EQ(HalfSpace(s).weights(cloud_of({{3, 0.1, 0}, {3, -0.1, 0}, {-3, 0, 5}})), (Shares{0, 1, 1}));
 }
 
 TEST(HalfSpace, TheShareRisesEvenlyOverTheTransition) {
   HalfSpace::Settings s;
   s.point_m = {0, 1, 0}, s.normal = {0, 1, 0}, s.transition_m = 0.2;
   const auto at = [](double y) { return Vec3(4, y, -4); };
-  expect_near(HalfSpace(s).shares(cloud_of({at(0.9), at(1), at(1.05), at(1.1), at(1.15), at(1.2), at(3)})),
+  expect_near(HalfSpace(s).weights(cloud_of({at(0.9), at(1), at(1.05), at(1.1), at(1.15), at(1.2), at(3)})),
               {0, 0, 0.25, 0.5, 0.75, 1, 1});
-  EXPECT_EQ(HalfSpace(s).shares(cloud_of({kMissing})), Shares{0});
+  EXPECT_EQ(HalfSpace(s).weights(cloud_of({kMissing})), Shares{0});
 }
 
 // Distances are along the unit normal, whatever its length in the settings.
@@ -68,40 +68,40 @@ TEST(HalfSpace, TheLengthOfTheNormalDoesNotMatter) {
   HalfSpace::Settings s;
   s.normal = {3, 4, 0}, s.transition_m = 0.2;  // 5 long
   const Shares expected{1, 0.14 / 0.2, 0, 0.046 / 0.2};
-  expect_near(HalfSpace(s).shares(cloud), expected);
+  expect_near(HalfSpace(s).weights(cloud), expected);
   for (const double length : {1e-6, 1e5}) {
     s.normal = length * Vec3(3, 4, 0);
-    expect_near(HalfSpace(s).shares(cloud), expected);
+    expect_near(HalfSpace(s).weights(cloud), expected);
   }
 }
 
 TEST(HalfSpace, ANormalOfNoLengthIsRefused) {
   HalfSpace::Settings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.normal = {0, 0, 0};
-  EXPECT_HAS(conflict(s), "normal: allowed longer than 0");
+  EXPECT_HAS(validate(s), "normal: allowed longer than 0");
 }
 
 // --- near-point ---
 
 TEST(NearPoint, PicksWhatIsNoFartherThanItMay) {
   NearPoint::Settings s;
-  s.point_m = {1, 2, 3}, s.within_m = 0.25;
+  s.point_m = {1, 2, 3}, s.inner_radius_m = 0.25;
   const auto beside = [&](double x) { return Vec3(1 + x, 2, 3); };
   EXPECT_EQ(
-      NearPoint(s).shares(cloud_of(
+      NearPoint(s).weights(cloud_of(
           {beside(0), beside(0.25), beside(-0.25), beside(0.25 + 1e-9), {1 + 0.2, 2 + 0.2, 3}, kMissing})),
       (Shares{1, 1, 1, 0, 0, 0}));
-  s.within_m = 0;
-  EXPECT_EQ(NearPoint(s).shares(cloud_of({beside(0), beside(1e-9)})), (Shares{1, 0}));
+  s.inner_radius_m = 0;
+  EXPECT_EQ(NearPoint(s).weights(cloud_of({beside(0), beside(1e-9)})), (Shares{1, 0}));
 }
 
 TEST(NearPoint, FallsEvenlyToNothingBeyond) {
   NearPoint::Settings s;
-  s.within_m = 0.1, s.falloff_m = 0.4;
+  s.inner_radius_m = 0.1, s.falloff_m = 0.4;
   const auto along = [](double z) { return Vec3(0, 0, -z); };
-  expect_near(NearPoint(s).shares(cloud_of({along(0.05), along(0.1), along(0.2), along(0.3), along(0.4),
-                                            along(0.5), along(9), kMissing})),
+  expect_near(NearPoint(s).weights(cloud_of({along(0.05), along(0.1), along(0.2), along(0.3), along(0.4),
+                                             along(0.5), along(9), kMissing})),
               {1, 1, 0.75, 0.5, 0.25, 0, 0, 0});
 }
 
@@ -121,11 +121,11 @@ PointCloud wall(const std::vector<std::pair<int, int>>& holes = {}) {
 // Only the picked pixel itself is within the distance: which one is it?
 int picked(const PointCloud& cloud, int row, int column) {
   NearPoint::Settings s;
-  s.row = row, s.column = column, s.within_m = 0.05;
-  const Shares shares = NearPoint(s).shares(cloud);
+  s.row = row, s.column = column, s.inner_radius_m = 0.05;
+  const Shares weights = NearPoint(s).weights(cloud);
   int found = -1;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    if (shares[i] == 0) continue;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0) continue;
     EXPECT_EQ(found, -1) << "two pixels are picked";
     found = static_cast<int>(i);
   }
@@ -139,10 +139,10 @@ TEST(NearPoint, APixelPicksWhatItSees) {
 
 TEST(NearPoint, ThePointIsNotAskedForBesideAPixel) {
   NearPoint::Settings s;
-  s.row = 1, s.column = 2, s.point_m = {0.3, 0.2, 1}, s.within_m = 0.05;
-  const Shares shares = NearPoint(s).shares(wall());
-  EXPECT_EQ(shares[6 * 1 + 2], 1);
-  EXPECT_EQ(shares[6 * 3 + 5], 0);
+  s.row = 1, s.column = 2, s.point_m = {0.3, 0.2, 1}, s.inner_radius_m = 0.05;
+  const Shares weights = NearPoint(s).weights(wall());
+  EXPECT_EQ(weights[6 * 1 + 2], 1);
+  EXPECT_EQ(weights[6 * 3 + 5], 0);
 }
 
 TEST(NearPoint, AHolePicksTheNearestPixelThatSawSomething) {
@@ -172,13 +172,13 @@ TEST(NearPoint, APixelOutsideTheImageIsRefused) {
 
 TEST(NearPoint, ARowNeedsItsColumn) {
   NearPoint::Settings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.row = 0;
-  EXPECT_HAS(conflict(s), "row and column: allowed both 0 or more, or both -1");
+  EXPECT_HAS(validate(s), "row and column: allowed both 0 or more, or both -1");
   s.column = 0;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.row = -1;
-  EXPECT_HAS(conflict(s), "row and column");
+  EXPECT_HAS(validate(s), "row and column");
 }
 
 // --- hue-range ---
@@ -186,7 +186,7 @@ TEST(NearPoint, ARowNeedsItsColumn) {
 Shares of_colours(const HueRange::Settings& s, const std::vector<std::uint32_t>& colours) {
   PointCloud cloud;
   for (const std::uint32_t colour : colours) cloud.append({0, 0, 0}), cloud.colour.push_back(colour);
-  return HueRange(s).shares(cloud);
+  return HueRange(s).weights(cloud);
 }
 
 HueRange::Settings hues(double from_deg, double to_deg) {
@@ -215,32 +215,32 @@ TEST(HueRange, GoesThroughZeroWhereItEndsBelowItsBeginning) {
 
 TEST(HueRange, GreysHaveNoHue) {
   HueRange::Settings s = hues(0, 360);
-  s.least_saturation = 0.2;
+  s.min_saturation = 0.2;
   EXPECT_EQ(of_colours(s, {0x7F7F7F, 0x996666, 0x996767}), (Shares{0, 1, 0}));  // 0, 51/255, 50/256
-  s.least_saturation = 0;
+  s.min_saturation = 0;
   EXPECT_EQ(of_colours(s, {0x7F7F7F, 0x996666}), (Shares{1, 1}));
 }
 
 TEST(HueRange, DarkAndLightPointsAreNotPicked) {
   HueRange::Settings s = hues(0, 360);
-  s.least_lightness = 0.2, s.most_lightness = 0.8;  // of 510: 102 and 408
+  s.min_lightness = 0.2, s.max_lightness = 0.8;  // of 510: 102 and 408
   EXPECT_EQ(of_colours(s, {0x660000, 0x650000, 0xFF9999, 0xFF9A9A, kRed}), (Shares{1, 0, 1, 0, 1}));
-  s.most_lightness = 0.2;
+  s.max_lightness = 0.2;
   EXPECT_EQ(of_colours(s, {0x660000, kRed}), (Shares{1, 0}));
-  EXPECT_EQ(conflict(s), "");
-  s.least_lightness = 0.3;
-  EXPECT_HAS(conflict(s), "least_lightness = 0.3");
+  EXPECT_EQ(validate(s), "");
+  s.min_lightness = 0.3;
+  EXPECT_HAS(validate(s), "min_lightness = 0.3");
 }
 
 TEST(HueRange, AMissingPointIsNotPickedWhateverItsColour) {
   PointCloud cloud = cloud_of({kMissing, {0, 0, 0}});
   cloud.colour = {kRed, kRed};
-  EXPECT_EQ(HueRange({}).shares(cloud), (Shares{0, 1}));
+  EXPECT_EQ(HueRange({}).weights(cloud), (Shares{0, 1}));
 }
 
 TEST(HueRange, AFrameWithoutColoursIsRefused) {
-  EXPECT_HAS(refusal([] { HueRange({}).shares(cloud_of({{0, 0, 0}})); }), "the frame has no colours");
-  EXPECT_EQ(HueRange({}).shares({}), Shares{});
+  EXPECT_HAS(refusal([] { HueRange({}).weights(cloud_of({{0, 0, 0}})); }), "the frame has no colours");
+  EXPECT_EQ(HueRange({}).weights({}), Shares{});
 }
 
 }  // namespace

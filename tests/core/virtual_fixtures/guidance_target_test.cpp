@@ -69,9 +69,9 @@ TEST(GuidanceTarget, TheMeanIsThatOfTheShares) {
 }
 
 TEST(GuidanceTarget, NothingPickedIsNotSeen) {
-  EXPECT_FALSE(guidance_target({}, {}).is_seen());
+  EXPECT_FALSE(guidance_target({}, {}).is_visible());
   const GuidanceTarget none = guidance_target(scenes::flat_grid(3), std::vector<double>(9, 0));
-  EXPECT_FALSE(none.is_seen() || none.is_flat());
+  EXPECT_FALSE(none.is_visible() || none.is_flat());
   EXPECT_EQ(none.mean_W, Vec3::Zero());
 }
 
@@ -114,24 +114,24 @@ TEST(GuidanceTarget, NoOtherPlaneIsNearerToTheWeightedPoints) {
   for (int run = 0; run < 10; ++run) {
     const Eigen::Matrix3d R = turn({normal(random), normal(random), normal(random)});
     PointCloud cloud;
-    std::vector<double> shares;
+    std::vector<double> weights;
     for (int i = 0; i < 60; ++i) {
       cloud.append(kCentre + R * Vec3(0.1 * normal(random), 0.05 * normal(random), 0.004 * normal(random)));
-      shares.push_back(random() / 4294967296.0);
+      weights.push_back(random() / 4294967296.0);
     }
-    const GuidanceTarget target = guidance_target(cloud, shares);
+    const GuidanceTarget target = guidance_target(cloud, weights);
     ASSERT_TRUE(target.is_flat());
     const auto distance = [&](const Vec3& n, const Vec3& place_W) {
       double sum = 0;
-      for (std::size_t i = 0; i < 60; ++i) sum += shares[i] * std::pow(n.dot(cloud.point(i) - place_W), 2);
+      for (std::size_t i = 0; i < 60; ++i) sum += weights[i] * std::pow(n.dot(cloud.point(i) - place_W), 2);
       return sum;
     };
-    const double least = distance(target.normal_W, target.mean_W);
+    const double min = distance(target.normal_W, target.mean_W);
     for (int i = 0; i < 300; ++i) {
       const double far = std::pow(10, -4.0 * i / 300);
       const Vec3 aside = far * Vec3(normal(random), normal(random), normal(random));
-      EXPECT_GE(distance((target.normal_W + aside).normalized(), target.mean_W), least * (1 - 1e-12));
-      EXPECT_GE(distance(target.normal_W, target.mean_W + aside), least * (1 - 1e-12));
+      EXPECT_GE(distance((target.normal_W + aside).normalized(), target.mean_W), min * (1 - 1e-12));
+      EXPECT_GE(distance(target.normal_W, target.mean_W + aside), min * (1 - 1e-12));
     }
   }
 }
@@ -234,7 +234,7 @@ TEST(GuidanceTarget, EveryGuidanceRuleTellsOneInTheirOrder) {
   ASSERT_EQ(targets.size(), 3u);
   EXPECT_EQ(targets[0].mean_W, Vec3(3, 0, 0));
   EXPECT_EQ(targets[1].mean_W, Vec3(1, 0, 0));
-  EXPECT_FALSE(targets[2].is_seen()) << "a rule of no strength";
+  EXPECT_FALSE(targets[2].is_visible()) << "a rule of no strength";
   // And only the forbidden one makes a region.
   assignment.assign(cloud, 0);
   EXPECT_EQ(cloud.fixture_radius_m, (std::vector<double>{0.02, 0, 0, 0, 0, 0}));

@@ -197,7 +197,7 @@ OniStatus Stream::getProperty(int property, void* data, int* size) {
     case ONI_STREAM_PROPERTY_VERTICAL_FOV:
       return give(is_depth_ ? kDepthDown_rad : kColourDown_rad, data, size);
     case ONI_STREAM_PROPERTY_MAX_VALUE:
-      return give(is_depth_ ? kLargestDepth : 255, data, size);
+      return give(is_depth_ ? kMaxDepth : 255, data, size);
     default:
       return ONI_STATUS_NOT_SUPPORTED;
   }

@@ -9,7 +9,7 @@ namespace remote_touch::virtual_camera {
 
 constexpr int kWidth = 640, kHeight = 480, kRate_hz = 30;
 // The recorder's codec takes depth up to the value that the driver tells as the largest.
-constexpr int kLargestDepth = 10000;
+constexpr int kMaxDepth = 10000;
 constexpr float kDepthAcross_rad = 1.0f, kDepthDown_rad = 0.8f;
 constexpr float kColourAcross_rad = 1.1f, kColourDown_rad = 0.85f;
 

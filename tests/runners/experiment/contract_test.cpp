@@ -44,12 +44,12 @@ std::string write_session(const TestFolder& folder) {
 // The blueprint of an entry with its defaults; those that read a file get one that is made here.
 template <class Entry>
 auto with_a_file(const Entry& entry, const TestFolder& folder) {
-  auto blueprint = entry.make();
-  for (const Parameter& p : blueprint->settings())
+  auto factory = entry.make();
+  for (const Parameter& p : factory->settings())
     if (p.name == "path")
       *std::get<std::string*>(p.value) =
           std::string(entry.name) == "live-session" ? write_session(folder) : folder.path().string();
-  return blueprint;
+  return factory;
 }
 
 // --- scenarios ---
@@ -79,12 +79,12 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 // A result is to hold the hashes of all files that it was made from.
 TEST_F(ScenarioContract, FilesThatSettingsNameAreTold) {
   for (const ScenarioEntry& entry : scenarios()) {
-    const auto blueprint = entry.make();
-    for (const Parameter& p : blueprint->settings()) {
+    const auto factory = entry.make();
+    for (const Parameter& p : factory->settings()) {
       if (p.name != "path") continue;
       *std::get<std::string*>(p.value) = folder_.path().string();
-      ASSERT_EQ(blueprint->inputs().size(), 1u) << entry.name;
-      EXPECT_EQ(blueprint->inputs()[0].path, folder_.path()) << entry.name;
+      ASSERT_EQ(factory->inputs().size(), 1u) << entry.name;
+      EXPECT_EQ(factory->inputs()[0].path, folder_.path()) << entry.name;
     }
   }
 }
@@ -180,7 +180,7 @@ class FixtureContract : public testing::Test {
   }
 
   // With the defaults of the catalog; a mask is one that is made here.
-  auto blueprint(const FixtureEntry& entry) const {
+  auto factory(const FixtureEntry& entry) const {
     auto made = entry.make();
     for (const Parameter& p : made->settings())
       if (p.name == "path") *std::get<std::string*>(p.value) = mask_;
@@ -194,15 +194,15 @@ class FixtureContract : public testing::Test {
 TEST_F(FixtureContract, SharesAreOneAPointAndFromNothingToOne) {
   for (const FixtureEntry& entry : fixtures()) {
     const PointCloud cloud = coloured_image();
-    const std::vector<double> shares = blueprint(entry)->build()->shares(cloud);
-    ASSERT_EQ(shares.size(), cloud.size()) << entry.name;
+    const std::vector<double> weights = factory(entry)->build()->weights(cloud);
+    ASSERT_EQ(weights.size(), cloud.size()) << entry.name;
     double sum = 0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      EXPECT_TRUE(shares[i] >= 0 && shares[i] <= 1) << entry.name << " " << i;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      EXPECT_TRUE(weights[i] >= 0 && weights[i] <= 1) << entry.name << " " << i;
       if (!cloud.point(i).allFinite()) {
-        EXPECT_EQ(shares[i], 0) << entry.name << " " << i;
+        EXPECT_EQ(weights[i], 0) << entry.name << " " << i;
       }
-      sum += shares[i];
+      sum += weights[i];
     }
     // The wall is too far away from the point that near-point has by default.
     EXPECT_EQ(sum > 0, entry.name != std::string("near-point")) << entry.name;
@@ -213,7 +213,7 @@ TEST_F(FixtureContract, NothingIsPickedOfAFrameThatSawNothing) {
   for (const FixtureEntry& entry : fixtures()) {
     PointCloud cloud = coloured_image();
     cloud.x.assign(cloud.size(), std::numeric_limits<double>::quiet_NaN()), cloud.y = cloud.z = cloud.x;
-    EXPECT_EQ(blueprint(entry)->build()->shares(cloud), std::vector<double>(cloud.size())) << entry.name;
+    EXPECT_EQ(factory(entry)->build()->weights(cloud), std::vector<double>(cloud.size())) << entry.name;
   }
 }
 
@@ -222,33 +222,33 @@ TEST_F(FixtureContract, SharesArePure) {
     const PointCloud cloud = coloured_image();
     PointCloud other = cloud;
     other.x[20] += 1, other.colour[30] = 0;
-    const auto one = blueprint(entry)->build(), fresh = blueprint(entry)->build();
-    const std::vector<double> first = one->shares(cloud);
-    one->shares(other);  // what it was asked before changes nothing
-    EXPECT_TRUE(same_bits(one->shares(cloud), first)) << entry.name;
-    EXPECT_TRUE(same_bits(fresh->shares(cloud), first)) << entry.name;
+    const auto one = factory(entry)->build(), fresh = factory(entry)->build();
+    const std::vector<double> first = one->weights(cloud);
+    one->weights(other);  // what it was asked before changes nothing
+    EXPECT_TRUE(same_bits(one->weights(cloud), first)) << entry.name;
+    EXPECT_TRUE(same_bits(fresh->weights(cloud), first)) << entry.name;
   }
 }
 
 TEST_F(FixtureContract, GivesTheValuesOfItsSettings) {
   for (const FixtureEntry& entry : fixtures()) {
-    const auto made = blueprint(entry);
+    const auto made = factory(entry);
     const Json set = {{"radius_m", 0.25}, {"stiffness_N_per_m", 77}, {"schedule", {{1, 0.5}, {2, 0}}}};
     read_parameters(set, made->settings(), entry.name, false);
-    EXPECT_EQ(made->contradiction(), "") << entry.name;
+    EXPECT_EQ(made->validate(), "") << entry.name;
     const auto rule = made->build();
     EXPECT_EQ(rule->values().radius_m, 0.25) << entry.name;
     EXPECT_EQ(rule->values().stiffness_N_per_m, 77) << entry.name;
     EXPECT_EQ(rule->strength(0), 0.5) << entry.name;
     EXPECT_TRUE(rule->changes_with_time()) << entry.name;
     read_parameters({{"schedule", {{1, 0.5}, {0, 0}}}}, made->settings(), entry.name, false);
-    EXPECT_HAS(made->contradiction(), "schedule: time") << entry.name;
+    EXPECT_HAS(made->validate(), "schedule: time") << entry.name;
   }
 }
 
 TEST_F(FixtureContract, FilesThatSettingsNameAreTold) {
   for (const FixtureEntry& entry : fixtures()) {
-    const auto made = blueprint(entry);
+    const auto made = factory(entry);
     const auto settings = made->settings();
     const bool has_path =
         std::any_of(settings.begin(), settings.end(), [](const Parameter& p) { return p.name == "path"; });
@@ -262,7 +262,7 @@ TEST_F(FixtureContract, FilesThatSettingsNameAreTold) {
 TEST_F(FixtureContract, SettingsSurviveARoundTripThroughAnExperiment) {
   Json rules = Json::array();
   for (const FixtureEntry& entry : fixtures()) {
-    const auto made = blueprint(entry);
+    const auto made = factory(entry);
     read_parameters({{"radius_m", 0.1 + 0.2}, {"schedule", {{0, 0.1}, {1e-3, 1}}}}, made->settings(),
                     entry.name, false);
     rules.push_back({{"name", entry.name}});
@@ -286,8 +286,8 @@ TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
     const auto scene =
         find_entry(scenarios(), "camera-scene", "scenario").make()->build(NoiseKey{1}, scenes::kernels());
     const TestFolder folder("contract");
-    const auto blueprint = with_a_file(entry, folder);
-    const auto one = blueprint->build(*scene), other = blueprint->build(*scene);
+    const auto factory = with_a_file(entry, folder);
+    const auto one = factory->build(*scene), other = factory->build(*scene);
     for (int i = 0; i < 200; ++i) {
       const double time = 0.01 * ((i * 37) % 200);
       EXPECT_TRUE(one->at(time).position_W.allFinite()) << entry.name;
@@ -306,8 +306,8 @@ TEST(TrajectoryContract, PureFiniteAndAtRestAfterTheEnd) {
 // --- the tables themselves ---
 
 TEST(Catalog, EveryStoredExperimentCanBeReadAndIsCompleteWhenWritten) {
-  ASSERT_FALSE(stored_experiments().empty());
-  for (const StoredText& stored : stored_experiments()) {
+  ASSERT_FALSE(embedded_experiments().empty());
+  for (const EmbeddedText& stored : embedded_experiments()) {
     const Experiment experiment = Experiment::load(stored.name);
     EXPECT_FALSE(experiment.settings().title.empty()) << stored.name;
     const std::string resolved = experiment.to_json();

@@ -23,7 +23,7 @@ constexpr const char* kTask = R"({"scenario": {"name": "flat-grid"},
                  {"action": "wait", "done": "button", "button": 2}],
     "renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"},
     "operator": {"mass_kg": 0.7, "grip": [[0, 1], [2, 0]], "presses": [[1, 2, 0.1]]},
-    "device": {"turns_x": false, "largest_force_N": 8}})";
+    "device": {"torque_x": false, "max_force_N": 8}})";
 
 Experiment task(const std::vector<std::string>& overrides = {}) {
   return Experiment::from_json(kTask, "task", overrides);
@@ -68,16 +68,16 @@ TEST(ExperimentSections, SurviveARoundTripCompletely) {
 
 TEST(ExperimentSections, OfTheLiveLoopSurviveToo) {
   const std::string text =
-      task({"live.device_m=[0,0.1,0]", "live.device_scale=2", "safety.ramp_s=1"}).to_json();
+      task({"live.device_position_m=[0,0.1,0]", "live.device_scale=2", "safety.ramp_s=1"}).to_json();
   EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
   const Json json = Json::parse(text);
   expect_complete(json["live"], defaults<LiveSettings>());
   expect_complete(json["safety"], defaults<SafetyLimits>());
   EXPECT_EQ(task({"live.device_scale=2"}).live().device_scale, 2);
   EXPECT_EQ(task({"safety.ramp_s=1"}).safety().ramp_s, 1);
-  EXPECT_EQ(task().safety().largest_force_N, SafetyLimits{}.largest_force_N);
+  EXPECT_EQ(task().safety().max_force_N, SafetyLimits{}.max_force_N);
   EXPECT_HAS(why("safety.force_slew_N_per_s=100"), "safety.force_slew_N_per_s = 100");
-  EXPECT_HAS(why("safety.largest_force=3"), "safety.largest_force: unknown");
+  EXPECT_HAS(why("safety.max_force=3"), "safety.max_force: unknown");
 }
 
 TEST(ExperimentSections, AreLeftOutWhereTheyAreNotAskedFor) {
@@ -89,15 +89,16 @@ TEST(ExperimentSections, AreLeftOutWhereTheyAreNotAskedFor) {
 }
 
 TEST(ExperimentSections, CanBeChangedByOverrides) {
-  EXPECT_EQ(resolved({"guidance.largest_force_N=3"})["guidance"]["largest_force_N"], 3);
-  EXPECT_EQ(resolved({"guidance.largest_force_N=3"})["guidance"]["standoff_m"], 0.05);
+  EXPECT_EQ(resolved({"guidance.max_force_N=3"})["guidance"]["max_force_N"], 3);
+  EXPECT_EQ(resolved({"guidance.max_force_N=3"})["guidance"]["standoff_m"], 0.05);
   EXPECT_EQ(resolved({"sequence.0.not_before_s=2"})["sequence"][0]["not_before_s"], 2);
   EXPECT_EQ(resolved({"sequence.1.offset_m=[0,0,0.5]"})["sequence"][1]["offset_m"][2], 0.5);
   EXPECT_EQ(resolved({"operator.grip=[[0,0.5]]"})["operator"]["grip"], Json::parse("[[0.0, 0.5]]"));
-  EXPECT_EQ(resolved({"device.turns_x=true"})["device"]["turns_x"], true);
+  EXPECT_EQ(resolved({"device.torque_x=true"})["device"]["torque_x"], true);
   // A section that the file does not have is made.
-  EXPECT_EQ(Json::parse(Experiment::load("fig4.11", {"device.turns_z=false"}).to_json())["device"]["turns_z"],
-            false);
+  EXPECT_EQ(
+      Json::parse(Experiment::load("fig4.11", {"device.torque_z=false"}).to_json())["device"]["torque_z"],
+      false);
 }
 
 TEST(ExperimentSections, OnlyAnExperimentWithATaskOrGuidanceIsGuided) {
@@ -124,13 +125,13 @@ TEST(ExperimentSections, RefuseValuesThatAreNone) {
   EXPECT_HAS(why("sequence.0.deadline_s=soon"), "sequence.0.deadline_s = \"soon\": allowed 0 to 86400");
   EXPECT_HAS(why("sequence.1.action=open"),
              "sequence.1.action = \"open\": allowed lock, unlock, activate, release, wait");
-  EXPECT_HAS(why("sequence.1.button=32"), "sequence.1.button = 32: allowed whole numbers 0 to 31");
+  EXPECT_HAS(why("sequence.1.button=32"), "sequence.1.button = 32: allowed integers 0 to 31");
   EXPECT_HAS(why("guidance.orientation=free"), "guidance.orientation = \"free\": allowed fixed, plane");
-  EXPECT_HAS(why("guidance.fewest_points=0"), "guidance.fewest_points = 0: allowed whole numbers 1 to");
+  EXPECT_HAS(why("guidance.min_points=0"), "guidance.min_points = 0: allowed integers 1 to");
   EXPECT_HAS(why("operator.mass_kg=0"), "operator.mass_kg = 0: allowed 0.01 to 100");
-  EXPECT_HAS(why("device.turns_x=1"), "device.turns_x = 1: allowed true, false");
+  EXPECT_HAS(why("device.torque_x=1"), "device.torque_x = 1: allowed true, false");
   EXPECT_HAS(why("fixtures.0.role=both"), "fixtures.0.role = \"both\": allowed forbidden, guidance");
-  EXPECT_HAS(why("device.turn_x=true"), "device.turn_x: unknown; the nearest allowed is device.turns_x");
+  EXPECT_HAS(why("device.turn_x=true"), "device.turn_x: unknown; the nearest allowed is device.torque_x");
 }
 
 TEST(ExperimentSections, RefuseSectionsOfAnotherShape) {
@@ -147,10 +148,11 @@ TEST(ExperimentSections, RefuseSettingsThatContradictEachOther) {
   EXPECT_HAS(why("guidance.approach_axis=[0,0,0]"), "guidance.approach_axis: allowed 0.001 or longer");
   EXPECT_HAS(why(R"(operator={"mass_kg": 0.01, "stiffness_N_per_m": 400})"),
              "operator.stiffness_N_per_m = 400.000000: allowed below 400.000000 for this mass");
-  EXPECT_HAS(why("operator.turn_stiffness_Nm_per_rad=40"),
-             "operator.turn_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
+  EXPECT_HAS(
+      why("operator.rotational_stiffness_Nm_per_rad=40"),
+      "operator.rotational_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
   EXPECT_HAS(why("operator.grip=[[0,2]]"), "operator.grip: share 2.000000: allowed 0 to 1");
-  EXPECT_HAS(why("operator.presses=[[0,32,1]]"), "operator.presses: button 32.000000: allowed whole numbers");
+  EXPECT_HAS(why("operator.presses=[[0,32,1]]"), "operator.presses: button 32.000000: allowed integers");
   EXPECT_HAS(why("sequence.0.fixture="), "sequence.0.fixture = \"\": allowed the label of a fixture");
   EXPECT_HAS(why("sequence.2.fixture=valve"), "sequence.2.fixture = \"valve\": allowed none for wait");
   for (const char* radius : {"0", "-1"})
@@ -183,7 +185,8 @@ TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
             "fixtures.1.role = guidance: allowed once where no step of a sequence activates or releases it");
   EXPECT_EQ(why("sequence.0.offset_m=[0,0,1]"),
             "sequence.0.offset_m: allowed other than 0 for action = activate only");
-  EXPECT_EQ(why("sequence.0.deadline_s=1"), "sequence.0.deadline_s = 1.000000: allowed 0 for done = at-once");
+  EXPECT_EQ(why("sequence.0.deadline_s=1"),
+            "sequence.0.deadline_s = 1.000000: allowed 0 for done = immediately");
   // Fixtures without a label are not mixed up.
   EXPECT_EQ(resolved({"fixtures.0.label=", "fixtures.1.label=", "sequence=[]"})["fixtures"].size(), 2u);
 }

@@ -22,12 +22,12 @@ TEST(Experiments, AllFilesAreStored) {
     if (entry.path().extension() != ".json") continue;
     ++files;
     const auto stored = std::find_if(
-        stored_experiments().begin(), stored_experiments().end(),
-        [&](const StoredText& s) { return entry.path().filename() == std::string(s.name) + ".json"; });
-    ASSERT_NE(stored, stored_experiments().end()) << entry.path();
+        embedded_experiments().begin(), embedded_experiments().end(),
+        [&](const EmbeddedText& s) { return entry.path().filename() == std::string(s.name) + ".json"; });
+    ASSERT_NE(stored, embedded_experiments().end()) << entry.path();
     EXPECT_EQ(stored->json, bytes_of(entry.path()));
   }
-  EXPECT_EQ(stored_experiments().size(), files);
+  EXPECT_EQ(embedded_experiments().size(), files);
 }
 
 void expect_has_all(const Json& resolved, const Json& part) {
@@ -35,7 +35,7 @@ void expect_has_all(const Json& resolved, const Json& part) {
 }
 
 TEST(Experiments, SurviveARoundTrip) {
-  for (const StoredText& stored : stored_experiments()) {
+  for (const EmbeddedText& stored : embedded_experiments()) {
     SCOPED_TRACE(stored.name);
     const Experiment experiment = Experiment::load(stored.name);
     const std::string text = experiment.to_json();
@@ -65,9 +65,9 @@ TEST(Experiments, AreResolvedCompletely) {
   RunSettings run;
   EXPECT_EQ(json.size(), parameters(run).size() + 4);
   const auto expect_all = [](const Json& part, auto entries) {
-    const auto blueprint = find_entry(entries, part["name"].template get<std::string>(), "part").make();
-    EXPECT_EQ(part.size(), blueprint->settings().size() + 1) << part;
-    for (const Parameter& p : blueprint->settings()) EXPECT_TRUE(part.contains(p.name)) << p.name;
+    const auto factory = find_entry(entries, part["name"].template get<std::string>(), "part").make();
+    EXPECT_EQ(part.size(), factory->settings().size() + 1) << part;
+    for (const Parameter& p : factory->settings()) EXPECT_TRUE(part.contains(p.name)) << p.name;
   };
   expect_all(json["scenario"], scenarios()), expect_all(json["renderer"], renderers()),
       expect_all(json["trajectory"], trajectories());
@@ -175,7 +175,7 @@ TEST(Experiments, DefaultsFitTogether) {
   const auto expect_no_contradiction = [](const auto& entries) {
     for (const auto& entry : entries) {
       const std::string name = entry.name;  // a recording and a mask have no default path
-      EXPECT_EQ(entry.make()->contradiction().empty(),
+      EXPECT_EQ(entry.make()->validate().empty(),
                 name != "recording" && name != "image-mask" && name != "live-session")
           << name;
     }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "core/virtual_fixtures/everywhere.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/synthetic/moving_lift.h"
@@ -58,9 +58,9 @@ FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {})
 }
 
 // What a renderer gets up to a time, asked for every millisecond as in a run.
-std::vector<Frame> received(const Scenario& scenario, double until_s, const Delivery& delivery,
+std::vector<Frame> received(const Scenario& scenario, double until_s, const Transport& transport,
                             std::uint64_t seed = 1, FixtureAssignment fixtures = {}) {
-  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, delivery, {seed}, false);
+  FrameStream stream(scenario, {nullptr, std::move(fixtures)}, transport, {seed}, false);
   Recorder recorder;
   for (int tick = 0; 0.001 * tick <= until_s; ++tick) {
     const double now_s = 0.001 * tick;
@@ -107,8 +107,8 @@ TEST(FrameStream, LatencyIsAddedToTheTimeOfCapture) {
 }
 
 TEST(FrameStream, FramesArriveInTheOrderOfTheirArrival) {
-  const Delivery delivery{0.02, 0.05};
-  const auto frames = received(Walk(2000), 21, delivery);
+  const Transport transport{0.02, 0.05};
+  const auto frames = received(Walk(2000), 21, transport);
   ASSERT_EQ(frames.size(), 2000u);
   double sum = 0;
   int overtaken = 0;
@@ -130,9 +130,9 @@ TEST(FrameStream, FramesArriveInTheOrderOfTheirArrival) {
 }
 
 TEST(FrameStream, DeliveryIsDrawnFromTheKey) {
-  const Delivery delivery{0, 0.05, 0.2};
-  const auto once = received(Walk(300), 4, delivery, 7), again = received(Walk(300), 4, delivery, 7),
-             other = received(Walk(300), 4, delivery, 8);
+  const Transport transport{0, 0.05, 0.2};
+  const auto once = received(Walk(300), 4, transport, 7), again = received(Walk(300), 4, transport, 7),
+             other = received(Walk(300), 4, transport, 8);
   EXPECT_EQ(indices(once), indices(again));
   for (std::size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].arrives_s, again[i].arrives_s);
   EXPECT_NE(indices(once), indices(other));
@@ -141,11 +141,11 @@ TEST(FrameStream, DeliveryIsDrawnFromTheKey) {
 // However often the stream is asked, frames come in the same order.
 TEST(FrameStream, OneLateRequestHandsOverTheSameFrames) {
   const Walk walk(300);
-  const Delivery delivery{0.01, 0.05, 0.2};
-  FrameStream stream(walk, {}, delivery, {7}, false);
+  const Transport transport{0.01, 0.05, 0.2};
+  FrameStream stream(walk, {}, transport, {7}, false);
   Recorder recorder;
   stream.deliver_until(4, recorder);
-  EXPECT_EQ(indices(recorder.frames), indices(received(walk, 4, delivery, 7)));
+  EXPECT_EQ(indices(recorder.frames), indices(received(walk, 4, transport, 7)));
 }
 
 TEST(FrameStream, DropsItsShareOfTheFrames) {
@@ -248,7 +248,7 @@ TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
   Recorder recorder;
   for (int tick = 0; tick < 300; ++tick) stream.deliver_until(0.001 * tick, recorder);
   ASSERT_GT(recorder.frames.back().index, lift.frame_count());
-  EXPECT_EQ(stream.newest_hash(), mixed(fingerprint(lift.cloud(lift.frame_count() - 1)),
+  EXPECT_EQ(stream.newest_hash(), mixed(points_hash(lift.cloud(lift.frame_count() - 1)),
                                         std::bit_cast<std::uint64_t>(recorder.frames.back().captured_s)));
 }
 
@@ -265,7 +265,7 @@ TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
     const auto* stored = dynamic_cast<const CloudSearch*>(last.points.get());
     ASSERT_EQ(stored != nullptr, made);
     if (!made) continue;
-    EXPECT_EQ(fingerprint(stored->cloud()), fingerprint(lift.cloud(lift.frame_count() - 1)));
+    EXPECT_EQ(points_hash(stored->cloud()), points_hash(lift.cloud(lift.frame_count() - 1)));
   }
 }
 
@@ -322,7 +322,7 @@ TEST(FrameStream, ARecordingIsRegisteredToTheBaseFrame) {
   RecordedScene::Settings settings;
   settings.path = folder.path().string();
   const RecordedScene as_recorded(settings, {}, scenes::kernels());
-  settings.camera_m = {1, 2, 3}, settings.camera_turn_deg = {0, 0, 90};
+  settings.camera_position_m = {1, 2, 3}, settings.camera_rotation_deg = {0, 0, 90};
   const RecordedScene moved(settings, {}, scenes::kernels());
   const PointCloud before = as_recorded.cloud(0), after = moved.cloud(0);
   for (std::size_t i = 0; i < before.size(); ++i) {

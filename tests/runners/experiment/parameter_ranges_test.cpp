@@ -94,8 +94,8 @@ TEST(Parameters, NamesAreUniqueAndHelpIsOneLine) {
 // Pure numbers, counts and places in an image; everything else says its unit, or of what it is the share.
 bool carries_unit(const std::string& name) {
   static const std::set<std::string> kPure = {"gamma",
-                                              "bridged_frames",
-                                              "closing_steps",
+                                              "max_missed_frames",
+                                              "max_exit_steps",
                                               "xi",
                                               "phase_x",
                                               "phase_z",
@@ -117,26 +117,26 @@ bool carries_unit(const std::string& name) {
                                               "replicate",
                                               "normal",
                                               "strength",
-                                              "least_saturation",
-                                              "least_lightness",
-                                              "most_lightness",
+                                              "min_saturation",
+                                              "min_lightness",
+                                              "max_lightness",
                                               "frame_drop_probability",
                                               "detections_per_tick",
-                                              "disk_share",
+                                              "disk_radius_ratio",
                                               "colour_noise",
-                                              "dropout",
+                                              "dropout_probability",
                                               "approach_axis",
-                                              "tool_leaves",
-                                              "fewest_points",
+                                              "max_tool_leaves",
+                                              "min_points",
                                               "button",
-                                              "share",
+                                              "fraction",
                                               "sheets",
                                               "vanish_at_frame",
                                               "empty_frame",
-                                              "view",
+                                              "view_direction",
                                               "threshold"};
   static const char* const kUnits[] = {
-      "_share",    "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",
+      "_fraction", "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",
       "_Ns_per_m", "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
@@ -169,7 +169,7 @@ TEST(Parameters, DefaultsAreAllowedAndSurviveARoundTrip) {
 // Another value than the default, with as many digits as a number can have.
 struct Change {
   const Parameter& p;
-  double inside(double share) const { return p.low + share * (p.high - p.low); }
+  double inside(double fraction) const { return p.low + fraction * (p.high - p.low); }
   void operator()(double* v) const { *v = inside(0.31415926535897931); }
   void operator()(int* v) const { *v = static_cast<int>(std::floor(inside(0.4))); }
   void operator()(std::uint64_t* v) const { *v = p.high > 1e19 ? 18446744073709551557u : 4294967291u; }
@@ -296,7 +296,7 @@ TEST(Parameters, ALongValueIsShortenedInTheMessage) {
   const std::string message = refused(p, std::string(5000, 'x'));
   EXPECT_LT(message.size(), 300u);
   EXPECT_HAS(message, "part.count = \"xxx");
-  EXPECT_HAS(message, "...: allowed whole numbers 0 to 10");
+  EXPECT_HAS(message, "...: allowed integers 0 to 10");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::unique_ptr<Renderer> build(const RendererEntry& entry) {
 // A flat cloud that holds the renderer: with regions, where it knows nothing else.
 PointCloud grid_for(const RendererEntry& entry, int n) {
   PointCloud cloud = scenes::flat_grid(n);
-  if (entry.held_by == HeldBy::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
+  if (entry.contact_model == ContactModel::regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
   return cloud;
 }
 
@@ -52,9 +52,11 @@ TEST(RendererContract, NoForceInFreeSpace) {
 TEST(RendererContract, HasAsManyDegreesOfFreedomAsItsEntrySays) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
-    EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+    EXPECT_EQ(renderer->step({}, 0).tool.has_value(), entry.degrees_of_freedom == DegreesOfFreedom::six)
+        << entry.name;
     renderer->on_frame(scenes::frame(grid_for(entry, 40)));
-    EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.freedoms == Freedoms::six) << entry.name;
+    EXPECT_EQ(renderer->step({}, 0.001).tool.has_value(), entry.degrees_of_freedom == DegreesOfFreedom::six)
+        << entry.name;
   }
 }
 
@@ -159,7 +161,7 @@ TEST(RendererContract, WithoutAFrameTheProxyIsTheHip) {
 TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
   for (const RendererEntry& entry : renderers()) {
     const auto renderer = build(entry);
-    const double height = entry.held_by == HeldBy::nothing ? 0.002 : -0.02;
+    const double height = entry.contact_model == ContactModel::nothing ? 0.002 : -0.02;
     renderer->on_frame(scenes::frame(grid_for(entry, 60)));
     renderer->step({Vec3(0, 0.02, 0)}, 0);
     const RenderOutput before = renderer->step({Vec3(0, height, 0)}, 0.001);

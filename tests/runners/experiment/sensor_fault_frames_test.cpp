@@ -26,7 +26,7 @@ namespace {
 
 TEST(SensorFaultFrames, RepeatedFramesShowTheOneBeforeThem) {
   SensorFaults s;
-  s.repeat_share = 0.4, s.dropout_share = 0.1, s.flying_share = 0.1;
+  s.repeat_probability = 0.4, s.dropout_probability = 0.1, s.flying_probability = 0.1;
   MovingShape::Settings noisy = rising_plane();
   noisy.motion.rise_frames = 400, noisy.noise_sigma_m = 0.001, noisy.grid = {8, 8, 0.002, 0, 0};
   const FaultySensor sensor = faulty(s, bare(noisy));
@@ -38,9 +38,9 @@ TEST(SensorFaultFrames, RepeatedFramesShowTheOneBeforeThem) {
     before = again;
     EXPECT_EQ(sensor.captured_s(frame), frame / 30.0) << "its own time stamp";
   }
-  expect_share(repeated, 399, 0.4);
-  expect_share(chained, repeated, 0.4);
-  s.dropout_share = s.flying_share = 0, s.repeat_share = 1;
+  expect_fraction(repeated, 399, 0.4);
+  expect_fraction(chained, repeated, 0.4);
+  s.dropout_probability = s.flying_probability = 0, s.repeat_probability = 1;
   EXPECT_TRUE(same_bits(faulty(s, bare(noisy)).cloud(300), bare(noisy)->cloud(0)));
 }
 
@@ -51,8 +51,8 @@ class Recorder final : public Renderer {
   std::vector<Frame> frames;
 };
 
-std::vector<Frame> received(const Scenario& scenario, double until_s, const Delivery& delivery = {}) {
-  FrameStream stream(scenario, {}, delivery, kKey, false);
+std::vector<Frame> received(const Scenario& scenario, double until_s, const Transport& transport = {}) {
+  FrameStream stream(scenario, {}, transport, kKey, false);
   Recorder recorder;
   for (int tick = 0; 0.001 * tick <= until_s; ++tick) stream.deliver_until(0.001 * tick, recorder);
   return recorder.frames;
@@ -60,7 +60,7 @@ std::vector<Frame> received(const Scenario& scenario, double until_s, const Deli
 
 TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
   SensorFaults s;
-  s.late_share = 0.3, s.late_s = 0.05;
+  s.late_probability = 0.3, s.late_delay_s = 0.05;
   MovingShape::Settings plane = rising_plane();
   plane.motion.rise_frames = 299, plane.grid = {4, 4, 0.002, 0, 0};
   const FaultySensor sensor = faulty(s, bare(plane));
@@ -79,13 +79,13 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
     EXPECT_GE(frames[i].arrives_s, frames[i - 1].arrives_s);
     overtaken += frames[i].index < frames[i - 1].index ? 1 : 0;
   }
-  expect_share(late, 300, 0.3);
+  expect_fraction(late, 300, 0.3);
   EXPECT_GT(overtaken, 20);
   EXPECT_EQ(came.size(), 300u);
   // Beyond the last frame of the scenario, where others could be lost, none is taken for the last.
-  const auto goes_on = received(sensor, 11, {0, 0, 1e-300});
-  EXPECT_GT(goes_on.back().index, 320);
-  for (const Frame& frame : goes_on)
+  const auto continues = received(sensor, 11, {0, 0, 1e-300});
+  EXPECT_GT(continues.back().index, 320);
+  for (const Frame& frame : continues)
     if (frame.index >= 300) {
       EXPECT_NEAR(frame.arrives_s, frame.captured_s, 1e-12);
     }
@@ -93,13 +93,14 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
 
 TEST(SensorFaultFrames, ASensorGoesOnWhereItsFramesDiffer) {
   SensorFaults s;
-  s.late_share = 1, s.quantisation_m = 0.001;
+  s.late_probability = 1, s.quantisation_m = 0.001;
   EXPECT_EQ(faulty(s).frame_count(), 41);
-  for (double SensorFaults::*share :
-       {&SensorFaults::repeat_share, &SensorFaults::shear_s, &SensorFaults::flying_share,
-        &SensorFaults::outlier_share, &SensorFaults::hole_share, &SensorFaults::dropout_share}) {
+  for (double SensorFaults::*fraction :
+       {&SensorFaults::repeat_probability, &SensorFaults::rolling_shutter_s,
+        &SensorFaults::flying_probability, &SensorFaults::outlier_probability, &SensorFaults::hole_fraction,
+        &SensorFaults::dropout_probability}) {
     SensorFaults one;
-    one.*share = 0.1;
+    one.*fraction = 0.1;
     const FaultySensor sensor = faulty(one);
     EXPECT_EQ(sensor.frame_count(), std::numeric_limits<int>::max());
     EXPECT_NEAR(sensor.captured_s(60), 2, 1e-12);
@@ -113,13 +114,13 @@ TEST(SensorFaultFrames, ASensorGoesOnWhereItsFramesDiffer) {
 
 TEST(SensorFaultFrames, ShearShowsARisingPlaneAsItWas) {
   SensorFaults s;
-  s.shear_s = 0.02;
+  s.rolling_shutter_s = 0.02;
   const FaultySensor sensor = faulty(s);
   const PointCloud before = bare()->cloud(20), after = sensor.cloud(20);
   const double low = rising_plane().grid.z(0), high = rising_plane().grid.z(49);
   for (std::size_t i = 0; i < after.size(); ++i) {
-    const double share = (before.z[i] - low) / (high - low);
-    ASSERT_NEAR(after.y[i], before.y[i] - 0.3 * (1 - share) * 0.02, 1e-12);
+    const double fraction = (before.z[i] - low) / (high - low);
+    ASSERT_NEAR(after.y[i], before.y[i] - 0.3 * (1 - fraction) * 0.02, 1e-12);
     ASSERT_NEAR(after.x[i], before.x[i], 1e-12);
     ASSERT_NEAR(after.z[i], before.z[i], 1e-12);
   }
@@ -129,20 +130,20 @@ TEST(SensorFaultFrames, ShearMovesAlongTheNormalOfATiltedPlane) {
   MovingShape::Settings tilted = rising_plane();
   tilted.motion.tilt_deg = 30;
   SensorFaults s;
-  s.shear_s = 0.02;
+  s.rolling_shutter_s = 0.02;
   const PointCloud before = bare(tilted)->cloud(20), after = faulty(s, bare(tilted)).cloud(20);
   const Vec3 normal(-0.5, std::sqrt(0.75), 0);
   // The first row was read 20 ms before; at its ends the plane of then reached elsewhere.
   for (std::size_t i = 2; i < 58; ++i) {
-    const Vec3 way = after.point(i) - before.point(i);
+    const Vec3 displacement = after.point(i) - before.point(i);
     // The plane rises by 0.3 m/s, along its normal by the cosine of that.
-    EXPECT_LT((way + 0.3 * 0.02 * std::sqrt(0.75) * normal).norm(), 1e-9);
+    EXPECT_LT((displacement + 0.3 * 0.02 * std::sqrt(0.75) * normal).norm(), 1e-9);
   }
 }
 
 TEST(SensorFaultFrames, WithoutAKnownOrMovingTruthThereIsNoShear) {
   SensorFaults s;
-  s.shear_s = 0.02;
+  s.rolling_shutter_s = 0.02;
   MovingShape::Settings rests = rising_plane();
   rests.motion = {};
   EXPECT_TRUE(same_bits(faulty(s, bare(rests)).cloud(3), bare(rests)->cloud(0)));
@@ -156,10 +157,10 @@ TEST(SensorFaultFrames, WithoutAKnownOrMovingTruthThereIsNoShear) {
                              R"(, "renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"}})";
     return Experiment::from_json(text, "recorded").build_scenario(scenes::kernels());
   };
-  const auto plain = built("{}"), sheared = built(R"({"shear_s": 0.02})");
+  const auto plain = built("{}"), sheared = built(R"({"rolling_shutter_s": 0.02})");
   EXPECT_TRUE(same_bits(sheared->cloud(1), plain->cloud(1)));
   EXPECT_TRUE(std::isnan(plain->signed_distance(Vec3::Zero(), 0)));
-  EXPECT_EQ(measured(built(R"({"dropout_share": 1})")->cloud(1)), 0u) << "recordings can wear faults";
+  EXPECT_EQ(measured(built(R"({"dropout_probability": 1})")->cloud(1)), 0u) << "recordings can wear faults";
 }
 
 // A plane that comes along the rays: what its pixels saw then lies on the same rays.
@@ -182,7 +183,7 @@ TEST(SensorFaultFrames, ShearOfAnImageStaysOnTheRays) {
     static double depth(double time_s) { return 2 - 0.4 * time_s; }
   };
   SensorFaults s;
-  s.shear_s = 0.1;
+  s.rolling_shutter_s = 0.1;
   const PointCloud cloud = faulty(s, std::make_unique<Wall>()).cloud(30);
   for (int i = 0; i < 45; ++i) {
     const double then_s = 1 - (1 - (i / 9) / 4.0) * 0.1;
@@ -195,8 +196,9 @@ TEST(SensorFaultFrames, ShearOfAnImageStaysOnTheRays) {
 
 SensorFaults everything() {
   SensorFaults s;
-  s.repeat_share = 0.2, s.shear_s = 0.01, s.flying_share = 0.1, s.outlier_share = 0.05;
-  s.quantisation_m = 0.002, s.hole_share = 0.2, s.dropout_share = 0.1, s.late_share = 0.2;
+  s.repeat_probability = 0.2, s.rolling_shutter_s = 0.01, s.flying_probability = 0.1,
+  s.outlier_probability = 0.05;
+  s.quantisation_m = 0.002, s.hole_fraction = 0.2, s.dropout_probability = 0.1, s.late_probability = 0.2;
   return s;
 }
 
@@ -235,21 +237,23 @@ TEST(SensorFaultFrames, SeveralAtOnceKeepTheirDefinitions) {
 
 TEST(SensorFaultFrames, ARunWithEverythingEnds) {
   const std::vector<std::string> set = {
-      "faults.repeat_share=0.2",  "faults.shear_s=0.01",         "faults.flying_share=0.1",
-      "faults.hole_share=0.2",    "faults.late_share=0.2",       "faults.outlier_share=0.05",
-      "faults.dropout_share=0.3", "faults.quantisation_m=0.001", "scenario.truth=moving"};
+      "faults.repeat_probability=0.2",  "faults.rolling_shutter_s=0.01", "faults.flying_probability=0.1",
+      "faults.hole_fraction=0.2",       "faults.late_probability=0.2",   "faults.outlier_probability=0.05",
+      "faults.dropout_probability=0.3", "faults.quantisation_m=0.001",   "scenario.truth=moving"};
   const Trace once = simulate(Experiment::load("fig4.12", set), {});
   const Trace again = simulate(Experiment::load("fig4.12", set), {});
-  EXPECT_EQ(once.proxy_m, again.proxy_m);
+  EXPECT_EQ(once.proxy_position_m, again.proxy_position_m);
   for (std::size_t i = 0; i < once.length(); ++i) ASSERT_TRUE(once.proxy(i).allFinite());
-  EXPECT_NE(once.proxy_m, simulate(Experiment::load("fig4.12", {"scenario.truth=moving"}), {}).proxy_m);
+  EXPECT_NE(once.proxy_position_m,
+            simulate(Experiment::load("fig4.12", {"scenario.truth=moving"}), {}).proxy_position_m);
 }
 
 // Its path is planned in what the camera would have seen.
 TEST(SensorFaultFrames, TheHandIsThatOfTheBareScenario) {
   for (const char* name : {"fig4.12", "fig4.16"}) {
     const Experiment plain = Experiment::load(name),
-                     blind = Experiment::load(name, {"faults.dropout_share=1", "faults.repeat_share=1"});
+                     blind = Experiment::load(
+                         name, {"faults.dropout_probability=1", "faults.repeat_probability=1"});
     const auto scene = plain.build_scenario(scenes::kernels());
     const auto dark = blind.build_scenario(scenes::kernels());
     const auto hand = plain.build_trajectory(*scene), same = blind.build_trajectory(*dark);
@@ -263,7 +267,7 @@ TEST(SensorFaultFrames, TheHandIsThatOfTheBareScenario) {
 
 TEST(SensorFaultFrames, TheSectionSurvivesARoundTripCompletely) {
   const Experiment experiment =
-      Experiment::load("fig4.12", {"faults.dropout_share=0.5", "faults.view=[0,-1,1]"});
+      Experiment::load("fig4.12", {"faults.dropout_probability=0.5", "faults.view_direction=[0,-1,1]"});
   const std::string text = experiment.to_json();
   EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
   const Json json = Json::parse(text)["faults"];
@@ -271,7 +275,7 @@ TEST(SensorFaultFrames, TheSectionSurvivesARoundTripCompletely) {
   const Parameters list = parameters(defaults);
   EXPECT_EQ(json.size(), list.size());
   for (const Parameter& p : list) EXPECT_TRUE(json.contains(p.name)) << p.name;
-  EXPECT_EQ(json["dropout_share"], 0.5);
+  EXPECT_EQ(json["dropout_probability"], 0.5);
   EXPECT_FALSE(Json::parse(Experiment::load("fig4.12").to_json()).contains("faults"));
 }
 
@@ -280,8 +284,9 @@ TEST(SensorFaultFrames, ALiveSessionRunsAgainWithoutThem) {
   const TestFolder folder("sensor_faults_test");
   const std::string file = (folder / "session.h5").string();
   const SensorView view{{64, 2, 60, 60, 31.5, 0.5}, 0.001, 30, false, RigidTransform::Identity()};
-  SessionWriter session(file, view, RigidTransform::Identity(),
-                        {{"config", Experiment::load("fig4.16", {"faults.dropout_share=0.5"}).to_json()}});
+  SessionWriter session(
+      file, view, RigidTransform::Identity(),
+      {{"config", Experiment::load("fig4.16", {"faults.dropout_probability=0.5"}).to_json()}});
   SensorFrame frame;
   frame.depth.assign(128, 500);
   session.append(frame, 0, 0);
@@ -293,7 +298,8 @@ TEST(SensorFaultFrames, ALiveSessionRunsAgainWithoutThem) {
   const Experiment again = Experiment::load(file);
   EXPECT_FALSE(Json::parse(again.to_json()).contains("faults"));
   EXPECT_EQ(measured(again.build_scenario(scenes::kernels())->cloud(0)), 128u);
-  const auto worse = Experiment::load(file, {"faults.dropout_share=1"}).build_scenario(scenes::kernels());
+  const auto worse =
+      Experiment::load(file, {"faults.dropout_probability=1"}).build_scenario(scenes::kernels());
   EXPECT_EQ(measured(worse->cloud(0)), 0u);
   EXPECT_EQ(worse->frame_count(), 1);
   EXPECT_TRUE(worse->ends());
@@ -304,12 +310,12 @@ TEST(SensorFaultFrames, RefusesWhatIsNone) {
   const auto why = [](const std::string& assignment) {
     return refusal([&] { Experiment::load("fig4.12", {assignment}); });
   };
-  EXPECT_EQ(why("faults.dropout_share=1.5"), "faults.dropout_share = 1.5: allowed 0 to 1");
+  EXPECT_EQ(why("faults.dropout_probability=1.5"), "faults.dropout_probability = 1.5: allowed 0 to 1");
   EXPECT_EQ(why("faults.quantisation_m=-0.001"), "faults.quantisation_m = -0.001: allowed 0 to 1");
   EXPECT_EQ(why("faults.hole_radius_m=0"), "faults.hole_radius_m = 0: allowed 0.0001 to 10");
-  EXPECT_HAS(why("faults.view=[0,0,0]"), "faults.view: allowed 0.001 or longer");
+  EXPECT_HAS(why("faults.view_direction=[0,0,0]"), "faults.view_direction: allowed 0.001 or longer");
   EXPECT_HAS(why("faults.dropout=0.5"),
-             "faults.dropout: unknown; the nearest allowed is faults.dropout_share");
+             "faults.dropout: unknown; the nearest allowed is faults.dropout_probability");
   EXPECT_HAS(why("faults=3"), "faults: allowed {parameters}");
   SensorFaults blind;
   blind.view.setZero();

@@ -18,10 +18,10 @@ Vec3 direction(std::mt19937& random) {
 TEST(DeviceMotors, ADeviceWithAllOfThemExertsWhatItIsTold) {
   std::mt19937 random(1);
   for (int i = 0; i < 50; ++i) {
-    const Wrench told{5 * direction(random), direction(random)};
-    const Wrench felt = exerted({}, rotation(3 * direction(random)), told);
-    EXPECT_EQ(felt.force_N, told.force_N);
-    EXPECT_LT((felt.torque_Nm - told.torque_Nm).norm(), 4e-15);
+    const Wrench commanded{5 * direction(random), direction(random)};
+    const Wrench device_wrench = exerted({}, rotation(3 * direction(random)), commanded);
+    EXPECT_EQ(device_wrench.force_N, commanded.force_N);
+    EXPECT_LT((device_wrench.torque_Nm - commanded.torque_Nm).norm(), 4e-15);
   }
 }
 
@@ -30,15 +30,16 @@ TEST(DeviceMotors, AMissingTurnIsThatOfTheHandle) {
   std::mt19937 random(2);
   for (int missing = 0; missing < 3; ++missing) {
     MotorSettings motors;
-    (missing == 0 ? motors.turns_x : missing == 1 ? motors.turns_y : motors.turns_z) = false;
+    (missing == 0 ? motors.torque_x : missing == 1 ? motors.torque_y : motors.torque_z) = false;
     for (int i = 0; i < 50; ++i) {
       const Eigen::Quaterniond handle_W = rotation(3 * direction(random));
-      const Wrench told{direction(random), direction(random)};
-      const Wrench felt = exerted(motors, handle_W, told);
-      EXPECT_EQ(felt.force_N, told.force_N);
+      const Wrench commanded{direction(random), direction(random)};
+      const Wrench device_wrench = exerted(motors, handle_W, commanded);
+      EXPECT_EQ(device_wrench.force_N, commanded.force_N);
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 axis_W = handle_W.toRotationMatrix().col(axis);
-        EXPECT_NEAR(felt.torque_Nm.dot(axis_W), axis == missing ? 0 : told.torque_Nm.dot(axis_W), 4e-15);
+        EXPECT_NEAR(device_wrench.torque_Nm.dot(axis_W),
+                    axis == missing ? 0 : commanded.torque_Nm.dot(axis_W), 4e-15);
       }
     }
   }
@@ -47,7 +48,7 @@ TEST(DeviceMotors, AMissingTurnIsThatOfTheHandle) {
 // Turned by a quarter the handle's x is the base's y.
 TEST(DeviceMotors, TheRollOfATurnedHandleIsAnotherAxisOfTheBase) {
   MotorSettings motors;
-  motors.turns_x = false;
+  motors.torque_x = false;
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Vec3::UnitZ()));
   EXPECT_LT((exerted(motors, quarter, {Vec3::Zero(), {1, 2, 3}}).torque_Nm - Vec3(1, 0, 3)).norm(), 4e-15);
 }
@@ -55,18 +56,18 @@ TEST(DeviceMotors, TheRollOfATurnedHandleIsAnotherAxisOfTheBase) {
 TEST(DeviceMotors, AMissingMoveIsThatOfTheBase) {
   std::mt19937 random(3);
   MotorSettings motors;
-  motors.moves_x = motors.moves_z = false;
-  const Wrench felt = exerted(motors, rotation(direction(random)), {{1, 2, 3}, {4, 5, 6}});
-  EXPECT_EQ(felt.force_N, Vec3(0, 2, 0));
-  EXPECT_LT((felt.torque_Nm - Vec3(4, 5, 6)).norm(), 1e-14);
-  motors.moves_y = false;
+  motors.force_x = motors.force_z = false;
+  const Wrench device_wrench = exerted(motors, rotation(direction(random)), {{1, 2, 3}, {4, 5, 6}});
+  EXPECT_EQ(device_wrench.force_N, Vec3(0, 2, 0));
+  EXPECT_LT((device_wrench.torque_Nm - Vec3(4, 5, 6)).norm(), 1e-14);
+  motors.force_y = false;
   EXPECT_EQ(exerted(motors, rotation(direction(random)), {{1, 2, 3}, {0, 0, 0}}).force_N, Vec3::Zero());
 }
 
 TEST(DeviceMotors, LongerWrenchesAreCutAndShorterOnesLeft) {
   std::mt19937 random(4);
   MotorSettings motors;
-  motors.largest_force_N = 3, motors.largest_torque_Nm = 0.2;
+  motors.max_force_N = 3, motors.max_torque_Nm = 0.2;
   for (int i = 0; i < 20; ++i) {
     const Eigen::Quaterniond handle_W = rotation(3 * direction(random));
     const Vec3 f = direction(random), t = direction(random);

@@ -42,13 +42,13 @@ struct Oscillator {
 // The largest distance from `expected` over half a second; drive(t) is the path and what the hand feels from
 // t on.
 template <class Drive, class Expected>
-double largest_error(const OperatorSettings& s, double tick_s, const Drive& drive, const Expected& expected) {
+double max_error(const OperatorSettings& s, double tick_s, const Drive& drive, const Expected& expected) {
   OperatorModel hand(s, tick_s);
   hand.move(at({0, 0, 0}), 0, {});
   double error = 0;
   for (int i = 1; i * tick_s < 0.5; ++i) {
-    const auto [path, felt] = drive();
-    const DeviceState d = hand.move(path, i * tick_s, felt);
+    const auto [path, device_wrench] = drive();
+    const DeviceState d = hand.move(path, i * tick_s, device_wrench);
     const double angle = rotation_vector(d.orientation_W).x();
     error = std::max({error, std::abs(d.position_W.x() - expected(i * tick_s).first),
                       std::abs(angle - expected(i * tick_s).second)});
@@ -99,30 +99,32 @@ TEST(OperatorModel, HalfAGripGivesWayTwiceAsFar) {
 
 TEST(OperatorModel, AnswersAForceLikeAnOscillator) {
   OperatorSettings s;
-  s.turn_damping_Nms_per_rad = 0.02;
+  s.rotational_damping_Nms_per_rad = 0.02;
   const Oscillator place(s.mass_kg, s.damping_Ns_per_m, s.stiffness_N_per_m);
-  const Oscillator angle(s.inertia_kg_m2, s.turn_damping_Nms_per_rad, s.turn_stiffness_Nm_per_rad);
+  const Oscillator angle(s.inertia_kg_m2, s.rotational_damping_Nms_per_rad,
+                         s.rotational_stiffness_Nm_per_rad);
   const auto drive = [] { return Driven{at({0, 0, 0}), {{3, 0, 0}, {0.01, 0, 0}}}; };
   const auto exact = [&](double t) {
     return Pair{0.01 * place.after_a_force(t), 0.01 * angle.after_a_force(t)};
   };
-  const double coarse = largest_error(s, kTick_s, drive, exact);
-  const double fine = largest_error(s, kTick_s / 10, drive, exact);
+  const double coarse = max_error(s, kTick_s, drive, exact);
+  const double fine = max_error(s, kTick_s / 10, drive, exact);
   EXPECT_LT(coarse, 4e-4);
   EXPECT_NEAR(coarse / fine, 10, 2) << "of first order in the tick";
 }
 
 TEST(OperatorModel, AnswersAJumpOfThePathLikeAnOscillatorOnASled) {
   OperatorSettings s;
-  s.turn_damping_Nms_per_rad = 0.02;
+  s.rotational_damping_Nms_per_rad = 0.02;
   const Oscillator place(s.mass_kg, s.damping_Ns_per_m, s.stiffness_N_per_m);
-  const Oscillator angle(s.inertia_kg_m2, s.turn_damping_Nms_per_rad, s.turn_stiffness_Nm_per_rad);
+  const Oscillator angle(s.inertia_kg_m2, s.rotational_damping_Nms_per_rad,
+                         s.rotational_stiffness_Nm_per_rad);
   const auto drive = [] { return Driven{at({0.01, 0, 0}, {0.01, 0, 0}), {}}; };
   const auto exact = [&](double t) {
     return Pair{0.01 * place.after_a_jump(t), 0.01 * angle.after_a_jump(t)};
   };
-  const double coarse = largest_error(s, kTick_s, drive, exact);
-  const double fine = largest_error(s, kTick_s / 10, drive, exact);
+  const double coarse = max_error(s, kTick_s, drive, exact);
+  const double fine = max_error(s, kTick_s / 10, drive, exact);
   EXPECT_LT(coarse, 8e-4);
   EXPECT_NEAR(coarse / fine, 10, 2);
 }
@@ -158,7 +160,7 @@ TEST(OperatorModel, WithoutAGripTheDeviceLeadsTheHand) {
 TEST(OperatorModel, AFreeTurnKeepsItsAxisAndItsSpeed) {
   std::mt19937 random(6);
   OperatorSettings s;
-  s.turn_stiffness_Nm_per_rad = s.turn_damping_Nms_per_rad = 0;
+  s.rotational_stiffness_Nm_per_rad = s.rotational_damping_Nms_per_rad = 0;
   for (int run = 0; run < 10; ++run) {
     const Vec3 axis = direction(random);
     const DeviceState start = at({0, 0, 0}, 2 * direction(random));
@@ -184,9 +186,9 @@ TEST(OperatorModel, EnergyNeverGrowsByItself) {
   for (int run = 0; run < 100; ++run) {
     OperatorSettings s;
     s.mass_kg = between(0.05, 2), s.inertia_kg_m2 = between(1e-4, 1e-2);
-    s.stiffness_N_per_m = between(1, 2000), s.turn_stiffness_Nm_per_rad = between(0.01, 3);
+    s.stiffness_N_per_m = between(1, 2000), s.rotational_stiffness_Nm_per_rad = between(0.01, 3);
     s.damping_Ns_per_m = s.stiffness_N_per_m * kTick_s * between(0.5, 20);
-    s.turn_damping_Nms_per_rad = s.turn_stiffness_Nm_per_rad * kTick_s * between(0.5, 20);
+    s.rotational_damping_Nms_per_rad = s.rotational_stiffness_Nm_per_rad * kTick_s * between(0.5, 20);
     const Vec3 axis = direction(random);
     const DeviceState path = at(0.1 * direction(random), 0.3 * axis);
     OperatorModel hand(s, kTick_s);
@@ -199,7 +201,7 @@ TEST(OperatorModel, EnergyNeverGrowsByItself) {
       const double angle = d.orientation_W.angularDistance(path.orientation_W);
       const double energy = 0.5 * (s.mass_kg * v.squaredNorm() + s.inertia_kg_m2 * w.squaredNorm() +
                                    s.stiffness_N_per_m * (d.position_W - path.position_W).squaredNorm() +
-                                   s.turn_stiffness_Nm_per_rad * angle * angle);
+                                   s.rotational_stiffness_Nm_per_rad * angle * angle);
       ASSERT_LE(energy, last * (1 + 1e-9) + 1e-13) << run << " " << i;
       last = energy, before = d;
     }
@@ -227,32 +229,33 @@ TEST(OperatorModel, PressesButtonsWhenItIsToldTo) {
 
 TEST(OperatorModel, RefusesWhatCannotBe) {
   OperatorSettings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.mass_kg = 0.01, s.stiffness_N_per_m = 400;
-  EXPECT_EQ(conflict(s), "stiffness_N_per_m = 400.000000: allowed below 400.000000 for this mass");
+  EXPECT_EQ(validate(s), "stiffness_N_per_m = 400.000000: allowed below 400.000000 for this mass");
   s.stiffness_N_per_m = 399;
-  EXPECT_EQ(conflict(s), "");
-  s.turn_stiffness_Nm_per_rad = 40;
-  EXPECT_EQ(conflict(s), "turn_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
+  EXPECT_EQ(validate(s), "");
+  s.rotational_stiffness_Nm_per_rad = 40;
+  EXPECT_EQ(validate(s),
+            "rotational_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
   s = {};
   s.grip = {0, 1.5};
-  EXPECT_EQ(conflict(s), "grip: share 1.500000: allowed 0 to 1");
+  EXPECT_EQ(validate(s), "grip: share 1.500000: allowed 0 to 1");
   s.grip = {1, 0, 0.5, 1};
-  EXPECT_EQ(conflict(s), "grip: time 0.500000: allowed no earlier than the row before");
+  EXPECT_EQ(validate(s), "grip: time 0.500000: allowed no earlier than the row before");
   s = {};
   for (const double button : {32.0, 1.5}) {
     s.presses = {0, 0, 1, 1, button, 1};
-    EXPECT_EQ(conflict(s), "presses: button " + std::to_string(button) + ": allowed whole numbers 0 to 31");
+    EXPECT_EQ(validate(s), "presses: button " + std::to_string(button) + ": allowed integers 0 to 31");
   }
   s.presses = {0, 0, 0.01, 1, 1, 0.009};
-  EXPECT_EQ(conflict(s), "presses: duration 0.009000: allowed 0.01 or more");
+  EXPECT_EQ(validate(s), "presses: duration 0.009000: allowed 0.01 or more");
 }
 
 // As stiff as it may be at the slowest rate, without a damper: it rings, and does not run away.
 TEST(OperatorModel, AnAllowedSpringIsStableAtTheSlowestRate) {
   OperatorSettings s;
   s.mass_kg = 0.05, s.stiffness_N_per_m = 1999, s.damping_Ns_per_m = 0;
-  ASSERT_EQ(conflict(s), "");
+  ASSERT_EQ(validate(s), "");
   OperatorModel hand(s, 0.01);
   hand.move(at({0, 0, 0}), 0, {});
   for (int i = 1; i < 10000; ++i)
@@ -264,7 +267,7 @@ TEST(OperatorModel, AnAllowedSpringIsStableAtTheSlowestRate) {
 TEST(OperatorModel, EveryAllowedDamperIsStable) {
   OperatorSettings s;
   s.mass_kg = 0.01, s.stiffness_N_per_m = 100, s.damping_Ns_per_m = 1000;
-  ASSERT_EQ(conflict(s), "");
+  ASSERT_EQ(validate(s), "");
   OperatorModel hand(s, 0.01);
   hand.move(at({0, 0, 0}), 0, {});
   double before = 0;

@@ -25,7 +25,7 @@ TEST(SimulatedHand, WithoutAnOperatorFollowsTheScriptExactly) {
     EXPECT_EQ(d.position_W, path.position_W);
     EXPECT_EQ(d.orientation_W.coeffs(), path.orientation_W.coeffs());
     EXPECT_EQ(d.buttons, 5u);
-    hand.feel(d, out);
+    hand.apply(d, out);
     EXPECT_FALSE(hand.state());
   }
 }
@@ -33,14 +33,14 @@ TEST(SimulatedHand, WithoutAnOperatorFollowsTheScriptExactly) {
 // The force of one tick moves the hand in the next, as far as the device has motors.
 TEST(SimulatedHand, FeelsWhatTheDeviceExerts) {
   MotorSettings motors;
-  motors.moves_y = motors.turns_x = false;
+  motors.force_y = motors.torque_x = false;
   SimulatedHand hand(OperatorSettings{}, motors, kTick_s);
   RenderOutput out;
   out.force_N = {1, 2, 0};
   out.tool.emplace().torque_Nm = {0.1, 0, 0.2};
   const DeviceState first = hand.move(at({0, 0, 0}), 0);
   EXPECT_EQ(hand.state()->force_N, Vec3::Zero());
-  hand.feel(first, out);
+  hand.apply(first, out);
   EXPECT_EQ(hand.state()->force_N, Vec3(1, 0, 0));
   EXPECT_EQ(hand.state()->torque_Nm, Vec3(0, 0, 0.2));
   EXPECT_EQ(hand.state()->intended_W, Vec3::Zero());
@@ -58,9 +58,9 @@ TEST(SimulatedHand, FeelsNoTorqueWithoutATool) {
   const DeviceState d = hand.move(at({0, 0, 0}), 0);
   RenderOutput out;
   out.tool.emplace().torque_Nm = {1, 0, 0};
-  hand.feel(d, out);
+  hand.apply(d, out);
   EXPECT_EQ(hand.state()->torque_Nm, Vec3(1, 0, 0));
-  hand.feel(d, {});
+  hand.apply(d, {});
   EXPECT_EQ(hand.state()->torque_Nm, Vec3::Zero());
 }
 

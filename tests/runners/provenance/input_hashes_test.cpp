@@ -188,7 +188,7 @@ TEST(NamedInputs, OfAnUnfinishedSweepStayWhereRunsAreDone) {
       "recordings");
   const std::string x = "x: 2 file(s), 9 bytes, sha256 00", y = "y: 2 file(s), 9 bytes, sha256 11";
   const auto attributes = [&](const std::string& inputs) {
-    return TextAttributes{{"config", sweep.to_json()}, {"inputs", inputs}};
+    return TextAttributes{{"config", sweep.to_json()}, {"input_digests", inputs}};
   };
   SweepResult result = sweep.plan();
   std::get<std::vector<double>>(result.measures[0].values)[0] = 5;
@@ -200,7 +200,7 @@ TEST(NamedInputs, OfAnUnfinishedSweepStayWhereRunsAreDone) {
   EXPECT_TRUE(planned(x + "\n" + y).in_progress);
   const SweepPlan mended = planned(x + "\n" + y + "2");
   EXPECT_FALSE(mended.in_progress || mended.is_finished);  // the file has to be written anew
-  EXPECT_EQ(attribute(mended.attributes, "inputs"), x + "\n" + y + "2");
+  EXPECT_EQ(attribute(mended.attributes, "input_digests"), x + "\n" + y + "2");
   EXPECT_EQ(mended.result.state[0], RunState::done);
   EXPECT_HAS(refusal([&] { planned(x + "3\n" + y); }), "map.h5: has runs on another recording x (2 file(s)");
   EXPECT_HAS(refusal([&] { planned(""); }), "now absent");

@@ -78,15 +78,15 @@ TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
   SceneRules rules = kRules;
   rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
   const SceneScore scene = score(rules, {held, lost}, false, 1);
-  const Standing& judged = scene.measures[0].standing;
+  const Ranking& judged = scene.measures[0].ranking;
   EXPECT_EQ(judged.mean[1].pairs, 6);
   EXPECT_EQ(judged.mean[1].mean, 2.5);
   EXPECT_EQ(judged.order.front(), 0u);
   EXPECT_TRUE(judged.has_best);
   EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 2);
-  EXPECT_EQ(scene.measures[1].standing.mean[1].pairs, 18);
+  EXPECT_EQ(scene.measures[1].ranking.mean[1].pairs, 18);
   time[6] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[6] = -1;
-  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].standing.has_best);  // five pairs are left
+  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].ranking.has_best);  // five pairs are left
 }
 
 TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
@@ -110,7 +110,7 @@ TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
   for (const Table& table : figure.tables)
     for (const Column& column : table.columns)
       EXPECT_EQ(column.length(), table.columns[0].length()) << column.name;
-  EXPECT_EQ(numbers(figure.tables[0], "share")[1], 0.9);
+  EXPECT_EQ(numbers(figure.tables[0], "fraction")[1], 0.9);
   EXPECT_EQ(figure.panels.size(), 2u);
 }
 
@@ -145,8 +145,8 @@ TEST(Costs, WhatWasNotMeasuredIsNotSorted) {
 
 TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
   const TestFolder folder("costs");
-  const TextAttributes here = {{"sources", "s"}, {"isa", "i"}, {"cpu", "c"}},
-                       other = {{"sources", "s"}, {"isa", "i"}, {"cpu", "d"}};
+  const TextAttributes here = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "c"}},
+                       other = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "d"}};
   write_costs(folder / "costs.json", {{"a", "b", 1e-5, std::nan("")}}, here);
   const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
   ASSERT_EQ(costs.size(), 1u);

@@ -38,7 +38,7 @@ const Case kCases[] = {{"fig4.11", {"duration_s=2"}},
                        {"valve-sequence", {"duration_s=0.6", "scenario.frame_rate_hz=5"}},
                        {"rocking-plane", {"duration_s=1", "scenario.shape=ripple"}},
                        {"sliding-ridge", {"duration_s=1", "scenario.shape=sphere", "scenario.tilt_deg=9"}},
-                       {"faulty-lift", {"faults.shear_s=0.01", "scenario.truth=moving"}}};
+                       {"faulty-lift", {"faults.rolling_shutter_s=0.01", "scenario.truth=moving"}}};
 
 TEST(Determinism, EveryInstructionSet) {
   for (const Case& c : kCases) {

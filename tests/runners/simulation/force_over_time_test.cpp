@@ -39,7 +39,7 @@ TEST(ForceOverTime, TheLatestContactIsCarriedWithTheCloud) {
   ProxyParameters parameters;
   parameters.steps_per_tick = 1;
   ProxyRenderer renderer = scenes::renderer(parameters);
-  double before = 0, largest_jump = 0;
+  double before = 0, max_jump = 0;
   for (int tick = 0; tick < 1000; ++tick) {
     const double time = 0.001 * tick;
     const int frame = tick / 40;
@@ -51,16 +51,15 @@ TEST(ForceOverTime, TheLatestContactIsCarriedWithTheCloud) {
     if (tick % 40 == 0)
       renderer.on_frame(
           {frame, frame / 25.0, frame / 25.0, make_search(scenes::flat_grid(40, 0.0015, height(frame)))});
-    const double share = (tick % 40) / 40.0;
-    const double surface = height(frame) + share * (height(frame + 1) - height(frame));
+    const double fraction = (tick % 40) / 40.0;
+    const double surface = height(frame) + fraction * (height(frame + 1) - height(frame));
     const RenderOutput out = renderer.step({Vec3(0, frame < 8 ? 0 : surface - 0.02, 0)}, time);
-    if (tick % 40 == 0 && frame > 13)
-      largest_jump = std::max(largest_jump, std::abs(out.force_N.y() - before));
+    if (tick % 40 == 0 && frame > 13) max_jump = std::max(max_jump, std::abs(out.force_N.y() - before));
     before = out.force_N.y();
   }
   // What the estimate cannot know is the acceleration: a / f_c^2 = 1.6 mm, 0.96 N. Left behind, the contact
   // would jump by the whole update, more than 4 mm.
-  EXPECT_LT(largest_jump, 1.2);
+  EXPECT_LT(max_jump, 1.2);
   EXPECT_GT(before, 5);
 }
 
@@ -82,7 +81,7 @@ TEST(ForceOverTime, CountsFromTheArrivalOfTheFrame) {
   }
 }
 
-// The cloud stops to come while v_hat is 0.1 m/s: the force may go on as if it rose for longest_prediction_s,
+// The cloud stops to come while v_hat is 0.1 m/s: the force may go on as if it rose for max_prediction_s,
 // no longer.
 TEST(ForceOverTime, StaysBoundedWhenTheStreamStops) {
   const Trace trace = simulate(Experiment::load(
@@ -93,7 +92,7 @@ TEST(ForceOverTime, StaysBoundedWhenTheStreamStops) {
   EXPECT_EQ(trace.force(trace.length() - 1), trace.force(trace.length() - 1000));
 }
 
-// Below 10 Hz a frame interval is longer than longest_prediction_s: the estimate must be right all the same.
+// Below 10 Hz a frame interval is longer than max_prediction_s: the estimate must be right all the same.
 TEST(ForceOverTime, SlowStreamsHaveARightVelocity) {
   ProxyRenderer renderer = scenes::renderer();
   RenderOutput out;

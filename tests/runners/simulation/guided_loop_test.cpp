@@ -68,9 +68,9 @@ Trace beside_a_goal(const std::vector<std::string>& overrides, double duration_s
                                         "test", all));
 }
 
-Trace of_a_tool(const std::string& turn_deg, const std::vector<std::string>& overrides) {
+Trace of_a_tool(const std::string& rotation_deg, const std::vector<std::string>& overrides) {
   std::vector<std::string> all{R"(renderer={"name": "tool", "tool_mesh": "ball"})",
-                               "trajectory.waypoints=[[0,0.5,0,0]]", "guidance.turn_deg=" + turn_deg,
+                               "trajectory.waypoints=[[0,0.5,0,0]]", "guidance.rotation_deg=" + rotation_deg,
                                // The goal stays where it is when the tool's axes turn.
                                "guidance.standoff_m=0", "guidance.offset_m=[0,0.5,0]"};
   all.insert(all.end(), overrides.begin(), overrides.end());
@@ -105,7 +105,7 @@ TEST(GuidedLoop, ATaskIsPlayedByThePressesOfTheHand) {
     ASSERT_EQ(trace.buttons[i], i >= 1000 && i < 1100 ? 16 : 0) << i;
     const bool there = (trace.hip(i) - Vec3(0, 0.05, 0)).norm() <= 0.005;
     left |= i >= 1000 && there;
-    ASSERT_EQ(trace.guidance_pulls[i], i >= 1000 && !left ? 1 : 0) << i;
+    ASSERT_EQ(trace.guidance_active[i], i >= 1000 && !left ? 1 : 0) << i;
     ASSERT_EQ(trace.sequence_step[i], left ? 2 : 0) << i;
   }
   EXPECT_TRUE(left);
@@ -124,7 +124,7 @@ TEST(GuidedLoop, TurnsMeetWhereTheirSpringsAreEven) {
 
 // 7.5.2: a device without a motor for the roll cannot exert the torque that is left, and it never vanishes.
 TEST(GuidedLoop, WithoutAMotorForTheRollATorqueRemains) {
-  const Trace trace = of_a_tool("[40,0,0]", {"device.turns_x=false", "operator.grip=[[0,0]]"});
+  const Trace trace = of_a_tool("[40,0,0]", {"device.torque_x=false", "operator.grip=[[0,0]]"});
   for (std::size_t i = 0; i < trace.length(); i += 100) {
     ASSERT_LT((trace.guidance_torque(i) - Vec3(40 * kDegree * 200 * 9e-4, 0, 0)).norm(), 1e-9) << i;
     ASSERT_LT(trace.device_torque(i).norm(), 1e-15) << i;
@@ -135,7 +135,7 @@ TEST(GuidedLoop, WithoutAMotorForTheRollATorqueRemains) {
 // Turned about all axes the hand ends where the torque is about its own roll alone.
 TEST(GuidedLoop, TheTorqueThatRemainsIsAboutTheHandle) {
   const Trace trace =
-      of_a_tool("[40,30,-20]", {"device.turns_x=false", "operator.grip=[[0,0]]", "duration_s=20"});
+      of_a_tool("[40,30,-20]", {"device.torque_x=false", "operator.grip=[[0,0]]", "duration_s=20"});
   const std::size_t end = trace.length() - 1;
   const Vec3 torque_T = trace.hip_orientation_at(end).conjugate() * trace.torque(end);
   EXPECT_GT(std::abs(torque_T.x()), 0.05);
@@ -165,10 +165,10 @@ TEST(GuidedLoop, TheTraceHasGuidanceAndHandWhereThereAreSuch) {
 }
 
 TEST(GuidedLoop, SameTaskSameBits) {
-  const std::vector<std::string> overrides{"operator.grip=[[1,1],[1,0]]", "device.turns_x=false"};
+  const std::vector<std::string> overrides{"operator.grip=[[1,1],[1,0]]", "device.torque_x=false"};
   const Trace a = beside_a_goal(overrides), b = beside_a_goal(overrides);
-  ASSERT_EQ(a.hip_m.size(), b.hip_m.size());
-  EXPECT_EQ(std::memcmp(a.hip_m.data(), b.hip_m.data(), 8 * a.hip_m.size()), 0);
+  ASSERT_EQ(a.hip_position_m.size(), b.hip_position_m.size());
+  EXPECT_EQ(std::memcmp(a.hip_position_m.data(), b.hip_position_m.data(), 8 * a.hip_position_m.size()), 0);
   EXPECT_EQ(std::memcmp(a.device_force_N.data(), b.device_force_N.data(), 8 * a.device_force_N.size()), 0);
 }
 

@@ -34,7 +34,7 @@ TEST(ForceGate, LatestContactHasNoDropouts) {
   const auto silent = [](const std::string& gate) {
     const Trace trace = simulate(Experiment::load(
         "fig4.11", {"scenario.noise_sigma_m=0.003", "renderer.force_gate=" + gate, "duration_s=3"}));
-    return share_without_force(trace, 0.005);
+    return no_force_fraction(trace, 0.005);
   };
   EXPECT_EQ(silent("latest_contact"), 0);
   EXPECT_GT(silent("contact_now"), 0.005);

@@ -16,7 +16,7 @@ constexpr double kPressed_m = 0.01;
 // How far behind the surface the proxy was at most. Not popped_through: a point proxy lies on the points, and
 // so behind the true surface by their noise.
 double lost_m(const std::string& renderer, double acceleration_m_per_s2, double noise_sigma_m = 0) {
-  return largest_penetration_m(simulate(Experiment::load(
+  return max_penetration_m(simulate(Experiment::load(
       "fig4.12",
       {"renderer=" + renderer, "scenario.acceleration_m_per_s2=" + std::to_string(acceleration_m_per_s2),
        "scenario.noise_sigma_m=" + std::to_string(noise_sigma_m), "scenario.start_velocity_m_per_s=0",

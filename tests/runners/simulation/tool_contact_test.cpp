@@ -31,14 +31,14 @@ std::string poses(const std::string& rows) {
   return R"({"name": "poses", "poses": [)" + rows + "]}";
 }
 
-int most(const std::vector<std::int32_t>& column) {
+int max(const std::vector<std::int32_t>& column) {
   return *std::max_element(column.begin(), column.end());
 }
 int sum(const std::vector<std::int32_t>& column) {
   return std::accumulate(column.begin(), column.end(), 0);
 }
 double deepest(const Trace& trace) {
-  return *std::max_element(trace.penetration_m.begin(), trace.penetration_m.end());
+  return *std::max_element(trace.tool_penetration_m.begin(), trace.tool_penetration_m.end());
 }
 
 // Degrees about y at which a bar of 80 x 10 mm comes to rest in a slot of 40 mm, turned to 30 degrees.
@@ -62,10 +62,9 @@ TEST(ToolContact, ABarInASlotStopsWhereItMustByLookAhead) {
 // Voxels let the corner sink between the columns: most where one is just beyond it, by spacing x tan(a).
 TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
   const auto worst = [](double spacing_m) {
-    double largest = 0;
-    for (int i = 0; i < 4; ++i)
-      largest = std::max(largest, bar_stops_at("voxels", spacing_m, 0.25 * i * spacing_m));
-    return largest;
+    double max = 0;
+    for (int i = 0; i < 4; ++i) max = std::max(max, bar_stops_at("voxels", spacing_m, 0.25 * i * spacing_m));
+    return max;
   };
   EXPECT_NEAR(worst(0.001), 23.2, 0.4);
   EXPECT_NEAR(worst(0.002), 23.78, 0.1);
@@ -73,12 +72,12 @@ TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
 }
 
 // A plane rises at a speed under a slab that is held; true when the slab is carried.
-bool carried(int thickness_mm, double speed_m_per_s, const std::string& rule) {
+bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string& rule) {
   const double rise = 0.08 + 0.006 * thickness_mm;
   const Trace trace =
       run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.03, "wait_s": 0.1})",
           tool("slab-" + std::to_string(thickness_mm), rule), poses("[0,0,0,0,0,0,0]"),
-          {"scenario.speed_m_per_s=" + number(speed_m_per_s), "scenario.rise_m=" + number(rise),
+          {"scenario.speed_m_per_s=" + number(speed_m_per_s), "scenario.rise_height_m=" + number(rise),
            "duration_s=" + number(0.3 + rise / speed_m_per_s)});
   return trace.signed_distance_m.back() > 0;
 }
@@ -87,16 +86,16 @@ bool carried(int thickness_mm, double speed_m_per_s, const std::string& rule) {
 TEST(ToolContact, SlabsAreLiftedUpToTheBoundByVoxels) {
   for (const int h : {5, 10, 20, 40}) {
     const double bound = 30 * (0.001 * h - 0.001);
-    EXPECT_TRUE(carried(h, 0.98 * bound, "voxels")) << h;
-    EXPECT_FALSE(carried(h, 1.02 * bound, "voxels")) << h;
+    EXPECT_TRUE(frame_correction(h, 0.98 * bound, "voxels")) << h;
+    EXPECT_FALSE(frame_correction(h, 1.02 * bound, "voxels")) << h;
   }
 }
 
 // The rule that remembers its side loses nothing to a shell: v < f_c h.
 TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
   for (const int h : {5, 10, 20, 40}) {
-    EXPECT_TRUE(carried(h, 0.97 * 30 * 0.001 * h, "look-ahead")) << h;
-    EXPECT_FALSE(carried(h, 1.03 * 30 * 0.001 * h, "look-ahead")) << h;
+    EXPECT_TRUE(frame_correction(h, 0.97 * 30 * 0.001 * h, "look-ahead")) << h;
+    EXPECT_FALSE(frame_correction(h, 1.03 * 30 * 0.001 * h, "look-ahead")) << h;
   }
 }
 
@@ -110,7 +109,7 @@ TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
       const Trace trace = run(
           R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.0048, "wait_s": 0.2, "speed_m_per_s": 0})",
           tool("slab-10", rule), poses("[0,0,0,0,0,0,0]"),
-          {"scenario.acceleration_m_per_s2=" + number(a), "scenario.rise_m=" + number(rise),
+          {"scenario.acceleration_m_per_s2=" + number(a), "scenario.rise_height_m=" + number(rise),
            "duration_s=" + number(0.5 + std::sqrt(2 * rise / a)),
            std::string("renderer.velocity_estimate=") + (estimate ? "true" : "false")});
       EXPECT_EQ(trace.signed_distance_m.back() > 0, estimate) << rule;
@@ -164,32 +163,33 @@ TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
 // What held the tool is forgotten once it is left behind: a ball that was at the back of a plane, and went
 // round it, is lifted by it like one that was not.
 TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
-  for (const char* way :
+  for (const char* displacement :
        {"[0,-0.05,0,0,0,0,0], [0,-0.009,0,0,0,0,0.3]", "[0,-0.05,0,0,0,0,0], [0,-0.03,0,0,0,0,0.3]"}) {
     const Trace trace = run(
         R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": 0, "wait_s": 1.5, "speed_m_per_s": 0.3,
-            "rise_m": 0.05})",
+            "rise_height_m": 0.05})",
         tool("ball", "look-ahead"),
-        poses(std::string(way) + ", [0,-0.05,0,0,0,0,0.2], [0.2,-0.05,0,0,0,0,0.2], [0.2,0.05,0,0,0,0,0.2], "
-                                 "[0,0.0122,0,0,0,0,0.4]"),
+        poses(std::string(displacement) +
+              ", [0,-0.05,0,0,0,0,0.2], [0.2,-0.05,0,0,0,0,0.2], [0.2,0.05,0,0,0,0,0.2], "
+              "[0,0.0122,0,0,0,0,0.4]"),
         {"duration_s=2"});
-    EXPECT_NEAR(trace.proxy(trace.length() - 1).y(), 0.06, 1e-3) << way;
+    EXPECT_NEAR(trace.proxy(trace.length() - 1).y(), 0.06, 1e-3) << displacement;
   }
 }
 
 // As printed the normal pulls a tool through from behind: the reading that look-ahead mends.
 TEST(ToolContact, TheBackOfASheetSucksTheToolThroughByVoxels) {
   const Trace trace = from_behind("ball", "voxels");
-  double farthest = -1;
-  for (std::size_t i = 0; i < trace.length(); ++i) farthest = std::max(farthest, trace.proxy(i).z());
-  EXPECT_GT(farthest, 0.005);
+  double max_distance = -1;
+  for (std::size_t i = 0; i < trace.length(); ++i) max_distance = std::max(max_distance, trace.proxy(i).z());
+  EXPECT_GT(max_distance, 0.005);
 }
 
 // Walls that close on a bar to less than its thickness, while the device moves along them, and open again.
 TEST(ToolContact, ATrappedToolFollowsAlongAWedgeAndRecovers) {
   const std::string wedge =
-      R"({"name": "wedge", "angle_deg": 0, "open_gap_m": 0.03, "closed_gap_m": 0.006, "closing_at_s": 0.2,
-          "closed_at_s": 0.5, "reopening_at_s": 1.1, "open_at_s": 1.4})";
+      R"({"name": "wedge", "angle_deg": 0, "open_gap_m": 0.03, "closed_gap_m": 0.006, "close_start_s": 0.2,
+          "close_end_s": 0.5, "open_start_s": 1.1, "open_end_s": 1.4})";
   for (const std::string rule : {"look-ahead", "voxels"})
     for (const char* where : {"scenario.offset_m=0", "scenario.offset_m=0.004", "scenario.tilt_deg=12"}) {
       const Trace trace = run(wedge, tool("bar", rule),
@@ -211,12 +211,12 @@ TEST(ToolContact, ATrappedToolFollowsAlongAWedgeAndRecovers) {
 TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
   for (const char* rule : {"look-ahead", "voxels"}) {
     const Trace trace = simulate(Experiment::load("fig6.3", {std::string("renderer.contact_rule=") + rule}));
-    double largest = 0;
+    double max = 0;
     for (std::size_t i = 0; i < trace.length(); ++i) {
       const double lag =
           (rotation_vector(trace.hip_orientation_at(i)) - rotation_vector(trace.tool_orientation_at(i)))
               .norm();
-      largest = std::max(largest, rotation_vector(trace.tool_orientation_at(i)).y() / kRadiansPerDegree);
+      max = std::max(max, rotation_vector(trace.tool_orientation_at(i)).y() / kRadiansPerDegree);
       if (lag > kRadiansPerDegree) {
         EXPECT_GT(trace.contact_count[i], 0) << i;
       }
@@ -225,9 +225,9 @@ TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
         EXPECT_EQ(trace.proxy(i), trace.hip(i));
       }
     }
-    EXPECT_GT(largest, 20.5) << rule;
-    EXPECT_LT(largest, 22.5) << rule;
-    EXPECT_LE(most(trace.active_constraints), 6);
+    EXPECT_GT(max, 20.5) << rule;
+    EXPECT_LT(max, 22.5) << rule;
+    EXPECT_LE(max(trace.active_constraints), 6);
     EXPECT_LT(deepest(trace), 5e-4) << rule;
   }
 }

@@ -53,7 +53,7 @@ Heights slide(const std::string& renderer, double sigma, int seed) {
 TEST(TrackedSheet, WithoutNoiseItIsTheProxyOfChapter4) {
   for (const char* experiment : {"fig4.11", "fig4.14"}) {
     const Trace paper = run(experiment, {kProxy}), ours = run(experiment, {kSheet});
-    EXPECT_EQ(paper.proxy_m, ours.proxy_m) << experiment;
+    EXPECT_EQ(paper.proxy_position_m, ours.proxy_position_m) << experiment;
     EXPECT_EQ(paper.force_N, ours.force_N) << experiment;
     EXPECT_EQ(paper.normal, ours.normal) << experiment;
     EXPECT_EQ(paper.proxy_steps, ours.proxy_steps) << experiment;
@@ -110,7 +110,7 @@ TEST(TrackedSheet, AVanishedSheetLetsGoAfterOneFrameMore) {
   const double ours = last_force_time_s(run("vanishing-plane", {kSheet}));
   EXPECT_NEAR(ours - paper, 1.0 / 30, 0.002);
   EXPECT_NEAR(last_force_time_s(
-                  run("vanishing-plane", {R"(renderer={"name": "tracked-sheet", "bridged_frames": 0})"})),
+                  run("vanishing-plane", {R"(renderer={"name": "tracked-sheet", "max_missed_frames": 0})"})),
               paper, 0.002);
 }
 
@@ -143,14 +143,14 @@ TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
           {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_frame=-1",
            "scenario.empty_frame=20", setting("scenario.noise_sigma_m", 0.3 * kRc), "duration_s=1",
            R"(trajectory={"name": "press", "start_m": [0, 0.06, 0], "depth_m": -0.01, "per_frame": false})"});
-  double least = 1, most = 0, least_force = 1e9;
+  double min = 1, max = 0, min_force = 1e9;
   for (std::size_t i = 600; i < trace.length(); ++i) {
-    least = std::min(least, trace.signed_distance_m[i]), most = std::max(most, trace.signed_distance_m[i]);
-    least_force = std::min(least_force, trace.force(i).y());
+    min = std::min(min, trace.signed_distance_m[i]), max = std::max(max, trace.signed_distance_m[i]);
+    min_force = std::min(min_force, trace.force(i).y());
   }
-  EXPECT_NEAR(least, 0.025, 0.002);
-  EXPECT_NEAR(most, 0.025, 0.002);
-  EXPECT_GT(least_force, 5);
+  EXPECT_NEAR(min, 0.025, 0.002);
+  EXPECT_NEAR(max, 0.025, 0.002);
+  EXPECT_GT(min_force, 5);
 }
 
 // The proxy among the points of a noisy plane around a place, after 20 frames.

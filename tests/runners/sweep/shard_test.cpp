@@ -30,7 +30,7 @@ TEST(Shards, ShareTheCells) {
     for (const int count : {1, 2, 3, 7, 20}) {
       const SweepResult whole = sweep.plan();
       std::vector<int> owners(whole.run_count(), 0);
-      std::size_t fewest = whole.run_count(), most = 0;
+      std::size_t min_count = whole.run_count(), max = 0;
       for (int index = 1; index <= count; ++index) {
         const SweepResult part = sweep.plan({index, count});
         for (std::size_t run = 0; run < part.run_count(); ++run) {
@@ -42,12 +42,12 @@ TEST(Shards, ShareTheCells) {
                                                                           : RunState::elsewhere;
           EXPECT_EQ(part.state[run], expected);
         }
-        fewest = std::min(fewest, part.runs_in(RunState::pending).size());
-        most = std::max(most, part.runs_in(RunState::pending).size());
+        min_count = std::min(min_count, part.runs_in(RunState::pending).size());
+        max = std::max(max, part.runs_in(RunState::pending).size());
       }
       for (std::size_t run = 0; run < owners.size(); ++run)
         EXPECT_EQ(owners[run], whole.state[run] == RunState::pending ? 1 : 0);
-      EXPECT_LE(most - fewest, 2u);  // replicates of one cell
+      EXPECT_LE(max - min_count, 2u);  // replicates of one cell
     }
 }
 
@@ -75,25 +75,22 @@ std::string from_environment(const std::vector<std::pair<const char*, const char
 }
 
 TEST(Shards, AreThoseOfSlurmOrMpirun) {
-  const char *id = "SLURM_ARRAY_TASK_ID", *count = "SLURM_ARRAY_TASK_COUNT", *least = "SLURM_ARRAY_TASK_MIN",
+  const char *id = "SLURM_ARRAY_TASK_ID", *count = "SLURM_ARRAY_TASK_COUNT", *min = "SLURM_ARRAY_TASK_MIN",
              *step = "SLURM_ARRAY_TASK_STEP", *rank = "OMPI_COMM_WORLD_RANK", *size = "OMPI_COMM_WORLD_SIZE";
   EXPECT_EQ(from_environment({}), "none");
-  EXPECT_EQ(from_environment({{id, "2"}, {count, "3"}, {least, "1"}, {step, "1"}}), "2/3");
+  EXPECT_EQ(from_environment({{id, "2"}, {count, "3"}, {min, "1"}, {step, "1"}}), "2/3");
   EXPECT_EQ(from_environment({{id, "0"}, {count, "3"}}), "1/3");  // --array=0-2
-  EXPECT_EQ(from_environment({{id, "14"}, {count, "3"}, {least, "10"}, {step, "2"}}),
+  EXPECT_EQ(from_environment({{id, "14"}, {count, "3"}, {min, "10"}, {step, "2"}}),
             "3/3");  // --array=10-14:2
   EXPECT_EQ(from_environment({{rank, "0"}, {size, "4"}}), "1/4");
   EXPECT_EQ(from_environment({{rank, "3"}, {size, "4"}}), "4/4");
-  EXPECT_EQ(from_environment({{id, "1"}, {count, "2"}, {least, "1"}, {rank, "3"}, {size, "4"}}), "1/2");
+  EXPECT_EQ(from_environment({{id, "1"}, {count, "2"}, {min, "1"}, {rank, "3"}, {size, "4"}}), "1/2");
   EXPECT_EQ(from_environment({{rank, "3"}}), "none");
-  EXPECT_HAS(from_environment({{id, "two"}, {count, "3"}}),
-             "SLURM_ARRAY_TASK_ID = two: allowed whole numbers");
+  EXPECT_HAS(from_environment({{id, "two"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = two: allowed integers");
   EXPECT_HAS(from_environment({{id, "-1"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = -1: allowed");
-  EXPECT_HAS(from_environment({{id, "7"}, {count, "3"}, {least, "1"}}),
-             "SLURM_ARRAY_TASK_ID = 7: allowed i/N");
+  EXPECT_HAS(from_environment({{id, "7"}, {count, "3"}, {min, "1"}}), "SLURM_ARRAY_TASK_ID = 7: allowed i/N");
   EXPECT_HAS(from_environment({{rank, "4"}, {size, "4"}}), "OMPI_COMM_WORLD_RANK = 4: allowed i/N");
-  EXPECT_HAS(from_environment({{rank, "1"}, {size, "1.5"}}),
-             "OMPI_COMM_WORLD_SIZE = 1.5: allowed whole numbers");
+  EXPECT_HAS(from_environment({{rank, "1"}, {size, "1.5"}}), "OMPI_COMM_WORLD_SIZE = 1.5: allowed integers");
 }
 
 }  // namespace

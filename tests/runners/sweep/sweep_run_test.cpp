@@ -20,13 +20,13 @@ constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
   "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
   "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
            {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
-  "replicates": 2, "measures": ["largest_penetration", "popped_through"]})";
+  "replicates": 2, "measures": ["max_penetration", "popped_through"]})";
 
 Sweep quick(const std::vector<std::string>& overrides = {}) {
   return Sweep::from_json(kQuick, "quick.json", overrides);
 }
 Sweep refined() {
-  return quick({"axes.1.count=3", "refine.budget=70", "refine.levels=2", "refine.most_replicates=5"});
+  return quick({"axes.1.count=3", "refine.budget=70", "refine.levels=2", "refine.max_replicates=5"});
 }
 
 void expect_same(const SweepResult& a, const SweepResult& b) {
@@ -46,12 +46,12 @@ TEST(SweepRuns, HaveTheBitsOfSingleRuns) {
   const SweepResult result = run_sweep(sweep, {});
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)));
-    EXPECT_EQ(result.measure("largest_penetration")[run], largest_penetration_m(trace));
+    EXPECT_EQ(result.measure("max_penetration")[run], max_penetration_m(trace));
     EXPECT_EQ(result.measure("popped_through")[run], popped_through(trace));
   }
   // Replicates differ in their noise, where there is any.
-  EXPECT_EQ(result.measure("largest_penetration")[0], result.measure("largest_penetration")[1]);
-  EXPECT_NE(result.measure("largest_penetration")[22], result.measure("largest_penetration")[23]);
+  EXPECT_EQ(result.measure("max_penetration")[0], result.measure("max_penetration")[1]);
+  EXPECT_NE(result.measure("max_penetration")[22], result.measure("max_penetration")[23]);
 }
 
 TEST(SweepRuns, DoNotDependOnThreads) {

@@ -45,8 +45,8 @@ TEST(Sweeps, AllFilesAreStoredAndResolve) {
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     files += entry.path().extension() == ".json";
-  EXPECT_EQ(stored_sweeps().size(), files);
-  for (const StoredText& stored : stored_sweeps()) {
+  EXPECT_EQ(embedded_sweeps().size(), files);
+  for (const EmbeddedText& stored : embedded_sweeps()) {
     SCOPED_TRACE(stored.name);
     EXPECT_EQ(stored.json, bytes_of(folder / (std::string(stored.name) + ".json")));
     const Sweep sweep = Sweep::load(stored.name);
@@ -73,7 +73,7 @@ TEST(Sweeps, SurviveARoundTrip) {
       {R"(axes.0={"parameter": "renderer.step_rule", "values": ["fixed", "variable"]})"},
       {R"(axes.0={"parameter": "trajectory.start_m", "values": [[0, 0, 0], [0, 0, 0.01]]})"},
       {R"(axes.0={"parameter": "seed", "values": [18446744073709551615, 1]})"},
-      {"refine.budget=50", "refine.levels=2", "refine.above=0.25"},
+      {"refine.budget=50", "refine.levels=2", "refine.threshold=0.25"},
       {"replicates=7", "title=grün", "scenario.columns=150"}};
   for (const auto& overrides : cases) {
     const Sweep sweep = small(overrides), again = Sweep::from_json(sweep.to_json(), "again");
@@ -179,7 +179,7 @@ TEST(Axes, RefinementKeepsTheFirstRound) {
   }
 }
 
-// Whatever a parameter takes: whole numbers, switches, choices, vectors, whole parts.
+// Whatever a parameter takes: integers, switches, choices, vectors, whole parts.
 TEST(Axes, ListsOfAnything) {
   const auto cells = [](const std::string& path, const std::string& values) {
     const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}");
@@ -200,7 +200,7 @@ TEST(Axes, ListsOfAnything) {
   EXPECT_EQ(cells("seed", "[3, 18446744073709551615]").units, "1");
 }
 
-// A range may lie over a parameter that takes whole numbers only, as long as it meets them.
+// A range may lie over a parameter that takes integers only, as long as it meets them.
 TEST(Axes, WholeNumbers) {
   const Sweep sweep = along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 5})");
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(value_in(sweep, i, "seed"), 2 * i + 1);
@@ -245,8 +245,8 @@ TEST(Refinement, ItsRuleAndFirstRound) {
   EXPECT_FALSE(small().refinement().has_value());
   EXPECT_TRUE(small().plan().round.empty());
   const Sweep sweep =
-      small({"refine.budget=50", "refine.levels=2", "refine.most_replicates=9", "refine.measure=mean_steps",
-             "refine.above=3", R"(axes.1={"parameter": "seed", "values": [4, 5]})"});
+      small({"refine.budget=50", "refine.levels=2", "refine.max_replicates=9", "refine.measure=mean_steps",
+             "refine.threshold=3", R"(axes.1={"parameter": "seed", "values": [4, 5]})"});
   EXPECT_EQ(sweep.refinement()->strides, (std::vector<std::size_t>{4, 1}));
   EXPECT_EQ(sweep.refinement()->measure, "mean_steps");
   EXPECT_EQ(sweep.refinement()->above, 3);

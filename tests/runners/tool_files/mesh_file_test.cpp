@@ -155,7 +155,7 @@ TEST_P(RealMeshTest, BecomesATool) {
   EXPECT_GT(tool.volume_m3, voxel * solid);
   EXPECT_NEAR(tool.volume_m3, voxel * (solid + shell), (settings.repair ? 0.1 : 0.02) * tool.volume_m3);
   EXPECT_NEAR(report.sides_m.maxCoeff(), 0.15, 1e-9);
-  EXPECT_LT(report.thin_share, 0.2);
+  EXPECT_LT(report.thin_fraction, 0.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, RealMeshTest,

@@ -26,7 +26,7 @@ void expect_equal(const ToolSpheres& a, const ToolSpheres& b) {
       EXPECT_EQ(a.spheres.level(level)[i].first, b.spheres.level(level)[i].first);
       EXPECT_EQ(a.spheres.level(level)[i].count, b.spheres.level(level)[i].count);
     }
-  EXPECT_EQ(a.growth_m, b.growth_m);
+  EXPECT_EQ(a.inflation_m, b.inflation_m);
   EXPECT_EQ(a.outside_m, b.outside_m);
   EXPECT_EQ(a.inside_m, b.inside_m);
 }
@@ -85,7 +85,7 @@ TEST_F(SpheresCacheTest, ADamagedFileIsMadeAnew) {
 TEST_F(SpheresCacheTest, CountsThatDoNotFitAreRefused) {
   const std::vector<double> leaves(8, 0.01);
   for (const std::vector<std::uint32_t>& counts : {std::vector<std::uint32_t>{1}, {2, 1}, {1, 2}, {3}, {}}) {
-    const auto put = [&](Packing& pack) {
+    const auto put = [&](CacheWriter& pack) {
       pack.list(leaves), pack.list(counts);
       for (int i = 0; i < 3; ++i) pack.value(0.0);
     };

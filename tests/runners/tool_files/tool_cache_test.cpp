@@ -162,10 +162,10 @@ TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
   EXPECT_HAS(refusal([] { load_tool({.mesh = "open.obj", .size_m = 0.02}); }),
              "renderer.tool_mesh = open.obj: not closed: 4 boundary edges");
   EXPECT_TRUE(load_tool({.mesh = "open.obj", .size_m = 0.02, .voxel_m = 1e-3, .repair = true}));
-  EXPECT_EQ(conflict(bar_), "");
-  EXPECT_HAS(conflict({.mesh = "wolf"}), "tool_mesh = wolf: allowed ball, bar");
-  EXPECT_HAS(conflict({.mesh = ""}), "allowed ball, bar");
-  EXPECT_HAS(conflict({.size_m = 5e-4}), "tool_size_m = 0.000500: allowed two voxels");
+  EXPECT_EQ(validate(bar_), "");
+  EXPECT_HAS(validate({.mesh = "wolf"}), "tool_mesh = wolf: allowed ball, bar");
+  EXPECT_HAS(validate({.mesh = ""}), "allowed ball, bar");
+  EXPECT_HAS(validate({.size_m = 5e-4}), "tool_size_m = 0.000500: allowed two voxels");
 }
 
 TEST_F(ToolCacheTest, ParametersReachTheSettings) {

@@ -50,11 +50,12 @@ TEST(Poses, TakeTheShorterWayRound) {
   const Poses device = poses({0, 0, 0, 20, -50, 80, 0, 0, 0, 0, -100, 30, 10, 1, 0, 0, 0, 0, 0, 200, 1});
   const Eigen::Quaterniond a = about({20, -50, 80}, Vec3(20, -50, 80).norm());
   const Eigen::Quaterniond b = about({-100, 30, 10}, Vec3(-100, 30, 10).norm());
-  for (double share = 0; share < 1; share += 0.07) expect_at(device.at(share), {0, 0, 0}, a.slerp(share, b));
+  for (double fraction = 0; fraction < 1; fraction += 0.07)
+    expect_at(device.at(fraction), {0, 0, 0}, a.slerp(fraction, b));
   // 200 degrees are 160 the other way.
   const Eigen::Quaterniond c = about({0, 0, 1}, -160);
-  for (double share = 0; share < 1; share += 0.07)
-    expect_at(device.at(1 + share), {0, 0, 0}, b.slerp(share, c));
+  for (double fraction = 0; fraction < 1; fraction += 0.07)
+    expect_at(device.at(1 + fraction), {0, 0, 0}, b.slerp(fraction, c));
   // At a constant rate.
   const double first = device.at(0.3).orientation_W.angularDistance(device.at(0.31).orientation_W);
   const double later = device.at(0.7).orientation_W.angularDistance(device.at(0.71).orientation_W);
@@ -62,11 +63,11 @@ TEST(Poses, TakeTheShorterWayRound) {
 }
 
 TEST(Poses, RefuseWhatIsNotUnique) {
-  EXPECT_EQ(conflict(Poses::Settings{}), "");
-  EXPECT_NE(conflict(Poses::Settings{{}}), "");
-  EXPECT_NE(conflict(Poses::Settings{{0, 0, 0, 0, 0, 0, -1}}), "");
+  EXPECT_EQ(validate(Poses::Settings{}), "");
+  EXPECT_NE(validate(Poses::Settings{{}}), "");
+  EXPECT_NE(validate(Poses::Settings{{0, 0, 0, 0, 0, 0, -1}}), "");
   const auto turned = [](double degrees, double duration) {
-    return conflict(Poses::Settings{{0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 10 + degrees, 0, duration}});
+    return validate(Poses::Settings{{0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 10 + degrees, 0, duration}});
   };
   EXPECT_EQ(turned(179, 1), "");
   EXPECT_NE(turned(180, 1), "");

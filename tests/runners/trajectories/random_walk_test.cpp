@@ -17,27 +17,27 @@ RandomWalk walk(const RandomWalk::Settings& settings) {
 
 TEST(RandomWalk, StaysInItsBoxAndBelowItsSpeed) {
   RandomWalk::Settings s;
-  s.centre_m = {1, 2, 3}, s.extent_m = {0.02, 0.05, 0.01}, s.turn_deg = 40, s.duration_s = 200;
+  s.centre_m = {1, 2, 3}, s.extent_m = {0.02, 0.05, 0.01}, s.max_rotation_deg = 40, s.duration_s = 200;
   const RandomWalk device = walk(s);
-  Vec3 widest = Vec3::Zero();
-  double fastest = 0, most_turned = 0;
+  Vec3 max_width = Vec3::Zero();
+  double max_speed = 0, max_rotation = 0;
   for (double t = 0; t < s.duration_s; t += 0.01) {
     const DeviceState now = device.at(t), next = device.at(t + 0.001);
-    widest = widest.cwiseMax((now.position_W - s.centre_m).cwiseAbs());
-    fastest = std::max(fastest, (next.position_W - now.position_W).norm() / 0.001);
-    most_turned = std::max(most_turned, now.orientation_W.angularDistance(Eigen::Quaterniond::Identity()));
+    max_width = max_width.cwiseMax((now.position_W - s.centre_m).cwiseAbs());
+    max_speed = std::max(max_speed, (next.position_W - now.position_W).norm() / 0.001);
+    max_rotation = std::max(max_rotation, now.orientation_W.angularDistance(Eigen::Quaterniond::Identity()));
     ASSERT_NEAR(now.orientation_W.norm(), 1, 4e-16);
     ASSERT_LT(now.orientation_W.angularDistance(next.orientation_W), 0.01) << "smooth";
   }
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_LE(widest[axis], s.extent_m[axis]);
-    EXPECT_GT(widest[axis], 0.8 * s.extent_m[axis]);
+    EXPECT_LE(max_width[axis], s.extent_m[axis]);
+    EXPECT_GT(max_width[axis], 0.8 * s.extent_m[axis]);
   }
-  EXPECT_LE(fastest, s.speed_m_per_s * (1 + 1e-9));
-  EXPECT_GT(fastest, 0.5 * s.speed_m_per_s);
+  EXPECT_LE(max_speed, s.speed_m_per_s * (1 + 1e-9));
+  EXPECT_GT(max_speed, 0.5 * s.speed_m_per_s);
   const double degree = std::acos(-1.0) / 180;
-  EXPECT_LE(most_turned, s.turn_deg * degree * (1 + 1e-9));
-  EXPECT_GT(most_turned, 0.5 * s.turn_deg * degree);
+  EXPECT_LE(max_rotation, s.max_rotation_deg * degree * (1 + 1e-9));
+  EXPECT_GT(max_rotation, 0.5 * s.max_rotation_deg * degree);
 }
 
 TEST(RandomWalk, EverySeedIsAnotherWalk) {
@@ -56,11 +56,11 @@ TEST(RandomWalk, EverySeedIsAnotherWalk) {
 
 TEST(RandomWalk, RefusesAPlaceWithoutRoom) {
   RandomWalk::Settings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.extent_m = {1e-7, 0, 0};
-  EXPECT_NE(conflict(s), "");
+  EXPECT_NE(validate(s), "");
   s.extent_m.setZero();
-  EXPECT_NE(conflict(s), "");
+  EXPECT_NE(validate(s), "");
 }
 
 }  // namespace

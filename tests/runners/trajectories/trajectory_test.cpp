@@ -88,9 +88,9 @@ TEST(Waypoints, RowsArePlacesWithTheSpeedOnTheWayThere) {
   expect_at(device.at(2).position_W, {0.1, -0.01, 0});
   expect_at(device.at(4).position_W, {0.1, -0.01, 0.2});
   expect_at(device.at(9).position_W, {0.1, -0.01, 0.3});
-  EXPECT_EQ(conflict(Waypoints::Settings{}), "");
-  EXPECT_NE(conflict(Waypoints::Settings{{}}), "");
-  EXPECT_NE(conflict(Waypoints::Settings{{0, 0, 0, -1}}), "");
+  EXPECT_EQ(validate(Waypoints::Settings{}), "");
+  EXPECT_NE(validate(Waypoints::Settings{{}}), "");
+  EXPECT_NE(validate(Waypoints::Settings{{0, 0, 0, -1}}), "");
 }
 
 // The lift rises with 0.1 m/s from -0.05 m; from frame 15 on its speed grows by 0.1 m/s a frame.
@@ -261,7 +261,7 @@ TEST(ImageScan, RefusesWhatItCannotScan) {
   s.row = 0;  // at the border nothing is supported on all sides
   EXPECT_THROW(ImageScan(s, scene), InputError);
   s.row = 240, s.first_column = 20, s.last_column = 10;
-  EXPECT_NE(conflict(s), "");
+  EXPECT_NE(validate(s), "");
 }
 
 }  // namespace

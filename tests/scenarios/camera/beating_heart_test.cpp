@@ -79,14 +79,14 @@ TEST(BeatingHeart, TheTopMovesSmoothly) {
   const BeatingHeart heart = made();
   const double h = 1e-4, contraction_s = 0.3 * kBeat_s, relaxation_s = 0.4 * kBeat_s;
   const auto speed = [&](double t) { return (top(heart, t + h) - top(heart, t - h)) / (2 * h); };
-  double fastest_down = 0, fastest_up = 0;
+  double max_speed_down = 0, max_speed_up = 0;
   for (double t = -0.1; t < 2 * kBeat_s; t += h) {
-    fastest_down = std::max(fastest_down, -speed(t)), fastest_up = std::max(fastest_up, speed(t));
+    max_speed_down = std::max(max_speed_down, -speed(t)), max_speed_up = std::max(max_speed_up, speed(t));
     const double acceleration = 10 / std::sqrt(3.0) * 0.0065 / (contraction_s * contraction_s);
     ASSERT_LE(std::abs(speed(t + h) - speed(t)), 1.001 * h * acceleration) << t;
   }
-  EXPECT_NEAR(fastest_down, 15.0 / 8 * 0.0065 / contraction_s, 1e-5);
-  EXPECT_NEAR(fastest_up, 15.0 / 8 * 0.0065 / relaxation_s, 1e-5);
+  EXPECT_NEAR(max_speed_down, 15.0 / 8 * 0.0065 / contraction_s, 1e-5);
+  EXPECT_NEAR(max_speed_up, 15.0 / 8 * 0.0065 / relaxation_s, 1e-5);
 }
 
 TEST(BeatingHeart, TheAtriumLeads) {
@@ -105,11 +105,11 @@ TEST(BeatingHeart, TruthIsContinuousInTimeAndSpace) {
   const BeatingHeart heart = made();
   const double h = 1e-5;
   // Half an axis of 40 mm shrinks by 6.5 / 32, at most 15 / 8 of that in the time of a contraction.
-  const double fastest = 15.0 / 8 * 0.040 * 0.0065 / 0.032 / (0.3 * kBeat_s);
+  const double max_speed = 15.0 / 8 * 0.040 * 0.0065 / 0.032 / (0.3 * kBeat_s);
   for (const Vec3& p : places())
     for (double t = 0; t < kBeat_s; t += 0.0307) {
       const double d = heart.signed_distance(p, t);
-      EXPECT_LE(std::abs(heart.signed_distance(p, t + h) - d), 1.001 * fastest * h);
+      EXPECT_LE(std::abs(heart.signed_distance(p, t + h) - d), 1.001 * max_speed * h);
       EXPECT_LE(std::abs(heart.signed_distance(p + Vec3(h, -h, h), t) - d), 1.001 * std::sqrt(3.0) * h);
       if (d < 0) {
         EXPECT_LT(p.y(), heart.surface_height(p.x(), p.z(), t)) << "inside is below the top";

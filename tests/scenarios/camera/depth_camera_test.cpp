@@ -18,7 +18,7 @@ DepthCameraSettings small() {
   return {.width = 64,
           .height = 48,
           .focal_px = 60,
-          .camera_m = {0, 0.5, 0},
+          .camera_position_m = {0, 0.5, 0},
           .noise_per_m = 0,
           .quantisation_per_m = 0};
 }
@@ -66,9 +66,9 @@ TEST(LookAt, StraightDownAndUpTheImagesRightIsX) {
 
 TEST(DepthCamera, RefusesToLookAtItself) {
   DepthCameraSettings s = small();
-  EXPECT_EQ(conflict(s), "");
-  s.target_m = s.camera_m;
-  EXPECT_NE(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
+  s.target_position_m = s.camera_position_m;
+  EXPECT_NE(validate(s), "");
 }
 
 TEST(DepthCamera, APlaneIsSeenAtItsDepth) {
@@ -77,7 +77,7 @@ TEST(DepthCamera, APlaneIsSeenAtItsDepth) {
   for (const double z : from_above.depth.z_m) EXPECT_NEAR(z, 0.5, 1e-15);
   EXPECT_TRUE(from_above.colour.empty());
 
-  s.camera_m = {0.4, 0.3, 0}, s.hole_px = 0;  // looks down by 3 in 5 parts
+  s.camera_position_m = {0.4, 0.3, 0}, s.hole_px = 0;  // looks down by 3 in 5 parts
   const DepthCamera slanting = made(s);
   const IdealView view = slanting.view(table, false);
   const PointCloud cloud = slanting.measured(view, 0);
@@ -101,7 +101,7 @@ TEST(DepthCamera, StraightDownColumnsGoAlongXAndRowsAlongZ) {
 
 TEST(DepthCamera, NothingBeyondThreeMetres) {
   DepthCameraSettings s = small();
-  s.camera_m = {0, 0.5, 0}, s.target_m = {1, 0.5, 0};
+  s.camera_position_m = {0, 0.5, 0}, s.target_position_m = {1, 0.5, 0};
   const IdealView view = made(s).view(table, true);
   for (int v = 0; v < 48; ++v) {
     const double depth = 0.5 * 60 / (v - 23.5);
@@ -133,7 +133,7 @@ TEST(DepthCamera, HolesNearEdgesOnlyAndTheyKeepTheirColour) {
 
 TEST(DepthCamera, DepthsAreWholeDisparities) {
   DepthCameraSettings s = small();
-  s.camera_m = {0.4, 0.3, 0}, s.quantisation_per_m = 0.01;
+  s.camera_position_m = {0.4, 0.3, 0}, s.quantisation_per_m = 0.01;
   const DepthCamera camera = made(s);
   const IdealView view = camera.view(table, false);
   const PointCloud cloud = camera.measured(view, 0);

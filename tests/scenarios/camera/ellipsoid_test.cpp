@@ -54,8 +54,8 @@ class EllipsoidTest : public testing::TestWithParam<Shape> {
     const PointCloud at = scenes::random_cloud(4000, 1, 5);
     for (std::size_t i = 0; i < at.size(); ++i) {
       const Vec3 on = at.point(i).normalized().cwiseProduct(semi_axes());
-      const double shares[] = {1e-9, 0.1, 0.5, 0.9, 1 - 1e-9, 1 + 1e-9, 1.1, 2, 10, 1e4};
-      places.push_back(from_axes(shares[i % 10] * on));
+      const double fractions[] = {1e-9, 0.1, 0.5, 0.9, 1 - 1e-9, 1 + 1e-9, 1.1, 2, 10, 1e4};
+      places.push_back(from_axes(fractions[i % 10] * on));
     }
     return places;
   }
@@ -84,8 +84,8 @@ TEST_P(EllipsoidTest, NoSampleOfTheSurfaceIsCloser) {
   // Latitudes and longitudes of the unit ball, from rational points of the circle.
   std::vector<Vec3> samples;
   constexpr int kParts = 120;
-  const auto circle = [](double share) -> Eigen::Vector2d {  // -1 to 1: half the circle
-    return Eigen::Vector2d(1 - share * share, 2 * share) / (1 + share * share);
+  const auto circle = [](double fraction) -> Eigen::Vector2d {  // -1 to 1: half the circle
+    return Eigen::Vector2d(1 - fraction * fraction, 2 * fraction) / (1 + fraction * fraction);
   };
   for (int i = -kParts; i <= kParts; ++i)
     for (int j = -kParts; j <= kParts; ++j)
@@ -121,8 +121,9 @@ TEST_P(EllipsoidTest, OnTheAxesTheDistanceIsKnown) {
       double smallest_radius = e;
       for (int i = 0; i < 3; ++i)
         if (i != axis) smallest_radius = std::min(smallest_radius, semi_axes()[i] * semi_axes()[i] / e);
-      for (const double share : {1e-9, 0.3, 0.99})
-        EXPECT_NEAR(at(e - share * smallest_radius), -share * smallest_radius, 1e-13) << axis << " " << share;
+      for (const double fraction : {1e-9, 0.3, 0.99})
+        EXPECT_NEAR(at(e - fraction * smallest_radius), -fraction * smallest_radius, 1e-13)
+            << axis << " " << fraction;
     }
 }
 
@@ -147,13 +148,13 @@ TEST_P(EllipsoidTest, NoPlaceIsTooDegenerate) {
 
 TEST_P(EllipsoidTest, CastMeetsTheSurfaceFirstWhereTheEquationSays) {
   const std::vector<Vec3> from = places();
-  const PointCloud way = scenes::random_cloud(static_cast<int>(from.size()), 1, 7);
+  const PointCloud displacement = scenes::random_cloud(static_cast<int>(from.size()), 1, 7);
   int hits = 0, misses = 0, starts_inside = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Vec3 origin = from[i];
     if (i % 10 == 9) continue;  // from 10^4 radii away no digits are left
-    const Vec3 towards = from_axes(0.7 * way.point(i).cwiseProduct(semi_axes())) - origin;
-    const Vec3 direction = i % 2 == 0 ? towards : Vec3(3 * way.point(i));
+    const Vec3 towards = from_axes(0.7 * displacement.point(i).cwiseProduct(semi_axes())) - origin;
+    const Vec3 direction = i % 2 == 0 ? towards : Vec3(3 * displacement.point(i));
     const double t = solid_.cast(origin, direction);
     if (solid_.level(origin) < 1 - 1e-12) {
       EXPECT_EQ(t, 0) << i;
@@ -167,8 +168,8 @@ TEST_P(EllipsoidTest, CastMeetsTheSurfaceFirstWhereTheEquationSays) {
       // Nowhere on the way is it inside: not even where the level is least.
       const Vec3 o = to_axes(origin).cwiseQuotient(semi_axes());
       const Vec3 d = (GetParam().axes.transpose() * direction).cwiseQuotient(semi_axes());
-      const double least = std::max(0.0, -o.dot(d) / d.squaredNorm());
-      EXPECT_GT((o + least * d).squaredNorm(), 1 - 1e-10) << i;
+      const double min = std::max(0.0, -o.dot(d) / d.squaredNorm());
+      EXPECT_GT((o + min * d).squaredNorm(), 1 - 1e-10) << i;
       ++misses;
     }
   }

@@ -103,13 +103,13 @@ double walked_cast(const Extrusion& solid, const Vec3& origin, const Vec3& direc
 }
 
 TEST_P(ExtrusionTest, CastMeetsTheSurfaceWhereAWalkDoes) {
-  const PointCloud from = scenes::random_cloud(600, 0.25, 2), way = scenes::random_cloud(600, 1, 3);
+  const PointCloud from = scenes::random_cloud(600, 0.25, 2), displacement = scenes::random_cloud(600, 1, 3);
   int hits = 0, misses = 0, inside = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Vec3 origin = middle(profile()) + (i % 5 == 0 ? 0.1 : 1.0) * from.point(i);
     // Some towards the solid, some anywhere; lengths differ, for t counts in directions.
-    const Vec3 towards = middle(profile()) + 0.05 * way.point(i) - origin;
-    const Vec3 direction = (i % 2 == 0 ? towards : way.point(i)) * (1 + static_cast<double>(i % 7));
+    const Vec3 towards = middle(profile()) + 0.05 * displacement.point(i) - origin;
+    const Vec3 direction = (i % 2 == 0 ? towards : displacement.point(i)) * (1 + static_cast<double>(i % 7));
     const double end = 1 / direction.norm();  // 1 m, beyond everything here
     const double got = solid_.cast(origin, direction);
     const double walked = walked_cast(solid_, origin, direction, end);

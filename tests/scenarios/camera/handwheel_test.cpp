@@ -163,11 +163,11 @@ TEST(Handwheel, RaysMeetItWhereAMarchMeetsIt) {
 // Cast and distance agree: nothing nearer than the distance is met in any direction.
 TEST(Handwheel, NoRayMeetsItBeforeTheDistance) {
   const Handwheel wheel(kCentre, kRing_m);
-  const std::vector<Vec3> ways = places(20, 1, 4);
+  const std::vector<Vec3> directions = places(20, 1, 4);
   for (const Vec3& p : places(200, 0.1, 5)) {
     const double distance = wheel.signed_distance(p);
-    for (const Vec3& way : ways)
-      EXPECT_GE(wheel.cast(p, way.normalized()), std::max(0.0, distance - 1e-8)) << p.transpose();
+    for (const Vec3& displacement : directions)
+      EXPECT_GE(wheel.cast(p, displacement.normalized()), std::max(0.0, distance - 1e-8)) << p.transpose();
   }
 }
 

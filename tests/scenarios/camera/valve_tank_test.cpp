@@ -21,7 +21,7 @@ ValveTank made(const Settings& settings = {}, std::uint64_t seed = 1) {
 }
 Settings ideal() {
   Settings s;
-  s.turbidity_per_m = 0, s.colour_noise = 0, s.dropout = 0;
+  s.turbidity_per_m = 0, s.colour_noise = 0, s.dropout_probability = 0;
   s.camera.noise_per_m = 0, s.camera.quantisation_per_m = 0;
   return s;
 }
@@ -31,7 +31,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 bool same_bits(const PointCloud& a, const PointCloud& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z) && a.colour == b.colour;
 }
-double share_without_depth(const PointCloud& cloud) {
+double fraction_without_depth(const PointCloud& cloud) {
   double count = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) count += cloud.is_measured(i) ? 0 : 1;
   return count / static_cast<double>(cloud.size());
@@ -49,7 +49,8 @@ TEST(ValveTank, FramesArePureAndDiffer) {
 
 TEST(ValveTank, WithoutAnyNoiseThereIsOneFrame) {
   EXPECT_EQ(made(ideal()).frame_count(), 1);
-  for (double Settings::*varies : {&Settings::turbidity_per_m, &Settings::colour_noise, &Settings::dropout}) {
+  for (double Settings::*varies :
+       {&Settings::turbidity_per_m, &Settings::colour_noise, &Settings::dropout_probability}) {
     Settings s = ideal();
     s.*varies = 0.1;
     EXPECT_EQ(made(s).frame_count(), std::numeric_limits<int>::max());
@@ -91,16 +92,16 @@ TEST(ValveTank, ClearWaterShowsTheHuesOfThePaint) {
   const PointCloud cloud = tank.cloud(0);
   const std::vector<Valve> truth = tank.truth();
   const double hues_deg[] = {195, 0, 46};
-  double least[3] = {1, 1, 1}, most[3] = {};
+  double min[3] = {1, 1, 1}, max[3] = {};
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const auto k = static_cast<std::size_t>(truth[i]);
     const HueSaturationLightness colour = hue_saturation_lightness(cloud.colour[i]);
     ASSERT_NEAR(std::remainder(colour.hue_deg - hues_deg[k], 360), 0, 1.5) << i;
-    least[k] = std::min(least[k], colour.lightness), most[k] = std::max(most[k], colour.lightness);
+    min[k] = std::min(min[k], colour.lightness), max[k] = std::max(max[k], colour.lightness);
   }
   for (const int valve : {1, 2}) {
-    EXPECT_GT(most[valve], 0.43);
-    EXPECT_LT(least[valve], 0.5 * most[valve]);
+    EXPECT_GT(max[valve], 0.43);
+    EXPECT_LT(min[valve], 0.5 * max[valve]);
   }
 }
 
@@ -112,9 +113,9 @@ TEST(ValveTank, InVeryTurbidWaterThereIsOnlyTheVeil) {
 
 TEST(ValveTank, PixelsWithoutDepthKeepTheirColour) {
   Settings all = ideal(), none = ideal();
-  all.dropout = 1;
+  all.dropout_probability = 1;
   const PointCloud blind = made(all).cloud(0), seeing = made(none).cloud(0);
-  EXPECT_EQ(share_without_depth(blind), 1);
+  EXPECT_EQ(fraction_without_depth(blind), 1);
   EXPECT_EQ(blind.colour, seeing.colour);
 }
 
@@ -147,9 +148,9 @@ TEST(ValveTank, TurbidWaterLosesDepthAndMakesItNoisy) {
     const std::vector<Valve> truth = tank.truth();
     for (std::size_t i = 0; i < cloud.size(); ++i)
       if (truth[i] == Valve::none && cloud.is_measured(i)) squares += cloud.z[i] * cloud.z[i], ++count;
-    EXPECT_GT(share_without_depth(cloud), last_lost + 0.02);
+    EXPECT_GT(fraction_without_depth(cloud), last_lost + 0.02);
     EXPECT_GT(std::sqrt(squares / count), 1.3 * last_error_m);
-    last_lost = share_without_depth(cloud), last_error_m = std::sqrt(squares / count);
+    last_lost = fraction_without_depth(cloud), last_error_m = std::sqrt(squares / count);
   }
   EXPECT_NEAR(last_lost, 1 - 0.98 * std::exp(-0.25 * 3 * 0.98), 0.03) << "most of the wall is 1 m away";
 }
@@ -162,10 +163,10 @@ TEST(ValveTank, HueFindsTheValves) {
   for (const Valve valve : {Valve::left, Valve::right}) {
     HueRange::Settings s;
     if (valve == Valve::right) s.from_deg = 40, s.to_deg = 70;
-    const std::vector<double> shares = HueRange(s).shares(cloud);
+    const std::vector<double> weights = HueRange(s).weights(cloud);
     double found = 0, right = 0, there = 0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      found += shares[i], right += truth[i] == valve ? shares[i] : 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      found += weights[i], right += truth[i] == valve ? weights[i] : 0;
       there += truth[i] == valve && cloud.is_measured(i);
     }
     EXPECT_GT(right, 0.9 * there);
@@ -175,12 +176,12 @@ TEST(ValveTank, HueFindsTheValves) {
 
 TEST(ValveTank, RefusesAValveInTheWallAndACameraBehindIt) {
   Settings s;
-  EXPECT_EQ(conflict(s), "");
-  s.left_m.z() = 0.01;
-  EXPECT_NE(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
+  s.left_valve_position_m.z() = 0.01;
+  EXPECT_NE(validate(s), "");
   s = {};
-  s.camera.camera_m.z() = 0;
-  EXPECT_NE(conflict(s), "");
+  s.camera.camera_position_m.z() = 0;
+  EXPECT_NE(validate(s), "");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
   options.hash_frames = true;
   const Trace a = simulate(plain, options), b = simulate(with, options);
   EXPECT_EQ(a.frame_hash, b.frame_hash);
-  EXPECT_EQ(a.proxy_m, b.proxy_m);
+  EXPECT_EQ(a.proxy_position_m, b.proxy_position_m);
   EXPECT_EQ(a.force_N, b.force_N);
 }
 
@@ -65,16 +65,16 @@ TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
     for (std::size_t i = 0; i < after.size(); ++i) {
       const double steps = after.point(i).dot(view) / 0.003;
       ASSERT_NEAR(steps, std::round(steps), 1e-10);
-      const Vec3 way = after.point(i) - before.point(i);
-      ASSERT_LE(way.norm(), 0.0015 + 1e-15);
-      ASSERT_LT((way - way.dot(view) * view).norm(), 1e-15);
+      const Vec3 displacement = after.point(i) - before.point(i);
+      ASSERT_LE(displacement.norm(), 0.0015 + 1e-15);
+      ASSERT_LT((displacement - displacement.dot(view) * view).norm(), 1e-15);
     }
   }
 }
 
 TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
   SensorFaults s;
-  s.flying_share = 0.2, s.flying_m = 0.03, s.view = {0, 0, 5};
+  s.flying_probability = 0.2, s.max_flying_distance_m = 0.03, s.view = {0, 0, 5};
   const auto clean = bare();
   const FaultySensor sensor = faulty(s);
   double flown = 0, all = 0, sum = 0, squares = 0;
@@ -82,13 +82,13 @@ TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
     const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
     for (std::size_t i = 0; i < after.size(); ++i) {
       ++all;
-      const double way = after.z[i] - before.z[i];
+      const double displacement = after.z[i] - before.z[i];
       ASSERT_TRUE(after.x[i] == before.x[i] && after.y[i] == before.y[i]);
-      ASSERT_LE(std::abs(way), 0.03 + 1e-15);
-      if (way != 0) ++flown, sum += way, squares += way * way;
+      ASSERT_LE(std::abs(displacement), 0.03 + 1e-15);
+      if (displacement != 0) ++flown, sum += displacement, squares += displacement * displacement;
     }
   }
-  expect_share(flown, all, 0.2);
+  expect_fraction(flown, all, 0.2);
   // Evenly spread: no mean, and a standard deviation of the half width by sqrt(3).
   const double sd = 0.03 / std::sqrt(3.0);
   EXPECT_NEAR(sum / flown, 0, 5 * sd / std::sqrt(flown));
@@ -97,26 +97,27 @@ TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
 
 TEST(SensorFaults, OutliersLieWithinTheirReach) {
   SensorFaults s;
-  s.outlier_share = 0.1, s.outlier_reach_m = 0.2, s.flying_share = 1, s.flying_m = 0.001;
+  s.outlier_probability = 0.1, s.max_outlier_distance_m = 0.2, s.flying_probability = 1,
+  s.max_flying_distance_m = 0.001;
   const auto clean = bare();
   const FaultySensor sensor = faulty(s);
   double far = 0, all = 0, furthest = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double way = std::abs(after.y[i] - before.y[i]);
-      ASSERT_LE(way, 0.2 + 1e-15);
-      ++all, far += way > 0.001 + 1e-15 ? 1 : 0, furthest = std::max(furthest, way);
+      const double displacement = std::abs(after.y[i] - before.y[i]);
+      ASSERT_LE(displacement, 0.2 + 1e-15);
+      ++all, far += displacement > 0.001 + 1e-15 ? 1 : 0, furthest = std::max(furthest, displacement);
     }
   }
-  expect_share(far / (1 - 0.001 / 0.2), all, 0.1);
+  expect_fraction(far / (1 - 0.001 / 0.2), all, 0.1);
   EXPECT_GT(furthest, 0.199);
 }
 
 // In an image points stay on their rays, so that the search by pixels finds them.
 TEST(SensorFaults, InAnImagePointsMoveAlongTheirRays) {
   SensorFaults s;
-  s.flying_share = 0.3, s.flying_m = 0.05, s.quantisation_m = 0.01;
+  s.flying_probability = 0.3, s.max_flying_distance_m = 0.05, s.quantisation_m = 0.01;
   const FaultySensor sensor = faulty(s, camera());
   const PointCloud before = camera()->cloud(0), after = sensor.cloud(0);
   ASSERT_TRUE(after.image);
@@ -147,7 +148,7 @@ TEST(SensorFaults, InAnImagePointsMoveAlongTheirRays) {
 
 TEST(SensorFaults, WhatWouldLieBehindTheCameraIsLost) {
   SensorFaults s;
-  s.outlier_share = 1, s.outlier_reach_m = 5;
+  s.outlier_probability = 1, s.max_outlier_distance_m = 5;
   const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);
   const RigidTransform X_CW = after.image->X_WC.inverse();
   for (std::size_t i = 0; i < after.size(); ++i)
@@ -162,7 +163,7 @@ TEST(SensorFaults, WhatWouldLieBehindTheCameraIsLost) {
 
 TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
   SensorFaults s;
-  s.dropout_share = 0.3;
+  s.dropout_probability = 0.3;
   const FaultySensor sensor = faulty(s);
   double lost = 0, all = 0, twice = 0;
   for (int frame = 0; frame < 20; ++frame) {
@@ -178,16 +179,16 @@ TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
       ++lost, twice += i > 0 && !after.is_measured(i - 1) ? 1 : 0;
     }
   }
-  expect_share(lost, all, 0.3);
-  expect_share(twice, lost, 0.3);  // one tells nothing about the next
+  expect_fraction(lost, all, 0.3);
+  expect_fraction(twice, lost, 0.3);  // one tells nothing about the next
 }
 
 // What is gone is what lies within the radius of some middle that is gone, and nothing else.
 void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view,
                         double radius_m) {
   const auto apart = [&](std::size_t i, std::size_t j) {
-    const Vec3 way = before.point(i) - before.point(j);
-    return (way - way.dot(view) * view).norm();
+    const Vec3 displacement = before.point(i) - before.point(j);
+    return (displacement - displacement.dot(view) * view).norm();
   };
   std::vector<bool> explained(before.size());
   for (std::size_t middle = 0; middle < before.size(); ++middle) {
@@ -206,7 +207,7 @@ void expect_round_holes(const PointCloud& before, const PointCloud& after, const
 TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
   for (const Vec3& view : {Vec3(0, -1, 0), Vec3(0.6, -0.8, 0)}) {
     SensorFaults s;
-    s.hole_share = 0.25, s.hole_radius_m = 0.007, s.view = view;
+    s.hole_fraction = 0.25, s.hole_radius_m = 0.007, s.view = view;
     const FaultySensor sensor = faulty(s);
     std::vector<PointCloud> frames;
     for (const int frame : {0, 1, 2}) {
@@ -223,7 +224,7 @@ TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
 
 TEST(SensorFaults, HolesInAnImageAreRoundInTheImage) {
   SensorFaults s;
-  s.hole_share = 0.05, s.hole_radius_m = 0.02;
+  s.hole_fraction = 0.05, s.hole_radius_m = 0.02;
   const PointCloud before = camera()->cloud(0), after = faulty(s, camera()).cloud(0);
   const CameraIntrinsics& eye = after.image->camera;
   const double all = static_cast<double>(measured(before));
@@ -243,7 +244,7 @@ TEST(SensorFaults, HolesInAnImageAreRoundInTheImage) {
 
 TEST(SensorFaults, AllPointsCanBeLost) {
   SensorFaults holes, drops;
-  holes.hole_share = 1, drops.dropout_share = 1;
+  holes.hole_fraction = 1, drops.dropout_probability = 1;
   EXPECT_EQ(measured(faulty(holes).cloud(3)), 0u);
   EXPECT_EQ(measured(faulty(drops).cloud(3)), 0u);
   EXPECT_EQ(faulty(drops).points(3)->size(), 3000u);
@@ -251,7 +252,7 @@ TEST(SensorFaults, AllPointsCanBeLost) {
 
 TEST(SensorFaults, LostPointsLoseTheirNormals) {
   const Experiment experiment = Experiment::from_json(
-      R"({"scenario": {"name": "moving-plane"}, "faults": {"dropout_share": 0.5},
+      R"({"scenario": {"name": "moving-plane"}, "faults": {"dropout_probability": 0.5},
           "renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"}})",
       "plane");
   const PointCloud cloud = experiment.build_scenario(scenes::kernels())->cloud(0);

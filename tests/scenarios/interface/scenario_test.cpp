@@ -236,8 +236,8 @@ TEST(CameraScene, NoiseFreePointsLieOnTheSurfaceInSight) {
     if (std::isnan(cloud.x[i])) continue;
     const Vec3 p = cloud.point(i);
     ASSERT_LT(std::abs(scene.signed_distance(p, 0)), 1e-12) << p.transpose();
-    for (const double share : {0.7, 0.9, 0.99, 0.999})
-      ASSERT_GT(scene.signed_distance(Vec3(0.3, 0.6, -0.02) + share * (p - Vec3(0.3, 0.6, -0.02)), 0), 0);
+    for (const double fraction : {0.7, 0.9, 0.99, 0.999})
+      ASSERT_GT(scene.signed_distance(Vec3(0.3, 0.6, -0.02) + fraction * (p - Vec3(0.3, 0.6, -0.02)), 0), 0);
     on_solids += p.y() > 0.001;
   }
   EXPECT_GT(on_solids, 5000);

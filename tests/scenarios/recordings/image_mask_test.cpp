@@ -30,8 +30,8 @@ ImageMask::Settings settings(const fs::path& file) {
 
 class ImageMasks : public testing::Test {
  protected:
-  Shares shares(const fs::path& file, const PointCloud& cloud) const {
-    return ImageMask(settings(file)).shares(cloud);
+  Shares weights(const fs::path& file, const PointCloud& cloud) const {
+    return ImageMask(settings(file)).weights(cloud);
   }
   fs::path grey(const std::vector<std::uint8_t>& samples, int width) const {
     const int height = static_cast<int>(samples.size()) / width;
@@ -42,45 +42,45 @@ class ImageMasks : public testing::Test {
 };
 
 TEST_F(ImageMasks, PickWhatIsNotBlackRowByRow) {
-  EXPECT_EQ(shares(grey({0, 255, 0, 1, 0, 128}, 3), image(3, 2)), (Shares{0, 1, 0, 1, 0, 1}));
-  EXPECT_EQ(shares(grey({0, 255, 0, 1, 0, 128}, 2), image(2, 3)), (Shares{0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 3), image(3, 2)), (Shares{0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 2), image(2, 3)), (Shares{0, 1, 0, 1, 0, 1}));
 }
 
 TEST_F(ImageMasks, MayHaveColours) {
   const std::uint8_t rgb[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  EXPECT_EQ(shares(folder_.write_png("rgb.png", 2, 2, PNG_FORMAT_RGB, rgb), image(2, 2)),
+  EXPECT_EQ(weights(folder_.write_png("rgb.png", 2, 2, PNG_FORMAT_RGB, rgb), image(2, 2)),
             (Shares{0, 1, 1, 1}));
 }
 
 // What can be seen through is as black, or not, as without.
 TEST_F(ImageMasks, AlphaDoesNotCount) {
   const std::uint8_t rgba[8] = {0, 0, 0, 255, 9, 0, 0, 0};
-  EXPECT_EQ(shares(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), image(2, 1)), (Shares{0, 1}));
+  EXPECT_EQ(weights(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), image(2, 1)), (Shares{0, 1}));
 }
 
 // The colour of the palette counts, not the index.
 TEST_F(ImageMasks, MayHaveAPalette) {
   const std::uint8_t index[4] = {0, 1, 2, 1}, palette[9] = {0, 0, 7, 0, 0, 0, 255, 255, 255};
   const fs::path file = folder_.write_png("palette.png", 2, 2, PNG_FORMAT_RGB_COLORMAP, index, palette, 3);
-  EXPECT_EQ(shares(file, image(2, 2)), (Shares{1, 0, 1, 0}));
+  EXPECT_EQ(weights(file, image(2, 2)), (Shares{1, 0, 1, 0}));
 }
 
 TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
   PointCloud cloud = image(2, 1);
   cloud.x[0] = cloud.y[0] = cloud.z[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(shares(grey({255, 255}, 2), cloud), (Shares{0, 1}));
+  EXPECT_EQ(weights(grey({255, 255}, 2), cloud), (Shares{0, 1}));
 }
 
 TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
   for (const auto& [width, height] : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
-    const std::string why = refusal([&] { shares(file, image(width, height)); });
+    const std::string why = refusal([&] { weights(file, image(width, height)); });
     EXPECT_EQ(why, file.string() + ": 3 x 2 pixels; allowed as many as the frames: " + std::to_string(width) +
                        " x " + std::to_string(height));
   }
   PointCloud no_image = image(3, 2);
   no_image.image.reset();
-  EXPECT_HAS(refusal([&] { shares(file, no_image); }), "image-mask: the frame is no image");
+  EXPECT_HAS(refusal([&] { weights(file, no_image); }), "image-mask: the frame is no image");
 }
 
 TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
@@ -101,9 +101,9 @@ TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
 
 TEST_F(ImageMasks, AreInputs) {
   ImageMask::Settings settings;
-  EXPECT_HAS(conflict(settings), "path = \"\": allowed a PNG file");
+  EXPECT_HAS(validate(settings), "path = \"\": allowed a PNG file");
   settings.path = grey({1}, 1).string();
-  EXPECT_EQ(conflict(settings), "");
+  EXPECT_EQ(validate(settings), "");
   EXPECT_EQ(input_files(settings), RecordingPart{settings.path});
   const auto files = files_of(input_files(settings));
   ASSERT_EQ(files.size(), 1u);

@@ -62,13 +62,13 @@ TEST(RecordedData, BoxesOnATable) {
   EXPECT_NEAR(index.camera.fy, 525, 0.01);
   EXPECT_NEAR(index.camera.cx, 319.5, 0.01);
   EXPECT_NEAR(index.camera.cy, 239.5, 0.01);
-  double nearest_m = kNoLimit, farthest_m = 0;
+  double nearest_distance_m = kNoLimit, max_depth_m = 0;
   for (const double z : cloud.z) {
-    if (z < nearest_m) nearest_m = z;
-    if (z > farthest_m) farthest_m = z;
+    if (z < nearest_distance_m) nearest_distance_m = z;
+    if (z > max_depth_m) max_depth_m = z;
   }
-  EXPECT_NEAR(nearest_m, 0.52, 0.01);
-  EXPECT_NEAR(farthest_m, 1.33, 0.01);
+  EXPECT_NEAR(nearest_distance_m, 0.52, 0.01);
+  EXPECT_NEAR(max_depth_m, 1.33, 0.01);
 }
 
 TEST(RecordedData, LaptopSequence) {

@@ -87,7 +87,7 @@ TEST(MovingShape, AFlatLiftRendersAsAMovingLift) {
     return simulate(Experiment::from_json(text, name), {});
   };
   const Trace lift = run("moving-lift"), shape = run("moving-shape");
-  EXPECT_EQ(lift.proxy_m, shape.proxy_m);
+  EXPECT_EQ(lift.proxy_position_m, shape.proxy_position_m);
   EXPECT_EQ(lift.force_N, shape.force_N);
   EXPECT_EQ(lift.signed_distance_m, shape.signed_distance_m);
 }
@@ -115,17 +115,17 @@ TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
   for (int frame = 0; frame < 40; frame += 3) {
     const double t = std::max(0.0, frame / 30.0 - 0.25);
     const Vec3 origin(-0.2 * t, 0.003 * std::sin(2 * kPi * 4 * t), 0);
-    const double turn_deg = -3 + 7 * std::sin(2 * kPi * 0.8 * t);
+    const double rotation_deg = -3 + 7 * std::sin(2 * kPi * 0.8 * t);
     const PointCloud cloud = shape.cloud(frame);
     for (std::size_t i = 0; i < cloud.size(); i += 97) {
       const int column = static_cast<int>(i) % 80, row = static_cast<int>(i) / 80;
-      const Vec3 expected = origin + turned({s.grid.x(column), 0, s.grid.z(row)}, turn_deg);
+      const Vec3 expected = origin + turned({s.grid.x(column), 0, s.grid.z(row)}, rotation_deg);
       EXPECT_LT((cloud.point(i) - expected).norm(), 1e-15) << frame;
     }
     // Of a tilted plane, also over places beyond its border.
     for (const double x : {0.0, 0.03, -1.0})
       EXPECT_NEAR(shape.surface_height(x, 0.01, frame / 30.0),
-                  origin.y() + std::tan(turn_deg * kPi / 180) * (x - origin.x()), 1e-14);
+                  origin.y() + std::tan(rotation_deg * kPi / 180) * (x - origin.x()), 1e-14);
   }
   EXPECT_EQ(shape.surface_height(0, 0, 0.1), shape.surface_height(0, 0, 0.2)) << "before it begins";
 }
@@ -177,11 +177,11 @@ TEST(MovingShape, SheetsFollowEachOtherBelow) {
   const MovingShape shape = made(s);
   s.sheets = 1;
   const PointCloud all = shape.cloud(7), first = made(s).cloud(7);
-  const double turn_deg = 8 + 6 * std::sin(2 * kPi * 1.5 * (7 / 30.0 - 0.1));
+  const double rotation_deg = 8 + 6 * std::sin(2 * kPi * 1.5 * (7 / 30.0 - 0.1));
   ASSERT_EQ(all.size(), 3 * first.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double below = 0.012 * static_cast<double>(i / first.size());
-    const Vec3 expected = first.point(i % first.size()) - below * turned(Vec3::UnitY(), turn_deg);
+    const Vec3 expected = first.point(i % first.size()) - below * turned(Vec3::UnitY(), rotation_deg);
     ASSERT_LT((all.point(i) - expected).norm(), 1e-15);
   }
   for (const double y : {-0.05, 0.0, 0.05})  // the truth is about the first
@@ -305,14 +305,14 @@ TEST(MovingShape, AHandCanPressEveryShape) {
 
 TEST(MovingShape, RefusesSlopesThatStandUpright) {
   MovingShape::Settings s;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.shape.kind = Kind::ridge, s.shape.slope_deg = 60, s.motion.tilt_deg = -20;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
   s.motion.rock_deg = 10;
-  EXPECT_HAS(conflict(s), "tilt_deg = -20");
-  EXPECT_HAS(conflict(s), "below 89 degrees together, not 90.0");
+  EXPECT_HAS(validate(s), "tilt_deg = -20");
+  EXPECT_HAS(validate(s), "below 89 degrees together, not 90.0");
   s.shape.kind = Kind::sphere;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(OpenBox, TheFloorCanBeLeftOut) {
   for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(cloud.ny[i], 0);
   EXPECT_NEAR(walls.signed_distance({0, -0.020, 0}, 0), 0.045, 1e-15);
   s.size_m.y() = 0;
-  EXPECT_NE(conflict(s), "");
+  EXPECT_NE(validate(s), "");
 }
 
 // The corner of a bar of 80 x 10 mm that touches both walls of 40 mm: 40 sin + 5 cos = 20, at 22.62 degrees.
@@ -121,14 +121,14 @@ TEST(Wedge, CanStandAsideAskewAndParallel) {
   EXPECT_NEAR(plates.signed_distance(middle, 0), 0.025, 1e-15);
   EXPECT_NEAR(plates.signed_distance(middle + 0.006 * across, 2.5), 0.004, 1e-15);
   EXPECT_NEAR(plates.signed_distance(middle - 0.012 * across, 2.5), -0.002, 1e-15);
-  EXPECT_EQ(conflict(s), "");
-  s.reopening_at_s = 1.5;
-  EXPECT_NE(conflict(s), "");
+  EXPECT_EQ(validate(s), "");
+  s.open_start_s = 1.5;
+  EXPECT_NE(validate(s), "");
 }
 
 TEST(Wedge, JumpsWhereTheScheduleDoes) {
   Wedge::Settings s;
-  s.closed_at_s = s.closing_at_s = 1, s.reopening_at_s = s.open_at_s = 2;
+  s.close_end_s = s.close_start_s = 1, s.open_start_s = s.open_end_s = 2;
   const Wedge wedge = made<Wedge>(s);
   EXPECT_EQ(wedge.gap_m(0.999), 0.05);
   EXPECT_EQ(wedge.gap_m(1), 0);
@@ -152,7 +152,7 @@ TEST(Sheet, FacesItsNormal) {
     EXPECT_NEAR(panel.u.norm(), 1, 1e-15);
   }
   s.normal.setZero();
-  EXPECT_NE(conflict(s), "");
+  EXPECT_NE(validate(s), "");
 }
 
 TEST(MovingPlane, WaitsRisesAndRests) {
@@ -174,9 +174,9 @@ TEST(MovingPlane, WaitsRisesAndRests) {
     EXPECT_EQ(plane.cloud(frame).ny[7], 1);
   }
   s.speed_m_per_s = s.acceleration_m_per_s2 = 0;
-  EXPECT_NE(conflict(s), "");
-  s.rise_m = 0;
-  EXPECT_EQ(conflict(s), "");
+  EXPECT_NE(validate(s), "");
+  s.rise_height_m = 0;
+  EXPECT_EQ(validate(s), "");
   EXPECT_EQ(made<MovingPlane>(s).frame_count(), 1);
 }
 

@@ -44,7 +44,7 @@ double expected_height(const Shape::Settings& s, double x, double z) {
 
 struct Samples {
   std::vector<Vec3> points;
-  double largest_gap_m;  // no place of the surface is farther from a sample than half of it
+  double max_gap_m;  // no place of the surface is farther from a sample than half of it
 };
 
 // Even in x and z; the dome in its polar angles, for its rim is upright.
@@ -58,7 +58,7 @@ Samples dense_samples(const Shape::Settings& s) {
         samples.points.push_back(s.radius_m * Vec3(std::sin(down) * std::cos(around), std::cos(down) - 1,
                                                    std::sin(down) * std::sin(around)));
       }
-    samples.largest_gap_m = s.radius_m * std::sqrt(2.0) * 2 * kPi / kAround;
+    samples.max_gap_m = s.radius_m * std::sqrt(2.0) * 2 * kPi / kAround;
     return samples;
   }
   constexpr double kStep_m = 0.0001;
@@ -66,7 +66,7 @@ Samples dense_samples(const Shape::Settings& s) {
   for (int i = -400; i <= 400; ++i)
     for (int j = -200; j <= 200; ++j)
       samples.points.emplace_back(i * kStep_m, expected_height(s, i * kStep_m, j * kStep_m), j * kStep_m);
-  samples.largest_gap_m = kStep_m * std::sqrt(2 + steepest * steepest);
+  samples.max_gap_m = kStep_m * std::sqrt(2 + steepest * steepest);
   return samples;
 }
 
@@ -92,8 +92,8 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
       const double brute = nearest_sample_m(samples, p), got = std::abs(shape.signed_distance(p));
       // The nearest place of the surface lies within half a gap of a sample.
       EXPECT_LE(got, brute + 1e-12) << p.transpose();
-      EXPECT_GE(std::sqrt(got * got + 0.25 * samples.largest_gap_m * samples.largest_gap_m) +
-                    0.25 * samples.largest_gap_m * samples.largest_gap_m / 0.005,  // of a curved one
+      EXPECT_GE(std::sqrt(got * got + 0.25 * samples.max_gap_m * samples.max_gap_m) +
+                    0.25 * samples.max_gap_m * samples.max_gap_m / 0.005,  // of a curved one
                 brute)
           << p.transpose();
       beyond += std::abs(p.x()) > 0.04 || std::abs(p.z()) > 0.02, below += shape.signed_distance(p) < 0;

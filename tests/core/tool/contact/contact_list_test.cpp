@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/box_tool.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {
@@ -24,9 +24,9 @@ constexpr double kTouched_m = 3e-4;  // what is nearer is searched
 // Points around the tool with normals in all directions; every seventh has none.
 PointCloud cloud_of(std::size_t count) {
   PointCloud cloud = scenes::random_cloud(count, 0.012, 21);
-  const PointCloud ways = scenes::random_cloud(count, 1, 22);
+  const PointCloud directions = scenes::random_cloud(count, 1, 22);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : ways.point(i).normalized();
+    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : directions.point(i).normalized();
     cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
   }
   return cloud;
@@ -40,14 +40,14 @@ struct Found {
 // Every disk within the look-ahead as a contact, one after the other.
 std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p) {
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(formed<TiledCloud>(cloud));
+  finder.on_frame(formatted<TiledCloud>(cloud));
   std::vector<Found> all;
   const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
-  for (std::uint32_t i = 0; i < finder.cloud().room(); ++i) {
+  for (std::uint32_t i = 0; i < finder.cloud().padded_size(); ++i) {
     const Vec3 p_T = R_TW * (finder.cloud().point(i) - kPose.p_W);
     if (!(p_T.norm() < 0.1)) continue;  // padding
-    const SurfaceDisk disk{p_T, R_TW * finder.cloud().normal(i), p.disk_share * finder.cloud().spacing_m(i),
-                           sample_field(*kTool, p_T)};
+    const SurfaceDisk disk{p_T, R_TW * finder.cloud().normal(i),
+                           p.disk_radius_ratio * finder.cloud().spacing_m(i), sample_field(*kTool, p_T)};
     const double lower_m = lower_bound_m(disk);
     if (lower_m > p.look_ahead_m) continue;
     all.push_back({cell_and_octant(p_T, -disk.at.gradient_T, kCellsPer_m),
@@ -65,7 +65,7 @@ TEST(ContactList, FewContactsAreAllThere) {
   const PointCloud cloud = cloud_of(800);
   const std::vector<Found> all = all_contacts(cloud, {});
   ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(formed<TiledCloud>(cloud));
+  list.on_frame(formatted<TiledCloud>(cloud));
   const NearContacts near = list.near(kPose, 0);
   ASSERT_GT(all.size(), 20u);
   ASSERT_LT(all.size(), 256u);
@@ -89,16 +89,18 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
       const auto at = deepest.emplace(found.cell, found.contact.depth_m).first;
       at->second = std::max(at->second, found.contact.depth_m);
     }
-    std::vector<double> expected_m, kept_m;
+    std::vector<double> expected_m, kept_distance_m;
     for (const auto& cell : deepest) expected_m.push_back(cell.second);
     ContactList list(kTool, {}, scenes::kernels());
-    list.on_frame(formed<TiledCloud>(cloud));
+    list.on_frame(formatted<TiledCloud>(cloud));
     const NearContacts near = list.near(kPose, 0);
-    for (const ToolContact& contact : near.contacts) kept_m.push_back(contact.depth_m);
-    std::sort(kept_m.begin(), kept_m.end()), std::sort(expected_m.begin(), expected_m.end());
-    EXPECT_GT(all.size(), 10 * kept_m.size());
-    ASSERT_EQ(kept_m.size(), expected_m.size());
-    for (std::size_t i = 0; i < kept_m.size(); ++i) EXPECT_NEAR(kept_m[i], expected_m[i], kInterpolated_m);
+    for (const ToolContact& contact : near.contacts) kept_distance_m.push_back(contact.depth_m);
+    std::sort(kept_distance_m.begin(), kept_distance_m.end()),
+        std::sort(expected_m.begin(), expected_m.end());
+    EXPECT_GT(all.size(), 10 * kept_distance_m.size());
+    ASSERT_EQ(kept_distance_m.size(), expected_m.size());
+    for (std::size_t i = 0; i < kept_distance_m.size(); ++i)
+      EXPECT_NEAR(kept_distance_m[i], expected_m[i], kInterpolated_m);
     EXPECT_EQ(near.deepest_m, expected_m.back());
   }
 }

@@ -72,16 +72,16 @@ TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
   const Vec3 u = Vec3(1, 1, 0).normalized(), v = n.cross(u);
   for (const double off_m : {-6e-4, -3e-4, 0.0, 4e-4}) {
     const SurfaceDisk disk = disk_at(corner + 2e-4 * n + off_m * u, -n);
-    double least_m = 1;
+    double min_m = 1;
     for (int i = -50; i <= 50; ++i)
       for (int j = -50; j <= 50; ++j)
         if (i * i + j * j <= 2500)
-          least_m = std::min(
-              least_m, sample_field(*kPlate, disk.p_T + disk.radius_m / 50 * (i * u + j * v)).distance_m);
+          min_m = std::min(min_m,
+                           sample_field(*kPlate, disk.p_T + disk.radius_m / 50 * (i * u + j * v)).distance_m);
     const DiskPlace nearest = nearest_place(*kPlate, disk);
     EXPECT_LE(nearest.at.distance_m, disk.at.distance_m);
-    EXPECT_NEAR(nearest.at.distance_m, least_m, kMissed_m) << off_m;
-    EXPECT_LE(lower_bound_m(disk), least_m);
+    EXPECT_NEAR(nearest.at.distance_m, min_m, kMissed_m) << off_m;
+    EXPECT_LE(lower_bound_m(disk), min_m);
   }
 }
 

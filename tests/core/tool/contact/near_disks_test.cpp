@@ -7,7 +7,7 @@
 
 #include "core/tool/contact/contact_list.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {
@@ -15,14 +15,14 @@ namespace {
 
 const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
 const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
-constexpr double kReach_m = 0.005, kShare = 0.75, kCell_m = 0.004;
+constexpr double kReach_m = 0.005, kFraction = 0.75, kCell_m = 0.004;
 
 // Normals in all directions; every seventh point has none.
 PointCloud cloud_with_normals() {
   PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
-  const PointCloud ways = scenes::random_cloud(20000, 1, 22);
+  const PointCloud directions = scenes::random_cloud(20000, 1, 22);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : ways.point(i).normalized();
+    const Vec3 n = i % 7 == 0 ? Vec3(Vec3::Constant(std::nan(""))) : directions.point(i).normalized();
     cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
   }
   return cloud;
@@ -30,12 +30,12 @@ PointCloud cloud_with_normals() {
 
 struct Look {
   TouchFinder finder;
-  NearDisks disks{kShare, kCell_m};
+  NearDisks disks{kFraction, kCell_m};
 
   Look(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
-    finder.on_frame(formed<TiledCloud>(cloud));
+    finder.on_frame(formatted<TiledCloud>(cloud));
     disks.on_frame(finder.cloud());
-    disks.look(finder, kernels, kPose, kReach_m);
+    disks.query(finder, kernels, kPose, kReach_m);
   }
 };
 
@@ -48,24 +48,24 @@ TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
   const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
-    const Look look(cloud, kernels_for(isa));
-    const auto points = look.finder.within(kPose, kReach_m);
-    const TiledCloud& tiled = look.finder.cloud();
-    ASSERT_EQ(look.disks.size(), points.size());
+    const Look query(cloud, kernels_for(isa));
+    const auto points = query.finder.within(kPose, kReach_m);
+    const TiledCloud& tiled = query.finder.cloud();
+    ASSERT_EQ(query.disks.size(), points.size());
     EXPECT_GT(points.size(), 1000u);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const std::uint32_t i = points[k];
       const Vec3 p_T = R_TW * (tiled.point(i) - kPose.p_W);
-      const SurfaceDisk expected{p_T, R_TW * tiled.normal(i), kShare * tiled.spacing_m(i),
+      const SurfaceDisk expected{p_T, R_TW * tiled.normal(i), kFraction * tiled.spacing_m(i),
                                  sample_field(*kTool, p_T)};
-      const SurfaceDisk disk = look.disks.disk(k);
+      const SurfaceDisk disk = query.disks.disk(k);
       ASSERT_EQ(disk.p_T, p_T);
       ASSERT_TRUE(same(disk.n_T, expected.n_T));
       ASSERT_EQ(disk.radius_m, expected.radius_m);
       ASSERT_EQ(disk.at.distance_m, expected.at.distance_m);
       ASSERT_EQ(disk.at.gradient_T, expected.at.gradient_T);
-      ASSERT_EQ(look.disks.lower_m(k), lower_bound_m(expected));
-      ASSERT_EQ(look.disks.cell(k), cell_and_octant(p_T, -expected.at.gradient_T, 1 / kCell_m));
+      ASSERT_EQ(query.disks.lower_m(k), lower_bound_m(expected));
+      ASSERT_EQ(query.disks.cell(k), cell_and_octant(p_T, -expected.at.gradient_T, 1 / kCell_m));
     }
   }
 }
@@ -77,10 +77,10 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   for (int i = 0; i < 5; ++i)
     cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(formed<TiledCloud>(cloud));
-  NearDisks disks(kShare, kCell_m);
+  finder.on_frame(formatted<TiledCloud>(cloud));
+  NearDisks disks(kFraction, kCell_m);
   disks.on_frame(finder.cloud());
-  disks.look(finder, scenes::kernels(), {}, kFieldMargin_m + grid.size_m);
+  disks.query(finder, scenes::kernels(), {}, kFieldMargin_m + grid.size_m);
   EXPECT_EQ(disks.size(), cloud.size());
   for (std::size_t k = 0; k < disks.size(); ++k) {
     EXPECT_EQ(disks.distance_m(k), sample_field(*kTool, disks.p_T(k)).distance_m);
@@ -92,34 +92,34 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
 TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   const PointCloud cloud = cloud_with_normals();
   const Kernels& kernels = scenes::kernels();
-  Look look(cloud, kernels);
-  const std::size_t all = look.disks.size();
-  look.disks.look(look.finder, kernels, kPose, 0.001);
-  EXPECT_LT(look.disks.size(), all);
-  look.disks.look(look.finder, kernels, {{1, 1, 1}, kPose.q_WT}, kReach_m);
-  EXPECT_EQ(look.disks.size(), 0u);
-  look.disks.look(look.finder, kernels, kPose, kReach_m);
-  EXPECT_EQ(look.disks.size(), all);
+  Look query(cloud, kernels);
+  const std::size_t all = query.disks.size();
+  query.disks.query(query.finder, kernels, kPose, 0.001);
+  EXPECT_LT(query.disks.size(), all);
+  query.disks.query(query.finder, kernels, {{1, 1, 1}, kPose.q_WT}, kReach_m);
+  EXPECT_EQ(query.disks.size(), 0u);
+  query.disks.query(query.finder, kernels, kPose, kReach_m);
+  EXPECT_EQ(query.disks.size(), all);
   PointCloud fewer = cloud;
   fewer.x.resize(5000), fewer.y.resize(5000), fewer.z.resize(5000);
   fewer.nx.resize(5000), fewer.ny.resize(5000), fewer.nz.resize(5000);
-  look.finder.on_frame(formed<TiledCloud>(fewer));
-  look.disks.on_frame(look.finder.cloud());
-  look.disks.look(look.finder, kernels, kPose, kReach_m);
-  EXPECT_LT(look.disks.size(), all);
-  EXPECT_GT(look.disks.size(), 0u);
+  query.finder.on_frame(formatted<TiledCloud>(fewer));
+  query.disks.on_frame(query.finder.cloud());
+  query.disks.query(query.finder, kernels, kPose, kReach_m);
+  EXPECT_LT(query.disks.size(), all);
+  EXPECT_GT(query.disks.size(), 0u);
 }
 
 // A list that has looked at the pose already, and one that has not.
 TEST(NearDisks, WhatIsTouchedIsTheSameAfterADetection) {
   const PointCloud cloud = cloud_with_normals();
   ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());
-  looked.on_frame(formed<TiledCloud>(cloud)), fresh.on_frame(formed<TiledCloud>(cloud));
+  looked.on_frame(formatted<TiledCloud>(cloud)), fresh.on_frame(formatted<TiledCloud>(cloud));
   looked.near(kPose, 0);
   const Touched a = looked.touched(kPose), b = fresh.touched(kPose);
   EXPECT_EQ(a.points, b.points);
   EXPECT_EQ(a.clusters, b.clusters);
-  EXPECT_EQ(a.nearest_m, b.nearest_m);
+  EXPECT_EQ(a.nearest_distance_m, b.nearest_distance_m);
   EXPECT_EQ(a.state, b.state);
   EXPECT_GT(a.points, 0);
 }

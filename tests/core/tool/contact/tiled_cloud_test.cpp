@@ -53,7 +53,7 @@ void expect_tiled(const PointCloud& cloud) {
         EXPECT_TRUE(holds(tiled.group_spheres(), i / kLanes, tiled.point(i)));
       }
     }
-  EXPECT_EQ(next, tiled.room());
+  EXPECT_EQ(next, tiled.padded_size());
   EXPECT_EQ(found, expected);
 }
 
@@ -84,7 +84,7 @@ TEST(TiledCloud, NormalsFollowTheirPoints) {
   tiled.assign(cloud);
   EXPECT_EQ(tiled.without_normal(), 1);
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    for (std::uint32_t j = 0; j < tiled.room(); ++j)
+    for (std::uint32_t j = 0; j < tiled.padded_size(); ++j)
       if (i != 9 && tiled.point(j) == cloud.point(i)) {
         EXPECT_EQ(tiled.normal(j), cloud.normal(i));
       }

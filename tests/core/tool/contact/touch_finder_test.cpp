@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/support/box_tool.h"
-#include "tests/support/formed.h"
+#include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {
@@ -50,15 +50,15 @@ TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     TouchFinder finder(tool, kernels_for(isa));
-    finder.on_frame(formed<TiledCloud>(cloud));
-    int most = 0;
+    finder.on_frame(formatted<TiledCloud>(cloud));
+    int max = 0;
     for (const ToolPose& pose : poses()) {
       const Places expected =
           brute_force(cloud, pose, [&](const Vec3& p) { return (p.cwiseAbs() - kHalf_m).maxCoeff() <= 0; });
       EXPECT_EQ(places(finder, finder.in_tool(pose)), expected);
-      most = std::max(most, static_cast<int>(expected.size()));
+      max = std::max(max, static_cast<int>(expected.size()));
     }
-    EXPECT_GT(most, 50);
+    EXPECT_GT(max, 50);
   }
 }
 
@@ -67,7 +67,7 @@ TEST(TouchFinder, MissesNothingWithinADistanceAndAddsLittle) {
   const auto tool = scenes::box_tool(kHalf_m);
   const double slack_m = 2 * tool->grid.size_m;
   TouchFinder finder(tool, scenes::kernels());
-  finder.on_frame(formed<TiledCloud>(cloud));
+  finder.on_frame(formatted<TiledCloud>(cloud));
   for (const ToolPose& pose : poses())
     for (const double distance : {-0.002, 0.0, 0.001, 0.0055}) {
       const Places found = places(finder, finder.within(pose, distance));
@@ -88,7 +88,7 @@ TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     TouchFinder finder(tool, kernels_for(isa));
-    finder.on_frame(formed<TiledCloud>(cloud));
+    finder.on_frame(formatted<TiledCloud>(cloud));
     const auto list = finder.within(poses()[1], 0.003);
     lists.emplace_back(list.begin(), list.end());
     EXPECT_GT(list.size(), 100u);
@@ -99,13 +99,13 @@ TEST(TouchFinder, TheSameListOnEveryInstructionSet) {
 TEST(TouchFinder, NothingIsFoundInAnEmptyCloudOrFarAway) {
   TouchFinder finder(scenes::box_tool(kHalf_m), scenes::kernels());
   EXPECT_TRUE(finder.in_tool({}).empty());  // before the first frame
-  finder.on_frame(formed<TiledCloud>({}));
+  finder.on_frame(formatted<TiledCloud>({}));
   EXPECT_TRUE(finder.in_tool({}).empty());
   PointCloud unmeasured;
   for (int i = 0; i < 100; ++i) unmeasured.append(Vec3::Constant(std::nan("")));
-  finder.on_frame(formed<TiledCloud>(unmeasured));
+  finder.on_frame(formatted<TiledCloud>(unmeasured));
   EXPECT_TRUE(finder.within({}, 0.005).empty());
-  finder.on_frame(formed<TiledCloud>(scenes::random_cloud(1000, 0.01, 1)));
+  finder.on_frame(formatted<TiledCloud>(scenes::random_cloud(1000, 0.01, 1)));
   EXPECT_TRUE(finder.within({{1e6, -1e6, 1e6}, Eigen::Quaterniond::Identity()}, 0.005).empty());
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
 
-Vector6 wish(const Vec3& a, const Vec3& alpha = Vec3::Zero()) {
+Vector6 desired(const Vec3& a, const Vec3& alpha = Vec3::Zero()) {
   Vector6 both;
   both << a, alpha;
   return both;
@@ -23,7 +23,7 @@ double gap_speed(const ToolContact& c, const Vector6& a_g) {  // the left side o
 
 TEST(MotionProgram, WithoutContactsTheWishIsGranted) {
   MotionProgram program(*kTool);
-  const Vector6 wanted = wish({1e-3, -2e-3, 5e-4}, {0.01, 0, -0.02});
+  const Vector6 wanted = desired({1e-3, -2e-3, 5e-4}, {0.01, 0, -0.02});
   const ConstrainedMotion motion = program.solve(wanted, {});
   EXPECT_LT((motion.a_g - wanted).norm(), 1e-15);
   EXPECT_EQ(motion.active_count, 0);
@@ -33,8 +33,8 @@ TEST(MotionProgram, WithoutContactsTheWishIsGranted) {
 TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
   MotionProgram program(*kTool);
   const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
-  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 0}), contacts);
-  EXPECT_LT((motion.a_g - wish({1e-3, 0, 0})).norm(), 1e-12);
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({1e-3, 0, 0})).norm(), 1e-12);
   EXPECT_EQ(motion.active_count, 1);
   EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);
   EXPECT_GT(motion.side, 0);
@@ -46,10 +46,10 @@ TEST(MotionProgram, AnOffCentreContactTipsTheTool) {
   MotionProgram program(*kTool);
   const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 0, 1}};
   const Vec3 lever = contacts[0].r_T.cross(contacts[0].n_T);
-  const Vec3 turned = kTool->inertia_m2.inverse() * lever;
-  const double lambda = 2e-3 / (1 + lever.dot(turned));
-  const ConstrainedMotion motion = program.solve(wish({0, -2e-3, 0}), contacts);
-  EXPECT_LT((motion.a_g - wish({0, -2e-3 + lambda, 0}, lambda * turned)).norm(), 1e-12);
+  const Vec3 rotated = kTool->inertia_m2.inverse() * lever;
+  const double lambda = 2e-3 / (1 + lever.dot(rotated));
+  const ConstrainedMotion motion = program.solve(desired({0, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({0, -2e-3 + lambda, 0}, lambda * rotated)).norm(), 1e-12);
   EXPECT_NEAR(gap_speed(contacts[0], motion.a_g), 0, 1e-14);
 }
 
@@ -59,7 +59,7 @@ TEST(MotionProgram, PenetrationIsResolvedByItsDepth) {
                                              {{0.02, -0.005, 0}, Vec3::UnitY(), 3e-4, 1},
                                              {{0, 0.005, 0}, -Vec3::UnitY(), -1e-3, 1}};
   const ConstrainedMotion motion = program.solve(Vector6::Zero(), contacts);
-  EXPECT_LT((motion.a_g - wish({0, 3e-4, 0})).norm(), 1e-12);
+  EXPECT_LT((motion.a_g - desired({0, 3e-4, 0})).norm(), 1e-12);
   EXPECT_FALSE(motion.elastic);
 }
 
@@ -71,7 +71,7 @@ TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
                                              {{-0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
                                              {{0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1},
                                              {{-0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1}};
-  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 5e-4}), contacts);
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 5e-4}), contacts);
   EXPECT_TRUE(motion.elastic);
   EXPECT_NEAR(motion.a_g[0], 1e-3, 1e-9);
   EXPECT_NEAR(motion.a_g[2], 5e-4, 1e-9);
@@ -83,8 +83,8 @@ TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
   std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::Constant(std::nan("")), 0, 1},
                                        {{0, -0.005, 0}, Vec3::UnitY(), std::nan(""), 1},
                                        {{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
-  const ConstrainedMotion motion = program.solve(wish({1e-3, -2e-3, 0}), contacts);
-  EXPECT_LT((motion.a_g - wish({1e-3, 0, 0})).norm(), 1e-12);
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({1e-3, 0, 0})).norm(), 1e-12);
   EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);  // the multiplier belongs to the last of the three
 }
 

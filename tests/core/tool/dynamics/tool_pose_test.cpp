@@ -15,8 +15,8 @@ Vec3 draw(std::mt19937& random, double half_width) {
 }
 
 TEST(ToolPose, TheExponentialIsTheRotationOfTheVector) {
-  const Vec3 turned = rotation({0, 0, 0.5 * M_PI}) * Vec3::UnitX();
-  EXPECT_LT((turned - Vec3::UnitY()).norm(), 1e-15);
+  const Vec3 rotated = rotation({0, 0, 0.5 * M_PI}) * Vec3::UnitX();
+  EXPECT_LT((rotated - Vec3::UnitY()).norm(), 1e-15);
 }
 
 // The displacement of a unit step leads from one pose to the other, by the shorter way.
@@ -40,11 +40,11 @@ TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
     const Eigen::Quaterniond q = rotation(draw(random, 3));
     Vector6 a_g;
     a_g << draw(random, 0.1), draw(random, 1);
-    const Vector6 other = turned(q, a_g);
+    const Vector6 other = rotated(q, a_g);
     EXPECT_LT((other.head<3>() - q.toRotationMatrix() * a_g.head<3>()).norm(), 1e-15);
     EXPECT_LT((other.tail<3>() - q.toRotationMatrix() * a_g.tail<3>()).norm(), 1e-14);
-    EXPECT_LT((turned(q.conjugate(), other) - a_g).norm(), 1e-14);
-    EXPECT_NEAR(way_m(other, 0.05), way_m(a_g, 0.05), 1e-15);
+    EXPECT_LT((rotated(q.conjugate(), other) - a_g).norm(), 1e-14);
+    EXPECT_NEAR(max_point_displacement_m(other, 0.05), max_point_displacement_m(a_g, 0.05), 1e-15);
   }
 }
 
@@ -58,9 +58,9 @@ TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
     const Vec3 p_T = 0.05 * draw(random, 1).normalized();
     const ToolPose there = moved(pose, a_g);
     const double went = (there.p_W + there.q_WT * p_T - pose.p_W - pose.q_WT * p_T).norm();
-    EXPECT_LE(went, way_m(a_g, 0.05) + 1e-14);
+    EXPECT_LE(went, max_point_displacement_m(a_g, 0.05) + 1e-14);
     const Vector6 shorter = capped(a_g, 0.05, 0.001);
-    EXPECT_LE(way_m(shorter, 0.05), 0.001 * (1 + 1e-12));
+    EXPECT_LE(max_point_displacement_m(shorter, 0.05), 0.001 * (1 + 1e-12));
     EXPECT_LT((shorter.normalized() - a_g.normalized()).norm(), 1e-12);
   }
   const Vector6 small = Vector6::Constant(1e-6);

@@ -15,7 +15,7 @@ Eigen::Matrix3d uneven_inertia() {
 
 ToolParameters without_limits() {
   ToolParameters p;
-  p.largest_force_N = 1000, p.largest_torque_Nm = 100;
+  p.max_force_N = 1000, p.max_torque_Nm = 100;
   return p;
 }
 
@@ -108,7 +108,7 @@ TEST(WrenchCoupling, ThePrintedTorqueDoesWork) {
 
 TEST(WrenchCoupling, IsCutToItsLimits) {
   ToolParameters p;
-  p.largest_force_N = 3, p.largest_torque_Nm = 0.1;
+  p.max_force_N = 3, p.max_torque_Nm = 0.1;
   const Wrench w = wrench_of(p, uneven_inertia(), {}, {{1, 2, 0}, rotation({0, 0, 3})});
   EXPECT_NEAR(w.force_N.norm(), 3, 1e-12);
   EXPECT_NEAR(w.torque_Nm.norm(), 0.1, 1e-12);

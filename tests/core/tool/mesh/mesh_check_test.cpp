@@ -32,9 +32,9 @@ TEST(MeshCheck, AMissingTriangleLeavesThreeBoundaryEdges) {
 }
 
 TEST(MeshCheck, ATurnedTriangleDisagreesWithItsNeighbours) {
-  TriangleMesh turned = kBox;
-  std::swap(turned.triangles[4][0], turned.triangles[4][1]);
-  const MeshCheck check = check_mesh(turned);
+  TriangleMesh rotated = kBox;
+  std::swap(rotated.triangles[4][0], rotated.triangles[4][1]);
+  const MeshCheck check = check_mesh(rotated);
   EXPECT_FALSE(check.closed());
   EXPECT_EQ(check.inconsistent_edges, 3);
   EXPECT_EQ(check.boundary_edges, 0);
@@ -103,7 +103,7 @@ TEST(MeshRepair, PutsABoxTogetherAgain) {
   EXPECT_EQ(done.welded_vertices, 22);
   EXPECT_EQ(done.dropped_triangles, 2);
   EXPECT_EQ(done.filled_holes, 1);
-  EXPECT_GT(done.turned_triangles, 0);
+  EXPECT_GT(done.flipped_triangles, 0);
   EXPECT_HAS(text(done), "welded 22 vertices, dropped 2 triangles, turned");
 }
 
@@ -111,7 +111,7 @@ TEST(MeshRepair, TurnsEachPartOutwardsForItself) {
   MeshRepair done;
   const TriangleMesh mixed = meshes::together(kBox, meshes::inside_out(box_mesh({1, 1, 1}, {10, 0, 0})));
   EXPECT_NEAR(check_mesh(repair_mesh(mixed, done)).volume_m3, 25, 1e-12);
-  EXPECT_EQ(done.turned_triangles, 12);
+  EXPECT_EQ(done.flipped_triangles, 12);
 }
 
 TEST(MeshRepair, LeavesAClosedMeshAlone) {

@@ -8,28 +8,28 @@ namespace {
 TEST(Progress, GoesOnWhileTheToolComesNearer) {
   Progress progress(0.125, 2);
   for (double left = 10; left > 0; left -= 0.25) {
-    progress.look(left);
+    progress.update(left);
     EXPECT_FALSE(progress.has_ended()) << left;
   }
 }
 
 TEST(Progress, EndsAfterSoManyLooksWithout) {
   Progress progress(0.125, 2);
-  progress.look(10);
-  progress.look(10 - 0.125);  // as little as none
+  progress.update(10);
+  progress.update(10 - 0.125);  // as little as none
   EXPECT_FALSE(progress.has_ended());
-  progress.look(11);
+  progress.update(11);
   EXPECT_TRUE(progress.has_ended());
 }
 
 TEST(Progress, CountsAgainFromTheNearestWay) {
   Progress progress(0, 2);
-  progress.look(10);
-  progress.look(12);
-  progress.look(9);
+  progress.update(10);
+  progress.update(12);
+  progress.update(9);
   EXPECT_FALSE(progress.has_ended());
-  progress.look(11);
-  progress.look(9.5);  // nearer than before, but not than the nearest
+  progress.update(11);
+  progress.update(9.5);  // nearer than before, but not than the nearest
   EXPECT_TRUE(progress.has_ended());
 }
 

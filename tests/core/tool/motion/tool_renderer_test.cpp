@@ -149,11 +149,12 @@ TEST_P(EveryRule, StaleFramesAreDroppedAndSaid) {
 // that ends a tick. Walls that are none, between the points of a flat surface, were found here.
 TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {
   const RigidTransform X = Eigen::Translation3d(0.3, -0.2, 0.5) * rotation({0.4, -0.7, 0.2});
-  PointCloud turned;
+  PointCloud rotated;
   const PointCloud flat = sheet();
-  for (std::size_t i = 0; i < flat.size(); ++i) turned.append(X * flat.point(i), X.linear() * flat.normal(i));
+  for (std::size_t i = 0; i < flat.size(); ++i)
+    rotated.append(X * flat.point(i), X.linear() * flat.normal(i));
   ToolRenderer a = renderer(), b = renderer();
-  a.on_frame(scenes::frame(flat)), b.on_frame(scenes::frame(turned));
+  a.on_frame(scenes::frame(flat)), b.on_frame(scenes::frame(rotated));
   for (int i = 0; i < 600; ++i) {
     const DeviceState d = device({5e-5 * i, 0.02 - 4e-5 * i, 0.001}, {0.2, 0.001 * i, 0.1});
     const DeviceState e{X * d.position_W, Eigen::Quaterniond(X.linear()) * d.orientation_W};
@@ -173,7 +174,7 @@ TEST(ToolRenderer, SlidesWithoutRipple) {
     const RenderOutput out = r.step(device({2e-5 * i, 0.004, 1e-5 * i}, {0.35, 0.2, 0.5}), 0.001 * i);
     if (i < 100) continue;
     low = std::min(low, out.proxy_W.y()), high = std::max(high, out.proxy_W.y());
-    EXPECT_LT(out.tool->penetration_m, 1e-4);
+    EXPECT_LT(out.tool->tool_penetration_m, 1e-4);
     EXPECT_GT(out.tool->active_constraints, 0);
   }
   EXPECT_LT(high - low, 2e-4);
@@ -205,7 +206,7 @@ TEST_P(EveryRule, AWalkThroughClutterStaysOutside) {
                 out.tool->orientation_W.coeffs().allFinite());
     EXPECT_LE(out.tool->detections, 60);
     if (!out.tool->budget_exhausted) {
-      EXPECT_LE(out.tool->penetration_m, 5e-4) << i;
+      EXPECT_LE(out.tool->tool_penetration_m, 5e-4) << i;
     }
     touching += out.contact_count > 0;
   }

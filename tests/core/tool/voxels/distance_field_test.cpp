@@ -57,7 +57,7 @@ TEST(DistanceField, KeyAgainstAllTriangles) {
   expect_distances(find_generated_tool("key")->make(), 1511, 1e-3);
 }
 TEST(DistanceField, SlantedBoxAgainstAllTriangles) {
-  expect_distances(meshes::moved(box_mesh({0.06, 0.02, 0.004}), meshes::turned(), {0, 0, 0}), 97);
+  expect_distances(meshes::moved(box_mesh({0.06, 0.02, 0.004}), meshes::rotated(), {0, 0, 0}), 97);
 }
 TEST(DistanceField, CoarseVoxelsAgainstAllTriangles) {
   expect_distances(meshes::any_body("fork"), 307, 2e-3);

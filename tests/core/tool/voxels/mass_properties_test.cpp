@@ -41,11 +41,11 @@ TEST(MassProperties, MoveAndTurnWithTheMesh) {
   const TriangleMesh key = find_generated_tool("key")->make();
   const MassProperties before = mass_properties(key);
   const Vec3 by(0.3, -0.2, 0.1);
-  const MassProperties after = mass_properties(meshes::moved(key, meshes::turned(), by));
+  const MassProperties after = mass_properties(meshes::moved(key, meshes::rotated(), by));
   EXPECT_NEAR(after.volume_m3, before.volume_m3, 1e-12 * before.volume_m3);
-  EXPECT_LT((after.centre - (meshes::turned() * before.centre + by)).norm(), 1e-14);
-  const Eigen::Matrix3d turned = meshes::turned() * before.inertia_m2 * meshes::turned().transpose();
-  EXPECT_LT((after.inertia_m2 - turned).norm(), 1e-10 * turned.norm());
+  EXPECT_LT((after.centre - (meshes::rotated() * before.centre + by)).norm(), 1e-14);
+  const Eigen::Matrix3d rotated = meshes::rotated() * before.inertia_m2 * meshes::rotated().transpose();
+  EXPECT_LT((after.inertia_m2 - rotated).norm(), 1e-10 * rotated.norm());
 }
 
 TEST(MassProperties, InsideOutOnlyTheVolumeChangesItsSign) {

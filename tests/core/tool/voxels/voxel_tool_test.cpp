@@ -48,9 +48,9 @@ TEST(VoxelTool, IsScaledByItsLongestSide) {
 
 TEST(VoxelTool, TurnsFacesOutwards) {
   const TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
-  const VoxelTool right = make(box), turned = make(meshes::inside_out(box));
-  EXPECT_EQ(right.distance_m, turned.distance_m);
-  EXPECT_EQ(right.voxels, turned.voxels);
+  const VoxelTool right = make(box), rotated = make(meshes::inside_out(box));
+  EXPECT_EQ(right.distance_m, rotated.distance_m);
+  EXPECT_EQ(right.voxels, rotated.voxels);
   EXPECT_TRUE(report_of(meshes::inside_out(box)).inverted);
   EXPECT_FALSE(report_of(box).inverted);
 }
@@ -58,10 +58,11 @@ TEST(VoxelTool, TurnsFacesOutwards) {
 TEST(VoxelTool, FieldWithinTheGridIsTheDistance) {
   const VoxelTool tool = make(meshes::any_body("ball"));
   for (const double radius : {0.004, 0.0093, 0.01, 0.0107, 0.013})
-    for (const Vec3& way : {Vec3(1, 0, 0), Vec3(-0.6, 0.8, 0), Vec3(0.48, -0.64, 0.6), Vec3(0, 0, -1)}) {
-      const FieldSample sample = sample_field(tool, radius * way);
+    for (const Vec3& displacement :
+         {Vec3(1, 0, 0), Vec3(-0.6, 0.8, 0), Vec3(0.48, -0.64, 0.6), Vec3(0, 0, -1)}) {
+      const FieldSample sample = sample_field(tool, radius * displacement);
       EXPECT_NEAR(sample.distance_m, radius - 0.01, 1e-4);
-      EXPECT_GT(sample.gradient_T.dot(way), 0.97);
+      EXPECT_GT(sample.gradient_T.dot(displacement), 0.97);
       // Exact within kExactField_m of the surface only.
       EXPECT_NEAR(sample.gradient_T.norm(), 1, radius > 0.01 - kExactField_m ? 0.03 : 0.06);
     }
@@ -93,14 +94,14 @@ TEST(VoxelTool, FieldAtNodesIsWhatIsStored) {
 
 TEST(VoxelTool, FieldOutsideTheGridGrowsWithTheDistance) {
   const VoxelTool tool = make(box_mesh({0.02, 0.02, 0.02}));
-  for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0.6, 0.8), Vec3(0.48, -0.64, 0.6)})
+  for (const Vec3& displacement : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0.6, 0.8), Vec3(0.48, -0.64, 0.6)})
     for (const double far : {0.03, 0.1, 2.0}) {
-      const Vec3 p = far * way, q = p.cwiseAbs() - Vec3::Constant(0.01);
+      const Vec3 p = far * displacement, q = p.cwiseAbs() - Vec3::Constant(0.01);
       const double expected = q.cwiseMax(0.0).norm();
       const FieldSample sample = sample_field(tool, p);
       EXPECT_GE(sample.distance_m, expected - 5e-4);
       EXPECT_LE(sample.distance_m, expected + 0.012);  // from the grid's box on
-      EXPECT_GT(sample.gradient_T.dot(way), 0.8);
+      EXPECT_GT(sample.gradient_T.dot(displacement), 0.8);
       EXPECT_NEAR(sample.gradient_T.norm(), 1, 1e-9);
     }
 }
@@ -156,16 +157,16 @@ TEST(VoxelTool, WhatCannotBeClosedIsSolidByWindingNumbers) {
   EXPECT_TRUE(report.by_winding_number) << text(report);
   EXPECT_NEAR(tool.volume_m3, 6e-6, 0.1 * 6e-6);
   EXPECT_LT(sample_field(tool, Vec3::Zero()).distance_m, -0.003);
-  EXPECT_GT(report.thin_share, 0.01);
+  EXPECT_GT(report.thin_fraction, 0.01);
   EXPECT_HAS(text(report), "solid by winding numbers");
 }
 
 TEST(VoxelTool, TellsHowMuchIsThin) {
-  EXPECT_EQ(report_of(box_mesh({0.03, 0.02, 0.01})).thin_share, 0);
+  EXPECT_EQ(report_of(box_mesh({0.03, 0.02, 0.01})).thin_fraction, 0);
   const TriangleMesh sheet =
       meshes::together(box_mesh({0.03, 0.02, 0.01}), box_mesh({0.03, 0.02, 0.0004}, {0, 0, 0.03}));
   const ToolReport report = report_of(sheet);
-  EXPECT_GT(report.thin_share, 0.2);
+  EXPECT_GT(report.thin_fraction, 0.2);
   EXPECT_HAS(text(report), "% of the surface is on parts thinner");
 }
 

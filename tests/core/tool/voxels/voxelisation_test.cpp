@@ -42,7 +42,7 @@ TEST(Voxelisation, TheGridEnclosesTheMeshAndTheMargin) {
 TEST(Voxelisation, CrossedCellsAreWhereTheTrianglesAre) {
   const double voxel = 4e-3;
   TriangleMesh soup = meshes::together(
-      meshes::any_body("ball"), meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::turned(), {0, 0, 0}));
+      meshes::any_body("ball"), meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), {0, 0, 0}));
   soup = meshes::together(soup, {{{0, 0, 0}, {0.02, 0.001, 0.03}, {0.0201, 0.0012, 0.0301}}, {{0, 1, 2}}});
   const VoxelGrid grid = grid_around(soup, voxel);
   const std::vector<std::uint8_t> cells = crossed_cells(soup, grid);
@@ -172,7 +172,7 @@ TEST(Voxelisation, ShellSeparatesInteriorFromFree) {
 
 // A box without bottom and lid, 30 nodes wide: solid but for two hollows towards them.
 TEST(Voxelisation, WindingNumbersFillAnOpenMesh) {
-  TriangleMesh tube = meshes::moved(box_mesh({0.03, 0.03, 0.03}), meshes::turned(), {1e-4, 2e-4, 3e-4});
+  TriangleMesh tube = meshes::moved(box_mesh({0.03, 0.03, 0.03}), meshes::rotated(), {1e-4, 2e-4, 3e-4});
   const TriangleMesh whole = tube;
   tube.triangles.erase(tube.triangles.begin(), tube.triangles.begin() + 4);
   const VoxelGrid grid{Vec3::Constant(-0.03), 1e-3, {60, 60, 60}};

@@ -18,7 +18,7 @@ class ForceDimensionTest : public testing::Test {
 TEST_F(ForceDimensionTest, AxesByHand) {
   double_->set([](DeviceDouble::State& state) {
     state.position = {0.1, 0.2, 0.3};
-    state.turn = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+    state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   });
   const auto device = open_force_dimension("");
   const auto [reading, fault] = read_once(*device);
@@ -54,14 +54,14 @@ TEST_F(ForceDimensionTest, RefusedByTheLibrary) {
 }
 
 TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {
-  double_->set([](DeviceDouble::State& state) { state.largest_force = -1, state.largest_torque = -1; });
-  EXPECT_EQ(open_force_dimension("")->traits().largest_force_N, 0);
-  EXPECT_EQ(open_force_dimension("")->traits().largest_torque_Nm, 0);
-  double_->set([](DeviceDouble::State& state) { state.largest_force = 12, state.largest_torque = 0.4; });
+  double_->set([](DeviceDouble::State& state) { state.max_force = -1, state.max_torque = -1; });
+  EXPECT_EQ(open_force_dimension("")->traits().max_force_N, 0);
+  EXPECT_EQ(open_force_dimension("")->traits().max_torque_Nm, 0);
+  double_->set([](DeviceDouble::State& state) { state.max_force = 12, state.max_torque = 0.4; });
   const auto device = open_force_dimension("");
   EXPECT_EQ(device->traits().name, "double.7");
-  EXPECT_EQ(device->traits().largest_force_N, 12);
-  EXPECT_EQ(device->traits().largest_torque_Nm, 0.4);
+  EXPECT_EQ(device->traits().max_force_N, 12);
+  EXPECT_EQ(device->traits().max_torque_Nm, 0.4);
   EXPECT_EQ(device->traits().tick_rate_hz, 1000);
 }
 
@@ -69,7 +69,7 @@ TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {
 TEST_F(ForceDimensionTest, WithoutAWristItDoesNotTurn) {
   double_->set([](DeviceDouble::State& state) {
     state.sensed_axes = state.actuated_axes = 3;
-    state.turn = {};
+    state.rotation = {};
   });
   const auto device = open_force_dimension("");
   const auto [reading, fault] = read_once(*device);

@@ -34,13 +34,13 @@ class HapticDeviceContract : public testing::TestWithParam<const VendorDevice*> 
   DoubleInstalled double_{vendor()};
 };
 
-const Eigen::Matrix3d kTurn = Eigen::AngleAxisd(0.7, Vec3(1, -2, 3).normalized()).toRotationMatrix();
+const Eigen::Matrix3d kRotation = Eigen::AngleAxisd(0.7, Vec3(1, -2, 3).normalized()).toRotationMatrix();
 
 TEST_P(HapticDeviceContract, StateIsInOurAxesAndUnits) {
   const Vec3 position(0.01, -0.02, 0.03), velocity(0.4, 0.5, -0.6), turning(1, -2, 3);
   double_->set([&](DeviceDouble::State& state) {
     state.position = in_vendor_lengths(position), state.velocity = in_vendor_lengths(velocity);
-    state.turning = in_vendor_axes(turning), state.turn = turn_in_vendor_axes(kTurn);
+    state.turning = in_vendor_axes(turning), state.turn = turn_in_vendor_axes(kRotation);
     state.buttons = 5;
   });
   const auto device = open();
@@ -48,8 +48,9 @@ TEST_P(HapticDeviceContract, StateIsInOurAxesAndUnits) {
   ASSERT_FALSE(fault) << fault.what;
   EXPECT_TRUE(reading.position_m.isApprox(position, 1e-12)) << reading.position_m.transpose();
   EXPECT_TRUE(reading.velocity_m_per_s.isApprox(velocity, 1e-12)) << reading.velocity_m_per_s.transpose();
-  EXPECT_TRUE(reading.turning_rad_per_s.isApprox(turning, 1e-12)) << reading.turning_rad_per_s.transpose();
-  EXPECT_TRUE(reading.orientation.toRotationMatrix().isApprox(kTurn, 1e-12));
+  EXPECT_TRUE(reading.angular_velocity_rad_per_s.isApprox(turning, 1e-12))
+      << reading.angular_velocity_rad_per_s.transpose();
+  EXPECT_TRUE(reading.orientation.toRotationMatrix().isApprox(kRotation, 1e-12));
   EXPECT_EQ(reading.buttons, vendor().has_buttons ? 5u : 0u);
 }
 
@@ -83,7 +84,7 @@ TEST_P(HapticDeviceContract, ForcesAndTorquesArriveAlongTheVendorsAxes) {
     const Vec3 unit = Vec3::Unit(i % 3);
     EXPECT_FALSE(device->write(i < 3 ? Wrench{unit, Vec3::Zero()} : Wrench{Vec3::Zero(), unit}));
   });
-  const auto arrived = told_forces(*double_);
+  const auto arrived = sent_forces(*double_);
   ASSERT_EQ(arrived.size(), 6u);
   for (int i = 0; i < 6; ++i) {
     Eigen::Matrix<double, 6, 1> expected = Eigen::Matrix<double, 6, 1>::Zero();
@@ -102,7 +103,7 @@ TEST_P(TellsOfMotors, NoTorqueForADeviceWithoutMotorsForIt) {
   EXPECT_EQ(device->traits().sensed_axes, 6);
   EXPECT_EQ(device->traits().actuated_axes, 3);
   run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 0, 0), Vec3(1, 1, 1)}); });
-  const auto arrived = told_forces(*double_);
+  const auto arrived = sent_forces(*double_);
   ASSERT_EQ(arrived.size(), 1u);
   EXPECT_EQ(arrived[0][3], 0);
   EXPECT_EQ(arrived[0][4], 0);
@@ -223,7 +224,7 @@ TEST_P(HapticDeviceContract, AForceThatIsNoNumberIsNotTold) {
     EXPECT_TRUE(device->write(i == 0 ? Wrench{Vec3(kNaN, 0, 0), Vec3::Zero()}
                                      : Wrench{Vec3::Zero(), Vec3(0, 0, kNaN)}));
   });
-  EXPECT_TRUE(told_forces(*double_).empty());
+  EXPECT_TRUE(sent_forces(*double_).empty());
 }
 
 TEST_P(HapticDeviceContract, ErrorsOfTheVendorArePassedOn) {
@@ -240,11 +241,11 @@ TEST_P(HapticDeviceContract, ErrorsOfTheVendorArePassedOn) {
     if (i == 5) after = reads;
   });
   ASSERT_TRUE(read);
-  EXPECT_EQ(read.code, vendor().told_error) << read.what;
+  EXPECT_EQ(read.code, vendor().sent_error) << read.what;
   // OpenHaptics tells of a force in the next frame.
   const DeviceFault& of_force = vendor().drives_itself ? after : written;
   ASSERT_TRUE(of_force);
-  EXPECT_EQ(of_force.code, vendor().told_error) << of_force.what;
+  EXPECT_EQ(of_force.code, vendor().sent_error) << of_force.what;
 }
 
 std::string name_of(const testing::TestParamInfo<const VendorDevice*>& tested) {

@@ -17,7 +17,7 @@ class OpenHapticsTest : public testing::Test {
 TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
   double_->set([](DeviceDouble::State& state) {
     state.position = {10, 20, 30}, state.velocity = {-1000, 0, 0};
-    state.turn = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+    state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   });
   const auto device = open_open_haptics("");
   const auto [reading, fault] = read_once(*device);
@@ -26,21 +26,21 @@ TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
   EXPECT_TRUE(reading.velocity_m_per_s.isApprox(Vec3(-1, 0, 0), 1e-12));
   EXPECT_TRUE((reading.orientation * Vec3::UnitX()).isApprox(Vec3::UnitY(), 1e-12));
   run_ticks(*device, 1, [&](int) { device->write({Vec3(1, 2, 3), Vec3(0.004, 0.005, 0.006)}); });
-  EXPECT_EQ(told_forces(*double_), (std::vector<std::array<double, 6>>{{1, 2, 3, 4, 5, 6}}));
+  EXPECT_EQ(sent_forces(*double_), (std::vector<std::array<double, 6>>{{1, 2, 3, 4, 5, 6}}));
 }
 
 // Neither a tick without one nor the last.
 TEST_F(OpenHapticsTest, NoForceStaysBehind) {
   const auto device = open_open_haptics("");
-  std::array<double, 6> told_in_between{1};
+  std::array<double, 6> sent_in_between{1};
   int ticks = 0;
   CallCycle cycle([&] {
-    if (ticks == 2) told_in_between = double_->now().told;
+    if (ticks == 2) sent_in_between = double_->now().told;
     if (ticks != 1) device->write({Vec3(1, 0, 0), Vec3::Zero()});
     return ++ticks < 4;
   });
   device->run(cycle);
-  EXPECT_EQ(told_in_between, (std::array<double, 6>{}));
+  EXPECT_EQ(sent_in_between, (std::array<double, 6>{}));
   EXPECT_EQ(double_->now().told, (std::array<double, 6>{}));
   EXPECT_TRUE(double_->now().has_motors_on);
 }
@@ -54,17 +54,17 @@ TEST_F(OpenHapticsTest, DevicesHaveNames) {
 
 TEST_F(OpenHapticsTest, TraitsInOurUnits) {
   double_->set([](DeviceDouble::State& state) {
-    state.largest_force = 3.3, state.continuous_force = 0.88;
-    state.largest_stiffness = 0.5, state.largest_torque = 300;
+    state.max_force = 3.3, state.continuous_force = 0.88;
+    state.max_stiffness = 0.5, state.max_torque = 300;
   });
   const auto device = open_open_haptics("");
   const DeviceTraits& traits = device->traits();
   EXPECT_EQ(traits.name, "Double Touch");
   EXPECT_EQ(traits.sensed_axes, 6);
-  EXPECT_EQ(traits.largest_force_N, 3.3);
+  EXPECT_EQ(traits.max_force_N, 3.3);
   EXPECT_EQ(traits.continuous_force_N, 0.88);
-  EXPECT_EQ(traits.largest_stiffness_N_per_m, 500);
-  EXPECT_DOUBLE_EQ(traits.largest_torque_Nm, 0.3);
+  EXPECT_EQ(traits.max_stiffness_N_per_m, 500);
+  EXPECT_DOUBLE_EQ(traits.max_torque_Nm, 0.3);
 }
 
 // Without a scheduler the cycle still runs, is told why nothing works and decides when to end.

@@ -85,7 +85,7 @@ TEST(SafetyGate, LatchesOnFaultsUntilRearmed) {
     if (kind == 1) loop.reading.position_m.x() = none;
     if (kind == 2) loop.reading.orientation.w() = none;
     if (kind == 3) loop.reading.velocity_m_per_s = Vec3(0, 3.1, 0);
-    if (kind == 4) loop.reading.turning_rad_per_s = Vec3(0, 0, 41);
+    if (kind == 4) loop.reading.angular_velocity_rad_per_s = Vec3(0, 0, 41);
     if (kind == 5) force.y() = none;
     if (kind == 6) torque.z() = std::numeric_limits<double>::infinity();
     EXPECT_TRUE(loop.tick(force, torque).force_N.isZero(0)) << kind;
@@ -114,12 +114,12 @@ TEST(SafetyGate, AnOldCommandIsSlewedToNothing) {
   Loop loop;
   loop.engage();
   for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0});
-  const double made_s = loop.now_s;
+  const double command_time_s = loop.now_s;
   Wrench out;
   int ticks = 0;
   for (; ticks < 100; ++ticks) {
     loop.now_s += kTick_s;
-    out = loop.gate.pass(loop.now_s, {}, {}, {{5, 0, 0}, Vec3::Zero()}, made_s);
+    out = loop.gate.pass(loop.now_s, {}, {}, {{5, 0, 0}, Vec3::Zero()}, command_time_s);
     if (out.force_N.isZero(0)) break;
   }
   EXPECT_GE(ticks, 20);  // not stale before
@@ -148,20 +148,20 @@ TEST(SafetyGate, RestartLeavesNoForce) {
 
 TEST(SafetyLimits, AreCappedByTheDevice) {
   DeviceTraits traits;
-  EXPECT_EQ(limits_for({}, traits).largest_force_N, SafetyLimits{}.largest_force_N);
-  traits.largest_force_N = 3.3, traits.largest_torque_Nm = 0.1;
-  EXPECT_NEAR(limits_for({}, traits).largest_force_N, 0.9 * 3.3, 1e-12);
-  EXPECT_NEAR(limits_for({}, traits).largest_torque_Nm, 0.09, 1e-12);
+  EXPECT_EQ(limits_for({}, traits).max_force_N, SafetyLimits{}.max_force_N);
+  traits.max_force_N = 3.3, traits.max_torque_Nm = 0.1;
+  EXPECT_NEAR(limits_for({}, traits).max_force_N, 0.9 * 3.3, 1e-12);
+  EXPECT_NEAR(limits_for({}, traits).max_torque_Nm, 0.09, 1e-12);
 }
 
 TEST(SafetyLimits, ASlewRateThatCannotLetGoIsRefused) {
-  EXPECT_TRUE(conflict(SafetyLimits{}).empty());
+  EXPECT_TRUE(validate(SafetyLimits{}).empty());
   SafetyLimits slow;
   slow.force_slew_N_per_s = 499;
-  EXPECT_NE(conflict(slow).find("force_slew_N_per_s = 499"), std::string::npos);
+  EXPECT_NE(validate(slow).find("force_slew_N_per_s = 499"), std::string::npos);
   slow = {};
   slow.torque_slew_Nm_per_s = 19;
-  EXPECT_NE(conflict(slow).find("torque_slew_Nm_per_s = 19"), std::string::npos);
+  EXPECT_NE(validate(slow).find("torque_slew_Nm_per_s = 19"), std::string::npos);
 }
 
 }  // namespace

@@ -21,8 +21,8 @@
 namespace remote_touch {
 namespace {
 
-constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
-constexpr std::int32_t kSmallest = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
 
 void sleep_s(double time_s) {
   ::usleep(static_cast<useconds_t>(1e6 * time_s));
@@ -57,9 +57,9 @@ TEST_F(Spacenav, InputOnly) {
   const auto device = open();
   EXPECT_EQ(device->traits().sensed_axes, 6);
   EXPECT_EQ(device->traits().actuated_axes, 0);
-  EXPECT_EQ(device->traits().largest_force_N, 0);
+  EXPECT_EQ(device->traits().max_force_N, 0);
   EXPECT_FALSE(device->write({Vec3(1, 2, 3), Vec3::Zero()}));
-  device->let_go();
+  device->release();
   DeviceReading reading;
   EXPECT_FALSE(device->read(reading));
   EXPECT_TRUE(reading.position_m.isZero());
@@ -73,12 +73,12 @@ TEST_F(Spacenav, AxesAndUnits) {
   const DeviceReading moved = read_for(*device, 0.05);
   EXPECT_TRUE(moved.velocity_m_per_s.isApprox(Vec3(0.1, 0.2, -0.3), 1e-9));
   EXPECT_TRUE(moved.position_m.normalized().isApprox(Vec3(1, 2, -3).normalized(), 1e-9));
-  EXPECT_TRUE(moved.turning_rad_per_s.isZero());
+  EXPECT_TRUE(moved.angular_velocity_rad_per_s.isZero());
   server_.send({0, 0, 0, 0, 100, 200, 300, 16});
   const DeviceReading turned = read_for(*device, 0.05);
-  EXPECT_TRUE(turned.turning_rad_per_s.isApprox(Vec3(0.2, 0.4, -0.6), 1e-9));
-  const Eigen::AngleAxisd turn(turned.orientation);
-  EXPECT_TRUE(turn.axis().isApprox(Vec3(1, 2, -3).normalized(), 1e-9));
+  EXPECT_TRUE(turned.angular_velocity_rad_per_s.isApprox(Vec3(0.2, 0.4, -0.6), 1e-9));
+  const Eigen::AngleAxisd rotation(turned.orientation);
+  EXPECT_TRUE(rotation.axis().isApprox(Vec3(1, 2, -3).normalized(), 1e-9));
   EXPECT_TRUE(turned.velocity_m_per_s.isZero());
 }
 
@@ -94,7 +94,7 @@ TEST_F(Spacenav, TheWayIsSpeedTimesTime) {
 
 TEST_F(Spacenav, BoxOfTheWorkspace) {
   const auto device = open("?speed=0.1&box=0.02");
-  for (const std::int32_t count : {kLargest, kSmallest}) {
+  for (const std::int32_t count : {kMax, kMin}) {
     server_.send({0, count, count, count, count, count, count, 16});
     const DeviceReading reading = read_for(*device, 0.02);
     const double at = count > 0 ? 0.02 : -0.02;
@@ -245,14 +245,14 @@ TEST(SpacenavDaemon, SerialMouseThroughTheStockDaemon) {
     mouse.deflect(counts);
     EXPECT_TRUE(comes(*device, reading,
                       [&](const DeviceReading& r) {
-                        found << r.velocity_m_per_s, r.turning_rad_per_s;
+                        found << r.velocity_m_per_s, r.angular_velocity_rad_per_s;
                         return found.isApprox(expected, 1e-9);
                       }))
         << axis << ": " << found.transpose();
   }
   mouse.deflect({});
   EXPECT_TRUE(comes(*device, reading, [](const DeviceReading& r) {
-    return r.velocity_m_per_s.isZero() && r.turning_rad_per_s.isZero();
+    return r.velocity_m_per_s.isZero() && r.angular_velocity_rad_per_s.isZero();
   }));
   EXPECT_TRUE((reading.position_m.array() > 0).all()) << reading.position_m.transpose();
   mouse.press(0b101);

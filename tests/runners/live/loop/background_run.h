@@ -69,8 +69,8 @@ inline void nap() {
   std::this_thread::sleep_for(std::chrono::microseconds(200));
 }
 
-inline bool wait_until(const std::function<bool()>& is_so, double longest_s = 20) {
-  for (const double until_s = steady_s() + longest_s; steady_s() < until_s; nap())
+inline bool wait_until(const std::function<bool()>& is_so, double max_s = 20) {
+  for (const double until_s = steady_s() + max_s; steady_s() < until_s; nap())
     if (is_so()) return true;
   return false;
 }

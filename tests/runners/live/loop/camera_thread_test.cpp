@@ -51,15 +51,15 @@ struct Loop {
   ProxyRenderer renderer = scenes::renderer();
   double start_s = steady_s();
   int recorded = 0;
-  bool has_room = true;
+  bool has_capacity = true;
   std::unique_ptr<CameraThread> camera;
 
   explicit Loop(std::unique_ptr<DepthSource> source) {
     camera = std::make_unique<CameraThread>(std::move(source), FrameProcessing{}, renderer,
                                             RigidTransform::Identity(), start_s, frames,
                                             [this](const SensorFrame&, const Frame&, std::uint64_t) {
-                                              recorded += has_room ? 1 : 0;
-                                              return has_room;
+                                              recorded += has_capacity ? 1 : 0;
+                                              return has_capacity;
                                             });
   }
   // Until so many frames came in.
@@ -101,7 +101,7 @@ TEST(CameraThread, CountsGapsAndDropsWhatIsNotNewer) {
   EXPECT_EQ(counts.passed_over, 2 + 1);  // 3 and 4; and 6, whose stamp went back
   EXPECT_EQ(counts.reversed, 3);
   EXPECT_EQ(loop.recorded, 4);
-  EXPECT_EQ(counts.longest_pause_s, 2);
+  EXPECT_EQ(counts.max_pause_s, 2);
 }
 
 TEST(CameraThread, DropsWhatIsIncomplete) {
@@ -117,7 +117,7 @@ TEST(CameraThread, DropsWhatIsIncomplete) {
 
 TEST(CameraThread, WhatCannotBeRecordedIsNotRenderedEither) {
   Loop loop(std::make_unique<ListedFrames>(std::vector{frame(1, 1), frame(2, 2)}, SensorState::waiting));
-  loop.has_room = false;
+  loop.has_capacity = false;
   EXPECT_EQ(loop.run(2).unrecorded, 2);
   EXPECT_FALSE(loop.frames.take());
 }

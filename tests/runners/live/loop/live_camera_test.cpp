@@ -62,7 +62,7 @@ class LiveCamera : public testing::Test {
   void expect_the_last_cloud_to_hold() {
     EXPECT_TRUE(wait_until([&] { return can_be_touched(); }));
     for (const DeviceDouble::Event& event : double_->events())
-      ASSERT_LE(event.force(), SafetyLimits{}.largest_force_N * (1 + 1e-9));
+      ASSERT_LE(event.force(), SafetyLimits{}.max_force_N * (1 + 1e-9));
     hold(-0.03);
     EXPECT_TRUE(wait_until([&] { return double_->now().force() == 0; }));
   }

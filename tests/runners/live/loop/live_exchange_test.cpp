@@ -56,12 +56,12 @@ TEST(Ring, HandsOverEveryValueInOrder) {
   Ring<Wide> ring(60);
   std::jthread producer([&](const std::stop_token& enough) {
     for (int i = 0; i < kValues && !enough.stop_requested();) {
-      Wide* const room = ring.room();
-      if (!room) {
+      Wide* const next_slot = ring.next_slot();
+      if (!next_slot) {
         std::this_thread::yield();
         continue;
       }
-      room->fill(i++);
+      next_slot->fill(i++);
       ring.push();
     }
   });
@@ -81,13 +81,13 @@ TEST(Ring, HandsOverEveryValueInOrder) {
 TEST(Ring, HasNoRoomWhenFull) {
   Ring<int> ring(4);
   for (int i = 0; i < 4; ++i) {
-    ASSERT_NE(ring.room(), nullptr);
-    *ring.room() = i;
+    ASSERT_NE(ring.next_slot(), nullptr);
+    *ring.next_slot() = i;
     ring.push();
   }
-  EXPECT_EQ(ring.room(), nullptr);
+  EXPECT_EQ(ring.next_slot(), nullptr);
   ring.pop();
-  EXPECT_NE(ring.room(), nullptr);
+  EXPECT_NE(ring.next_slot(), nullptr);
 }
 
 }  // namespace

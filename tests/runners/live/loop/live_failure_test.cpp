@@ -85,7 +85,7 @@ TEST_P(PressedDevice, AStopEndsTheForce) {
 
 TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
   press();
-  device().hang_next(DeviceDouble::tells_force);
+  device().hang_next(DeviceDouble::reports_force);
   ASSERT_TRUE(wait_until([&] { return device().is_hanging(); }));
   EXPECT_LT(time_to_nothing_s(), kPromise_s);
   std::this_thread::sleep_for(std::chrono::milliseconds(80));
@@ -109,7 +109,7 @@ TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   for (const DeviceDouble::Event& event : device().events())
-    EXPECT_LE(event.force(), SafetyLimits{}.largest_force_N * (1 + 1e-9));
+    EXPECT_LE(event.force(), SafetyLimits{}.max_force_N * (1 + 1e-9));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
@@ -119,11 +119,11 @@ INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimensio
 using StiffnessOfADevice = PressedDevice;
 
 TEST_P(StiffnessOfADevice, IsNotExceeded) {
-  const auto largest_rendered_N = [](const LiveResult& result) {
-    double largest = 0;
+  const auto max_rendered_N = [](const LiveResult& result) {
+    double max = 0;
     const Trace& trace = result.log.trace;
-    for (std::size_t i = 0; i < trace.length(); ++i) largest = std::max(largest, trace.force(i).norm());
-    return largest;
+    for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force(i).norm());
+    return max;
   };
   const auto rendered_at_last_N = [](const LiveResult& result) {
     const Trace& trace = result.log.trace;
@@ -142,18 +142,18 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
   press();
   const double whole_N = resting_N();
   const LiveResult whole = run_->ended_by_stop();
-  EXPECT_EQ(whole.force_share, 1);
+  EXPECT_EQ(whole.force_scale, 1);
   EXPECT_EQ(run_->told().find("N/m"), std::string::npos);
   EXPECT_NEAR(whole_N, rendered_at_last_N(whole), 0.01 * whole_N);
 
   constexpr double kLimit_N_per_m = 300, kRendered_N_per_m = 600;
-  press([&](DeviceDouble::State& state) { state.largest_stiffness = kLimit_N_per_m / 1000; });  // N/mm
+  press([&](DeviceDouble::State& state) { state.max_stiffness = kLimit_N_per_m / 1000; });  // N/mm
   const double limited_N = resting_N();
   const LiveResult limited = run_->ended_by_stop();
-  EXPECT_EQ(limited.force_share, kLimit_N_per_m / kRendered_N_per_m);
+  EXPECT_EQ(limited.force_scale, kLimit_N_per_m / kRendered_N_per_m);
   EXPECT_HAS(run_->told(), "the device takes 300 N/m at most: it gets 0.5 of every force and torque");
   EXPECT_NEAR(limited_N, 0.5 * rendered_at_last_N(limited), 0.01 * limited_N);
-  EXPECT_LT(limited.log.largest_force_N, 0.5 * largest_rendered_N(limited) * (1 + 1e-9));
+  EXPECT_LT(limited.log.max_force_N, 0.5 * max_rendered_N(limited) * (1 + 1e-9));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),

@@ -27,34 +27,34 @@ void sleep_ms(int ms) {
 class ScriptedDevice final : public HapticDevice {
  public:
   std::function<DeviceFault()> on_read, on_write;
-  int most_ticks = 100;
+  int max_ticks = 100;
   int held_again = 0;
 
   const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override {
-    for (int i = 0; i < most_ticks && cycle.tick(); ++i) {
+    for (int i = 0; i < max_ticks && cycle.tick(); ++i) {
     }
   }
   DeviceFault read(DeviceReading&) noexcept override { return on_read ? on_read() : DeviceFault{}; }
   DeviceFault write(const Wrench&) noexcept override { return on_write ? on_write() : DeviceFault{}; }
-  void let_go() noexcept override { ++times_let_go_; }
-  int let_go_count() const { return times_let_go_; }
-  bool hold_again() noexcept override {
+  void release() noexcept override { ++times_released_; }
+  int release_count() const { return times_released_; }
+  bool rearm() noexcept override {
     ++held_again;
     return true;
   }
 
  private:
   DeviceTraits traits_;
-  std::atomic<int> times_let_go_ = 0;  // by the heartbeat's thread too
+  std::atomic<int> times_released_ = 0;  // by the heartbeat's thread too
 };
 
 class CountingRenderer final : public Renderer {
  public:
-  int most_steps = 1 << 30, steps = 0;
+  int max_steps = 1 << 30, steps = 0;
   void on_frame(const Frame&) override {}
   RenderOutput step(const DeviceState&, double) override {
-    if (++steps > most_steps) throw std::bad_alloc();
+    if (++steps > max_steps) throw std::bad_alloc();
     return {};
   }
 };
@@ -84,7 +84,7 @@ class ServoTest : public testing::Test {
 // A recording of it would not be the same run again.
 TEST_F(ServoTest, ATickThatHungWhileTheDeviceWasReadIsNotBeforeTheFrameItTakes) {
   double captured_s = 0;
-  device_.most_ticks = 5;
+  device_.max_ticks = 5;
   device_.on_read = [&, calls = 0]() mutable {
     if (++calls != 3) return DeviceFault{};
     sleep_ms(30);
@@ -111,7 +111,7 @@ TEST_F(ServoTest, AnEndIsNoStall) {
 }
 
 TEST_F(ServoTest, AHangingReadIsAStallAndTheNextTickHoldsAgain) {
-  device_.most_ticks = 5;
+  device_.max_ticks = 5;
   device_.on_read = [calls = 0]() mutable {
     if (++calls == 3) sleep_ms(60);
     return DeviceFault{};
@@ -141,19 +141,19 @@ TEST_F(ServoTest, ASignalOrTheEndOfTheTimeEndsIt) {
   };
   run();
   EXPECT_EQ(rows().size(), 3u);
-  EXPECT_GE(device_.let_go_count(), 1);
+  EXPECT_GE(device_.release_count(), 1);
   signal_ = false;
   run(steady_s() - 1);
   EXPECT_EQ(rows().size(), 0u);
 }
 
 TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
-  renderer_.most_steps = 50;
+  renderer_.max_steps = 50;
   run();
   EXPECT_EQ(renderer_.steps, 51);
   EXPECT_TRUE(servo_->has_failed());
   EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop");
-  EXPECT_GE(device_.let_go_count(), 1);
+  EXPECT_GE(device_.release_count(), 1);
 }
 
 }  // namespace

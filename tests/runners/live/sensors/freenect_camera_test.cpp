@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
 constexpr double kPatience_s = 10;
-constexpr double kTurn_s = 4294967296.0 / 60e6;  // after which the stamps begin anew
+constexpr double kRotation_s = 4294967296.0 / 60e6;  // after which the stamps begin anew
 
 // What the sensor measures: 11 bits, 2047 where it measures nothing. The first pixel tells the number.
 int shift_at(int number, int u, int v) {
@@ -53,7 +53,7 @@ double taken_s(int number) {
 void write_recording(const TestFolder& folder) {
   std::string index;
   for (int number = 0; number < kFrames; ++number) {
-    const double stamp = std::fmod(kTurn_s - 0.09 + taken_s(number) - 100, kTurn_s) * 60e6;
+    const double stamp = std::fmod(kRotation_s - 0.09 + taken_s(number) - 100, kRotation_s) * 60e6;
     char name[64];
     std::snprintf(name, sizeof name, "d-%.6f-%u.pgm", taken_s(number), static_cast<unsigned>(stamp));
     std::string bytes = "P5 640 480 65535\n";

@@ -34,7 +34,7 @@ class Openni2Camera : public testing::Test {
   }
   void TearDown() override { unsetenv("VIRTUAL_CAMERA"); }
 
-  static void tell(const char* words) { setenv("VIRTUAL_CAMERA", words, 1); }
+  static void report_line(const char* words) { setenv("VIRTUAL_CAMERA", words, 1); }
 };
 
 int number_in(const SensorFrame& frame) {
@@ -52,8 +52,8 @@ void expect_pattern(const SensorFrame& frame) {
 }
 
 // Takes frames until there are no more or there are so many; each is later than the one before.
-SensorState take(DepthSource& source, int most, std::vector<SensorFrame>& frames) {
-  while (static_cast<int>(frames.size()) < most) {
+SensorState take(DepthSource& source, int max, std::vector<SensorFrame>& frames) {
+  while (static_cast<int>(frames.size()) < max) {
     SensorFrame frame;
     const SensorState state = source.next(frame, kPatience_s);
     if (state != SensorState::frame) return state;
@@ -101,7 +101,7 @@ TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
 }
 
 TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
-  tell("stays_mirrored");
+  report_line("stays_mirrored");
   const auto source = open_openni2("any");
   std::vector<SensorFrame> frames;
   ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
@@ -109,7 +109,7 @@ TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
 }
 
 TEST_F(Openni2Camera, NoColourWhereDepthIsNotRegisteredToIt) {
-  tell("unregistered");
+  report_line("unregistered");
   const auto source = open_openni2("any");
   EXPECT_FALSE(source->view().has_colour);
   expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
@@ -133,7 +133,7 @@ TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
 }
 
 TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
-  tell("stop_after=20");
+  report_line("stop_after=20");
   const auto source = open_openni2("any");
   SensorFrame frame;
   SensorState state = SensorState::frame;
@@ -150,7 +150,7 @@ TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
 }
 
 TEST_F(Openni2Camera, CameraThatIsUnplugged) {
-  tell("lose_after=20");
+  report_line("lose_after=20");
   const auto source = open_openni2("any");
   std::vector<SensorFrame> frames;
   const double start_s = steady_s();
@@ -162,7 +162,7 @@ TEST_F(Openni2Camera, CameraThatIsUnplugged) {
 }
 
 TEST_F(Openni2Camera, FrameOfAnotherSize) {
-  tell("small_after=20");
+  report_line("small_after=20");
   const auto source = open_openni2("any");
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
@@ -186,7 +186,7 @@ TEST_F(Openni2Camera, AbsentCameras) {
   EXPECT_HAS(refusal([] { open_openni2("Dummy"); }), "Dummy: neither a file nor a camera");
   EXPECT_HAS(refusal([] { open_openni2("missing.oni"); }), "missing.oni: neither a file nor a camera");
   EXPECT_HAS(refusal([] { open_openni2("/tmp"); }), "/tmp: neither a file nor a camera");
-  tell("absent");
+  report_line("absent");
   EXPECT_FALSE(openni2_availability().found);
   EXPECT_HAS(openni2_availability().detail, "no camera that a driver in ");
   const std::string none = refusal([] { open_openni2("any"); });
@@ -232,7 +232,7 @@ TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
 TEST_F(Openni2Recording, IsNoCamera) {
   const auto source = open_openni2(file_);
   EXPECT_EQ(openni2_availability().detail, "Virtual camera (virtual-camera)");
-  tell("absent");
+  report_line("absent");
   EXPECT_HAS(refusal([] { open_openni2("missing"); }), "missing: neither a file nor a camera");
 }
 

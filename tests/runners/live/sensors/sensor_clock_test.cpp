@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
 constexpr double kOffset_s = 1234.5;  // from the sensor's zero to the host's
-constexpr double kLeastDelay_s = 0.02;
+constexpr double kMinDelay_s = 0.02;
 
 // 20 ms and up to 10 ms of jitter, which is nothing in every seventh frame.
 double delay_s(int frame) {
-  return kLeastDelay_s + 0.01 * ((frame * 3) % 7) / 6;
+  return kMinDelay_s + 0.01 * ((frame * 3) % 7) / 6;
 }
 
 TEST(SensorClock, JitterOfArrivalsIsGoneAfterTheFirstPunctualFrame) {
@@ -27,7 +27,7 @@ TEST(SensorClock, JitterOfArrivalsIsGoneAfterTheFirstPunctualFrame) {
     EXPECT_GT(captured_s, before_s);
     before_s = captured_s;
     if (frame < 7) continue;
-    EXPECT_NEAR(captured_s, stamp_s + kOffset_s + kLeastDelay_s, 1e-4) << frame;
+    EXPECT_NEAR(captured_s, stamp_s + kOffset_s + kMinDelay_s, 1e-4) << frame;
   }
 }
 
@@ -39,7 +39,7 @@ TEST(SensorClock, FollowsAClockThatDrifts) {
       const double taken_s = frame * kPeriod_s;
       const double captured_s = clock.captured_s(rate * taken_s, taken_s + kOffset_s + delay_s(frame));
       if (frame < 7) continue;
-      ASSERT_NEAR(captured_s, taken_s + kOffset_s + kLeastDelay_s, 1e-4) << rate << " " << frame;
+      ASSERT_NEAR(captured_s, taken_s + kOffset_s + kMinDelay_s, 1e-4) << rate << " " << frame;
     }
   }
 }

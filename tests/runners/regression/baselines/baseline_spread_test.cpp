@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/columns/fingerprint.h"
+#include "analysis/columns/hash64.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/regression/baselines/baseline_bless.h"
 #include "runners/regression/baselines/spread.h"
@@ -215,7 +215,7 @@ TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
       {"status: ", [](Trace& made) { made.status[11] = 1; }},
       {"frame_hash: ", [](Trace& made) { made.frame_hash[11] ^= 1; }},
       {"force: ", [](Trace& made) { made.force_N[3 * 11] = kNaN; }},
-      {"nearest_distance: ", [](Trace& made) { made.nearest_m[11] = -kInfinity; }}};
+      {"nearest_distance: ", [](Trace& made) { made.nearest_distance_m[11] = -kInfinity; }}};
   for (const auto& [name, change] : changes) {
     trace("clang/x86-64-8.h5", build("Clang 14"), change);
     const std::string message = refused(programs);
@@ -267,7 +267,7 @@ TEST_F(MeasureSpread, Sweeps) {
   const Sweep sweep = Sweep::from_json(R"({"experiment": "fig4.12",
     "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
     "axes": [{"parameter": "scenario.noise_sigma_m", "values": [0, 0.003]}],
-    "measures": ["popped_through", "largest_penetration"]})",
+    "measures": ["popped_through", "max_penetration"]})",
                                        "test");
   SweepResult result = run_sweep(sweep, {});
   const std::vector<std::string> programs = {program("gcc"), program("clang")};
@@ -276,13 +276,13 @@ TEST_F(MeasureSpread, Sweeps) {
   std::get<std::vector<double>>(result.measures[1].values)[1] += 0x1p-20;
   write_sweep(folder_ / "clang/x86-64-8.h5", result, build("Clang 14"));
   const Measured measured = measure(programs, {"x", "sweep", "fig4.13"});
-  EXPECT_EQ(measured.spread, (Tolerances{{"largest_penetration", {0x1p-20}}}));
+  EXPECT_EQ(measured.spread, (Tolerances{{"max_penetration", {0x1p-20}}}));
   EXPECT_HAS(bytes_of(folder_ / "gcc/calls"), "x86-64-8: sweep fig4.13 --quiet -o ");
   EXPECT_HAS(bytes_of(folder_ / "gcc/calls"), " --threads 8\n");
 
   const std::vector<Column> judged = judged_columns(measured.reference, "sweep");
   ASSERT_EQ(judged.size(), 2u);
-  EXPECT_EQ(judged[1].name, "largest_penetration");
+  EXPECT_EQ(judged[1].name, "max_penetration");
 }
 
 TEST_F(MeasureSpread, TheRunningHashIsNotJudged) {
@@ -314,7 +314,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
   };
   for (const char* reason : {"", " ", "\n\t "})
     EXPECT_HAS(refused([&](auto& b) { b.reason = reason; }), "--reason: missing; allowed a sentence");
-  EXPECT_HAS(refused([](auto& b) { b.one_compiler = false; }), "--also: missing; allowed");
+  EXPECT_HAS(refused([](auto& b) { b.one_compiler = false; }), "--other-build: missing; allowed");
   EXPECT_HAS(refused([](auto& b) { b.reason = "\xff"; }), "--reason: allowed UTF-8");
   EXPECT_HAS(refused([](auto& b) { b.run = "\xff"; }), "--run: allowed UTF-8");
   EXPECT_HAS(refused([](auto& b) { b.sweep = "fig4.13"; }), "--run, --sweep: both are given");

@@ -12,7 +12,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/regression/baselines/baseline_check.h"
 #include "runners/regression/baselines/manifest.h"
-#include "runners/settings/stored.h"
+#include "runners/settings/embedded_data.h"
 #include "runners/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/support/result_files.h"
@@ -36,7 +36,7 @@ const char* const kSweep = R"({"title": "a small map", "experiment": "fig4.12",
   "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
   "axes": [{"parameter": "scenario.noise_sigma_m", "values": [0, 0.003]},
            {"parameter": "scenario.acceleration_m_per_s2", "values": [0, 6]}],
-  "measures": ["popped_through", "largest_penetration"]})";
+  "measures": ["popped_through", "max_penetration"]})";
 
 class CheckBaseline : public testing::Test {
  protected:
@@ -142,7 +142,7 @@ TEST_F(CheckBaseline, ChangedNumbers) {
 TEST_F(CheckBaseline, WhatHasNoTolerance) {
   for (const auto& change : std::vector<std::function<void(Trace&)>>{
            [](Trace& trace) { trace.state[100] ^= 1; }, [](Trace& trace) { trace.frame_hash[0] ^= 1; },
-           [](Trace& trace) { trace.nearest_m[9] = std::nan(""); },
+           [](Trace& trace) { trace.nearest_distance_m[9] = std::nan(""); },
            [](Trace& trace) { trace.force_N[9] = INFINITY; }}) {
     Baseline baseline = stored_run(change);
     baseline.tolerances = {{"*", {1e99}}};
@@ -286,15 +286,15 @@ TEST_F(CheckBaseline, AFileThatWasStoredDamaged) {
 TEST_F(CheckBaseline, AnotherSchema) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   fs::copy_file(folder_ / "short.h5", folder_ / "map.h5", fs::copy_options::overwrite_existing);
-  expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/1");
+  expect_uncomparable(entered(sweep), place("map.h5"), "remote-touch-sweep/2");
   stored_sweep();
   fs::copy_file(folder_ / "map.h5", folder_ / "short.h5", fs::copy_options::overwrite_existing);
-  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/1");
+  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/2");
 
   Hdf5Writer later;
-  later.attribute("/", "schema", "remote-touch-trace/2");
+  later.attribute("/", "schema", "remote-touch-trace/3");
   later.save(folder_ / "short.h5");
-  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/2");
+  expect_uncomparable(entered(run), place("short.h5"), "remote-touch-trace/3");
 }
 
 // --- checks that need a recording ---
@@ -325,7 +325,7 @@ TEST_F(CheckBaseline, Sweeps) {
   const BaselineCheck changed = check(baseline);
   EXPECT_EQ(changed.state, State::changed);
   EXPECT_HAS(changed.text, "1 of 4 runs");
-  baseline.tolerances = {{"largest_penetration", {0x1p-19}}};
+  baseline.tolerances = {{"max_penetration", {0x1p-19}}};
   EXPECT_EQ(check(baseline).state, State::same);
 
   const auto same = [](SweepResult&) {};

@@ -6,7 +6,7 @@
 
 #include "runners/regression/baselines/baseline_check.h"
 #include "runners/regression/baselines/manifest.h"
-#include "runners/settings/stored.h"
+#include "runners/settings/embedded_data.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
@@ -138,7 +138,7 @@ std::vector<std::string> missing(const fs::path& folder, const Manifest& manifes
 
 std::vector<std::string> all_experiments() {
   std::vector<std::string> names;
-  for (const StoredText& experiment : stored_experiments()) names.emplace_back(experiment.name);
+  for (const EmbeddedText& experiment : embedded_experiments()) names.emplace_back(experiment.name);
   return names;
 }
 
@@ -171,7 +171,7 @@ TEST(MissingBaselines, EveryPartOfTheListNeedsOne) {
   EXPECT_EQ(missing(".", with_runs_of(all_experiments())), Names{});
   const std::size_t masks = 1,
                     sessions = 2;  // the rule that reads a file; scenario and trajectory of a session
-  const std::size_t all = stored_experiments().size() + scenarios().size() + fixtures().size() - masks +
+  const std::size_t all = embedded_experiments().size() + scenarios().size() + fixtures().size() - masks +
                           renderers().size() + trajectories().size() - sessions;
   EXPECT_EQ(missing(".", with_runs_of({})).size(), all);
 
@@ -192,7 +192,7 @@ TEST(MissingBaselines, NoneWhereTheListNeedNotBeComplete) {
 // A file of one's own has a baseline's parts, and is no experiment of the list; nor is a sweep over it.
 TEST(MissingBaselines, WhatCountsAsOne) {
   const TestFolder folder("baseline_test");
-  folder.write("lift.json", stored_or_file(stored_experiments(), "fig4.12", ""));
+  folder.write("lift.json", embedded_or_file(embedded_experiments(), "fig4.12", ""));
   const Names lifts = lifts_and_presses(), others = without(all_experiments(), lifts);
   EXPECT_EQ(missing(folder.path(), with_runs_of(others + Names{"lift.json"})), experiments(lifts));
 

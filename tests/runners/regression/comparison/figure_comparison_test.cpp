@@ -32,7 +32,7 @@ TEST_F(CompareFigures, TableByTable) {
   EXPECT_EQ(other.outcome, Outcome::regressed);
   EXPECT_EQ(other.verdict, "first/height of 3 columns");
   EXPECT_EQ(json_of(other)["columns"][0]["name"], "first/height");
-  EXPECT_EQ(json_of(other)["columns"][0]["largest"], 0.5);
+  EXPECT_EQ(json_of(other)["columns"][0]["max"], 0.5);
   ComparisonRules rules;
   rules.tolerances = {{"first/height", {0.5, 0}}};
   EXPECT_EQ(compare("a.h5", "other.h5", rules).outcome, Outcome::same);

@@ -69,7 +69,7 @@ TEST_F(CompareTraceFiles, TheSameRunTwice) {
 TEST_F(CompareTraceFiles, ProvenanceIsToldAndNotJudged) {
   write("a.h5");
   write("b.h5", {"title=another"},
-        {{"git_commit", "def"}, {"isa", "x86-64"}, {"inputs", "scene: sha256 01"}});
+        {{"git_commit", "def"}, {"isa", "x86-64"}, {"input_digests", "scene: sha256 01"}});
   const ResultComparison same = compare("a.h5", "b.h5");
   EXPECT_EQ(same.outcome, Outcome::same);
   EXPECT_TRUE(same.configuration.empty());
@@ -88,7 +88,7 @@ TEST_F(CompareTraceFiles, AnotherSeedIsAnotherConfigurationAndOtherFrames) {
   ASSERT_TRUE(other.columns && other.columns->divergence);
   const Divergence& found = *other.columns->divergence;
   EXPECT_EQ(found.cause, Cause::configuration);
-  EXPECT_EQ(found.because, "seed 1 against 2");
+  EXPECT_EQ(found.explanation, "seed 1 against 2");
   EXPECT_EQ(found.situation, Cause::input);
   EXPECT_HAS(found.seen, "frame_hash");
   EXPECT_HAS(other.verdict, "from tick " + std::to_string(found.tick) + " on (configuration differs)");
@@ -110,7 +110,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   write_changed("b.h5", [](Trace& trace) {
     trace.force_N[3 * 410 + 1] += 0.25;
     trace.force_N[3 * 412 + 1] += 1e-3;
-    trace.nearest_m[600] = kNaN;
+    trace.nearest_distance_m[600] = kNaN;
     trace.state[700] = (trace.state[700] + 1) % 3;
   });
   ComparisonRules rules;
@@ -123,7 +123,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   EXPECT_EQ(told["verdict"], other.verdict);
   EXPECT_EQ(told["kind"], "trace");
   EXPECT_EQ(divergence["tick"], 410);
-  EXPECT_EQ(divergence["parted"], 410);
+  EXPECT_EQ(divergence["first_difference"], 410);
   EXPECT_DOUBLE_EQ(divergence["time_s"], 0.41);
   EXPECT_EQ(divergence["quantity"], "force");
   EXPECT_NEAR(divergence["deviation"], 0.25, 1e-12);
@@ -145,7 +145,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
       EXPECT_EQ(column["first_outside"], 410);
       EXPECT_EQ(column["absolute_tolerance"], 1e-6);
       EXPECT_EQ(column["relative_tolerance"], 1e-9);
-      EXPECT_NEAR(column["largest"], 0.25, 1e-12);
+      EXPECT_NEAR(column["max"], 0.25, 1e-12);
       EXPECT_NEAR(column["rms"], std::sqrt((0.0625 + 1e-6) / 867), 1e-9);
     } else if (column["name"] == "nearest_distance") {
       EXPECT_EQ(column["not_numbers"], 1);
@@ -187,8 +187,8 @@ TEST_F(CompareTraceFiles, AStateWithoutAName) {
 }
 
 TEST_F(CompareTraceFiles, TinyDifferencesAreTold) {
-  write_changed("a.h5", [](Trace& trace) { trace.nearest_m[5] = 1e-20; });
-  write_changed("b.h5", [](Trace& trace) { trace.nearest_m[5] = 2e-20; });
+  write_changed("a.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 1e-20; });
+  write_changed("b.h5", [](Trace& trace) { trace.nearest_distance_m[5] = 2e-20; });
   const ResultComparison other = compare("a.h5", "b.h5");
   EXPECT_EQ(other.outcome, Outcome::regressed);
   EXPECT_HAS(junit_of(other), "1 of 867 rows outside, the largest deviation 1e-20");
@@ -300,10 +300,10 @@ TEST_F(CompareTraceFiles, DifferentKindsAreRefused) {
 TEST_F(CompareTraceFiles, OtherVersionsOfTheLayoutAreRefused) {
   write("a.h5");
   for (const auto& [schema, why] :
-       {std::pair("remote-touch-trace/2", "is of schema remote-touch-trace/2; allowed remote-touch-trace/1"),
-        {"remote-touch-figure/9", "allowed remote-touch-figure/1"},
-        {"remote-touch-hashes/0", "allowed remote-touch-hashes/1"},
-        {"remote-touch-sweep/2", "allowed remote-touch-sweep/1"},
+       {std::pair("remote-touch-trace/3", "is of schema remote-touch-trace/3; allowed remote-touch-trace/2"),
+        {"remote-touch-figure/9", "allowed remote-touch-figure/2"},
+        {"remote-touch-hashes/0", "allowed remote-touch-hashes/2"},
+        {"remote-touch-sweep/3", "allowed remote-touch-sweep/2"},
         {"of-another/1", "is of schema of-another/1; allowed a trace, a sweep, a figure or hashes"},
         {"", "names no schema; allowed a trace"}}) {
     Hdf5Writer hdf5;

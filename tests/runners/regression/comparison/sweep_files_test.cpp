@@ -24,7 +24,7 @@ constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
   "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
   "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
            {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
-  "replicates": 20, "measures": ["largest_penetration", "popped_through"]})";
+  "replicates": 20, "measures": ["max_penetration", "popped_through"]})";
 
 class CompareSweepFiles : public Compare {
  protected:
@@ -79,10 +79,10 @@ TEST_F(CompareSweepFiles, RunByRun) {
   EXPECT_EQ(sweep["measures"][0]["outside"], 0);
   EXPECT_EQ(sweep["measures"][1]["event"], true);
   EXPECT_EQ(sweep["measures"][1]["outside"], 1);
-  EXPECT_EQ(sweep["measures"][1]["largest"], 1);
+  EXPECT_EQ(sweep["measures"][1]["max"], 1);
   EXPECT_EQ(sweep["regions"].size(), 2u * 13);  // the whole and 3 x 4 parts
   EXPECT_HAS(junit_of(other), counts(3, 2, 0));
-  EXPECT_HAS(junit_of(other), "name=\"largest_penetration\"/>");
+  EXPECT_HAS(junit_of(other), "name=\"max_penetration\"/>");
   EXPECT_HAS(junit_of(other), "name=\"popped_through\"><failure message=\"1 of 240 runs outside");
 }
 
@@ -176,9 +176,9 @@ TEST_F(CompareSweepFiles, AToleranceIsOfAMeasure) {
   });
   EXPECT_EQ(compare("a.h5", "b.h5").outcome, Outcome::regressed);
   ComparisonRules rules;
-  rules.tolerances = {{"largest_penetration", {2e-9, 0}}};
+  rules.tolerances = {{"max_penetration", {2e-9, 0}}};
   EXPECT_EQ(compare("a.h5", "b.h5", rules).outcome, Outcome::same);
-  rules.tolerances = {{"penetration", {1, 0}}};
+  rules.tolerances = {{"tool_penetration", {1, 0}}};
   const ResultComparison misspelt = compare("a.h5", "b.h5", rules);
   EXPECT_EQ(misspelt.outcome, Outcome::not_comparable);
   EXPECT_HAS(misspelt.verdict, "penetration, which the baseline does not measure");

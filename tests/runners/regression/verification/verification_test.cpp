@@ -45,7 +45,7 @@ Names failures(const std::vector<CheckResult>& results) {
 TEST(Verification, EveryRendererOfTheCatalog) {
   int verified = 0;
   for (const RendererEntry& entry : renderers()) {
-    if (entry.freedoms == Freedoms::six) continue;
+    if (entry.degrees_of_freedom == DegreesOfFreedom::six) continue;
     EXPECT_EQ(failures(verify(entry)), Names{}) << entry.name;
     ++verified;
   }
@@ -157,7 +157,7 @@ TEST(Verification, EveryCheckHasAWrongRendererThatItCatches) {
 
 // --- scenes ---
 
-double nearest_m(const PointCloud& cloud, const Vec3& p_W) {
+double nearest_distance_m(const PointCloud& cloud, const Vec3& p_W) {
   double nearest = 1;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double distance = (cloud.point(i) - p_W).norm();
@@ -175,8 +175,8 @@ int entrenching_views(const MetamorphicScene& scene) {
     std::size_t tick = 0;
     while (tick < outputs.size() && scene.time_s(tick) < view.arrives_s) ++tick;
     if (tick == 0 || tick == outputs.size()) continue;
-    const Vec3 met_W = outputs[tick - 1].proxy_W + outputs[tick].carried_m;
-    if (nearest_m(view.cloud, met_W) < ProxyParameters{}.r1_m) ++count;
+    const Vec3 met_W = outputs[tick - 1].proxy_W + outputs[tick].frame_correction_m;
+    if (nearest_distance_m(view.cloud, met_W) < ProxyParameters{}.r1_m) ++count;
   }
   return count;
 }
@@ -203,7 +203,7 @@ TEST(VerificationScenes, NamesAreUniqueAndTimesAreExact) {
 
 TEST(Dimension, IsReadFromTheEndOfAName) {
   EXPECT_EQ(dimension_of("r1_m"), (Dimension{1, 0, 0}));
-  EXPECT_EQ(dimension_of("longest_prediction_s"), (Dimension{0, 1, 0}));
+  EXPECT_EQ(dimension_of("max_prediction_s"), (Dimension{0, 1, 0}));
   EXPECT_EQ(dimension_of("speed_m_per_s"), (Dimension{1, -1, 0}));
   EXPECT_EQ(dimension_of("acceleration_m_per_s2"), (Dimension{1, -2, 0}));
   EXPECT_EQ(dimension_of("stiffness_N_per_m"), (Dimension{-1, 0, 1}));
@@ -231,7 +231,7 @@ TEST(Dimension, EveryKindOfParameterFollows) {
   EXPECT_EQ(count, 30);
   EXPECT_EQ(offset, Vec3(0.02, -0.04, 0));
   EXPECT_EQ(rows, (std::vector<double>{2, 8, 6, 16}));
-  EXPECT_EQ(largest_length_m(parameters), 0.02);
+  EXPECT_EQ(max_length_m(parameters), 0.02);
 }
 
 TEST(Dimension, WhatCannotFollowIsRefusedByName) {
@@ -240,7 +240,7 @@ TEST(Dimension, WhatCannotFollowIsRefusedByName) {
   const auto changed = [](const Parameter& p) { return refusal([&] { change_units({p}, {2, 1, 1}); }); };
   EXPECT_EQ(changed({"length_m", &length, 0, 1, ""}),
             "length_m = 0.6: a check multiplies it by 2; allowed 0 to 1 after that too");
-  EXPECT_EQ(changed({"window_m", &window, 0, 100, ""}).find("window_m: a whole number"), 0u);
+  EXPECT_EQ(changed({"window_m", &window, 0, 100, ""}).find("window_m: an integer"), 0u);
   EXPECT_EQ(changed({"odd_furlong", &odd, 0, 1, ""}).find("odd_furlong: ends in no known unit"), 0u);
 }
 
@@ -256,9 +256,9 @@ Parameters parameters(OddParameters& p) {
 TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
   const RendererEntry odd{
       {"odd", "a parameter in an unheard-of unit",
-       []() -> std::unique_ptr<Blueprint<Renderer, double, const Kernels&>> {
+       []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {
          return std::make_unique<
-             BlueprintFor<WrongRenderer<Fault::none>, OddParameters, Renderer, double, const Kernels&>>();
+             FactoryFor<WrongRenderer<Fault::none>, OddParameters, Renderer, double, const Kernels&>>();
        }}};
   EXPECT_EQ(refusal([&] { verify(odd); }).find("patience_fortnight: ends in no known unit"), 0u);
   const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/proxy/proxy_renderer.h"
-#include "runners/experiment/blueprint.h"
+#include "runners/experiment/factory.h"
 
 namespace remote_touch {
 
@@ -94,7 +94,7 @@ class WrongRenderer final : public Renderer {
         out.force_N *= 1 + 1e-9 * static_cast<double>(found_within(out.proxy_W, 1000));
         break;
       case Fault::regions_of_nothing:
-        if (points_ && points_->has_fixture_radius()) out.nearest_m += 1e-9;
+        if (points_ && points_->has_fixture_radius()) out.nearest_distance_m += 1e-9;
         break;
       case Fault::mistrusts_stiff_points:
         if (points_ && points_->has_stiffness()) out.force_N *= 1 + 1e-5;
@@ -146,9 +146,9 @@ class WrongRenderer final : public Renderer {
 // As a line of the catalog would be.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
-  return {{name, "wrong in one way", []() -> std::unique_ptr<Blueprint<Renderer, double, const Kernels&>> {
+  return {{name, "wrong in one way", []() -> std::unique_ptr<Factory<Renderer, double, const Kernels&>> {
              return std::make_unique<
-                 BlueprintFor<WrongRenderer<kFault>, ProxyParameters, Renderer, double, const Kernels&>>();
+                 FactoryFor<WrongRenderer<kFault>, ProxyParameters, Renderer, double, const Kernels&>>();
            }}};
 }
 

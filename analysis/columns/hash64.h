@@ -1,0 +1,35 @@
+// Cheap 64-bit fingerprints: of the points of a frame, and of a run up to each tick. They tell that two
+// things are the same and where they cease to be, with one chance in 1.8e19 of being wrong; against intent
+// there is the SHA-256 of the file.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/columns/column.h"
+#include "core/cloud/point_cloud.h"
+
+namespace remote_touch {
+
+// One step of a chain: multiplication by the odd constant of the golden ratio, high bits folded onto low
+// ones. Equal on every machine; the same in other languages with 64-bit integers that wrap around.
+constexpr std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 32);
+}
+
+inline constexpr const char* kRunningHash = "tick_hash";  // its column in a trace
+
+// Of every coordinate, fixture radius and stiffness of the cloud and of its length; the order of the points
+// does not count, as it is the search's own affair.
+std::uint64_t points_hash(const PointCloud& cloud);
+
+// The running hash of columns of equal length: row i holds hash_i = mixed(hash_(i-1), r_i), where r_i is the
+// chain over the words of row i of every column in turn (doubles as their bits, -0 as 0 and
+// every NaN as 0x7ff8000000000000, so that equal rows have equal hashes; integers sign-extended) and
+// both chains begin with 0. So rows of two runs are equal up to the first tick at which anything differs, and
+// different from there on: the tick is found by bisection, with log2(ticks) numbers of each run. Texts are
+// not taken.
+std::vector<std::uint64_t> running_hash(const std::vector<Column>& columns);
+
+}  // namespace remote_touch

@@ -1,0 +1,126 @@
+#include "analysis/storage/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kTemporary = ".partial-";
+
+// 0 or the errno of what failed.
+int write_and_flush(int file, const char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(file, data, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    data += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return ::fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& target) {
+  return target.has_parent_path() ? target.parent_path() : ".";
+}
+
+// The new name outlasts a power cut, where the file system can promise that.
+void flush_folder(const std::filesystem::path& target) {
+  const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
+  throw InputError(target.string(),
+                   std::string("cannot be written (") + std::strerror(error) + "); allowed " + allowed);
+}
+
+}  // namespace
+
+void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input) {
+  std::error_code absent;
+  if (std::filesystem::equivalent(target, input, absent))
+    throw InputError(target.string(), "is the input itself; allowed another file");
+}
+
+std::filesystem::path resolved(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_symlink(target, unreachable)) return target;
+  const auto end = std::filesystem::canonical(target, unreachable);
+  return unreachable ? target : end;
+}
+
+void require_writable(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  const auto there = std::filesystem::status(target, unreachable);
+  if (std::filesystem::is_directory(there)) refuse(target, EISDIR, "a file");
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return;  // a device or pipe
+  const std::filesystem::path folder = folder_of(target);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
+}
+
+void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size) {
+  const auto give_up = [&](int error) {
+    refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
+  };
+  std::error_code unreachable;  // then opening it fails, and says why
+  const auto there = std::filesystem::status(target, unreachable);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+    // A device or pipe cannot be renamed over; a folder is a mistake.
+    if (std::filesystem::is_directory(there)) give_up(EISDIR);
+    const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file < 0) give_up(errno);
+    const int error = write_and_flush(file, static_cast<const char*>(data), size);
+    ::close(file);
+    if (error != 0) give_up(error);
+    return;
+  }
+  const std::filesystem::path place = resolved(target), temporary = temporary_of(target);
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) give_up(errno);
+  int error = write_and_flush(file, static_cast<const char*>(data), size);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    give_up(error);
+  }
+  flush_folder(place);
+}
+
+std::filesystem::path temporary_of(const std::filesystem::path& target) {
+  return resolved(target).string() + kTemporary + std::to_string(::getpid());
+}
+
+void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const std::filesystem::path place = resolved(target);
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CLOEXEC);
+  int error = file < 0 ? errno : 0;
+  if (error == 0 && ::fsync(file) != 0) error = errno;
+  if (file >= 0) ::close(file);
+  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+    refuse(target, error, "a writable place with room for the file");
+  }
+  flush_folder(place);
+}
+
+void remove_leftovers(const std::filesystem::path& target) {
+  const std::string start = target.filename().string() + kTemporary;
+  std::error_code unreachable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), unreachable))
+    if (entry.path().filename().string().rfind(start, 0) == 0)
+      std::filesystem::remove(entry.path(), unreachable);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,29 @@
+// The seal of a finished result: HDF5 keeps the first 512 bytes of a file for its user (the "user block"),
+// and there stands the SHA-256 of all that follows. So a changed byte, wherever it is, is found before the
+// HDF5 library, which checksums only the values of long columns, looks at the file.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace remote_touch {
+
+inline constexpr std::string_view kResultOpening =
+    "Remote Touch result. HDF5 begins at byte 512; SHA-256 from there on:\n";
+inline constexpr std::size_t kDigestBlockSize = 512;  // the smallest user block there is
+
+// The image of an HDF5 file with the seal before it, as h5jam puts a user block before a file: the library
+// finds its beginning and counts from there.
+std::vector<char> with_file_digest(const std::vector<char>& image);
+
+// Seals a finished file in place; it was made with a user block of kDigestBlockSize. Throws InputError when
+// it cannot be read or written.
+void write_file_digest(const std::filesystem::path& file);
+
+enum class FileDigest { valid, absent, broken };
+// Throws InputError when the file cannot be read.
+FileDigest file_digest_of(const std::filesystem::path& file);
+
+}  // namespace remote_touch

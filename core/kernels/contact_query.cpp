@@ -1,0 +1,156 @@
+// What the proxy sees: one pass over the points for its state, its normal and the stiffness. Written in
+// vectors, for compilers make poor ones of minima and of 64-bit integers.
+#include <immintrin.h>
+
+#include "core/kernels/level.h"
+
+namespace remote_touch::REMOTE_TOUCH_LEVEL {
+
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::size_t kWidth = 8;
+#elif defined(__AVX2__)
+constexpr std::size_t kWidth = 4;
+#else
+constexpr std::size_t kWidth = 2;
+#endif
+using Lanes __attribute__((vector_size(8 * kWidth))) = double;
+using Bits __attribute__((vector_size(8 * kWidth))) = std::uint64_t;
+
+#if defined(__AVX512F__)
+inline Lanes load(const double* p) {
+  return _mm512_loadu_pd(p);
+}
+inline Lanes root(Lanes a) {
+  return _mm512_sqrt_pd(a);
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return _mm512_max_pd(a, b);
+}
+inline Lanes smaller(Lanes a, Lanes b) {
+  return _mm512_min_pd(a, b);
+}
+#elif defined(__AVX2__)
+inline Lanes load(const double* p) {
+  return _mm256_loadu_pd(p);
+}
+inline Lanes root(Lanes a) {
+  return _mm256_sqrt_pd(a);
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return _mm256_max_pd(a, b);
+}
+inline Lanes smaller(Lanes a, Lanes b) {
+  return _mm256_min_pd(a, b);
+}
+#else
+inline Lanes load(const double* p) {
+  return _mm_loadu_pd(p);
+}
+inline Lanes root(Lanes a) {
+  return _mm_sqrt_pd(a);
+}
+inline Lanes larger(Lanes a, Lanes b) {
+  return _mm_max_pd(a, b);
+}
+inline Lanes smaller(Lanes a, Lanes b) {
+  return _mm_min_pd(a, b);
+}
+#endif
+
+inline std::uint64_t bits(double t) {
+  return __builtin_bit_cast(std::uint64_t, t);
+}
+
+// Combines the lanes in halves, so that the compiler keeps them in vectors.
+template <class Number, class Vector, class Combine>
+Number across(const Vector& v, Combine combine) {
+  Number lane[kWidth];
+  __builtin_memcpy(lane, &v, sizeof v);
+  for (std::size_t half = kWidth / 2; half > 0; half /= 2)
+    for (std::size_t i = 0; i < half; ++i) lane[i] = combine(lane[i], lane[i + half]);
+  return lane[0];
+}
+
+std::uint64_t total(const Bits& v) {
+  return across<std::uint64_t>(v, [](std::uint64_t a, std::uint64_t b) { return a + b; });
+}
+
+// The sum of count terms t whose t + M were added up as bit patterns. Within M's binade these are integers
+// that count the grid's steps, so the sum is exact, its order does not matter, and each term is t rounded to
+// the grid.
+double exact_sum(const Bits& sums, std::size_t count, double grid) {
+  const std::uint64_t exponent = bits(grid) & 0x7FF0000000000000u;
+  const double step = __builtin_bit_cast(double, exponent - (std::uint64_t{52} << 52));
+  return static_cast<double>(static_cast<std::int64_t>(total(sums) - count * bits(grid))) * step;
+}
+
+// (4.2) with t = (r - r1) / (r3 - r1) in [0, 1].
+inline Lanes wendland(Lanes t) {
+  const Lanes q = 1.0 - t;
+  return (q * q) * (q * q) * (4.0 * t + 1.0);
+}
+
+// Roots are taken seven vectors before they are used: a root and a division in one chain leave the divider
+// idle.
+constexpr std::size_t kRing = 8, kAhead = 7;
+
+// Nearest point, normal (4.1) with weights (4.2), and the sums of (5.8).
+template <bool kRadius, bool kStiffness>
+ContactQuery query_columns(const PointsView& points, const double p[3], const ProxyRegions& regions) {
+  const Lanes zero = {}, tiny = zero + 1e-150;
+  const Lanes px = zero + p[0], py = zero + p[1], pz = zero + p[2];
+  const Lanes r1 = zero + regions.r1, r2 = zero + regions.r2, r3 = zero + regions.r3;
+  const Lanes scale = zero + 1.0 / (regions.r3 - regions.r1), grid = zero + regions.sum_grid;
+  const Lanes own = zero + regions.stiffness;
+  const double stiffness_grid = regions.sum_grid * 1048576.0;  // k_s is at most 2^20 N/m
+  const std::size_t vectors = points.padded_count / kWidth;
+
+  Lanes ring[kRing];
+  const auto measure = [&](std::size_t v) {
+    const std::size_t i = v * kWidth;
+    const Lanes dx = px - load(points.x + i), dy = py - load(points.y + i), dz = pz - load(points.z + i);
+    ring[v % kRing] = root(dx * dx + dy * dy + dz * dz);
+  };
+  Lanes nearest = zero + __builtin_inf();
+  Bits sx = {}, sy = {}, sz = {}, weights = {}, stiffness = {}, touching = {};
+  for (std::size_t v = 0; v < kAhead && v < vectors; ++v) measure(v);
+  for (std::size_t v = 0; v < vectors; ++v) {
+    const std::size_t i = v * kWidth;
+    const Lanes distance = ring[v % kRing];
+    if (v + kAhead < vectors) measure(v + kAhead);
+    const Lanes dx = px - load(points.x + i), dy = py - load(points.y + i), dz = pz - load(points.z + i);
+    const Lanes r = kRadius ? distance - load(points.radius + i) : distance;
+    // At r3 t is 1 up to rounding, and psi below 1e-60 is 0 on the grid.
+    const Lanes psi = wendland((smaller(larger(r, r1), r3) - r1) * scale);
+    const Lanes w = psi / larger(distance, tiny);  // a point at P itself adds 0 / 1e-150 = 0: skipped
+    nearest = smaller(r, nearest);
+    sx += (Bits)(dx * w + grid), sy += (Bits)(dy * w + grid), sz += (Bits)(dz * w + grid);
+    touching -= (Bits)(r <= r2);  // a true lane is -1
+    if (kStiffness) {
+      weights += (Bits)(psi + grid);
+      const Lanes k = load(points.stiffness + i);
+      stiffness += (Bits)(psi * (k == k ? k : own) + stiffness_grid);
+    }
+  }
+  const std::size_t count = points.padded_count;
+  const double M = regions.sum_grid;
+  return {across<double>(nearest, [](double a, double b) { return a < b ? a : b; }),
+          {exact_sum(sx, count, M), exact_sum(sy, count, M), exact_sum(sz, count, M)},
+          kStiffness ? exact_sum(weights, count, M) : 0.0,
+          kStiffness ? exact_sum(stiffness, count, stiffness_grid) : 0.0,
+          static_cast<double>(total(touching))};
+}
+
+}  // namespace
+
+ContactQuery contact_query(const PointsView& points, const double p[3], const ProxyRegions& regions) {
+  if (points.radius)
+    return points.stiffness ? query_columns<true, true>(points, p, regions)
+                            : query_columns<true, false>(points, p, regions);
+  return points.stiffness ? query_columns<false, true>(points, p, regions)
+                          : query_columns<false, false>(points, p, regions);
+}
+
+}  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -1,0 +1,177 @@
+#include "runners/scorecard/benchmark.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+
+#include "core/parameters/input_error.h"
+#include "runners/settings/embedded_data.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+namespace {
+
+Json read_object(const std::string& json, const std::string& label,
+                 std::initializer_list<const char*> parts) {
+  Json object = parse_json(json, label);
+  if (!object.is_object()) throw InputError(label, "not an object; allowed {...}");
+  std::string known;
+  for (const char* part : parts) known.append(known.empty() ? "" : ", ").append(part);
+  for (const auto& item : object.items())
+    if (std::find(parts.begin(), parts.end(), item.key()) == parts.end())
+      throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
+  return object;
+}
+
+std::string text_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_string())
+    throw InputError(label + ": " + part, "missing; allowed a text");
+  return found->get<std::string>();
+}
+
+std::string object_of(const Json& object, const char* part, const std::string& label) {
+  const auto found = object.find(part);
+  if (found == object.end() || !found->is_object())
+    throw InputError(label + ": " + part, "missing; allowed {...}");
+  return found->dump();
+}
+
+Better better_of(const Json& word, const std::string& label) {
+  if (word == "larger") return Better::larger;
+  if (word == "smaller") return Better::smaller;
+  if (word == "near_zero") return Better::near_zero;
+  if (word == "reported") return Better::reported;
+  throw InputError(label + " = " + word.dump(), "allowed larger, smaller, near_zero, reported");
+}
+
+Bound bound_of(const Json& json, const std::string& label) {
+  Bound bound;
+  read_parameters(json,
+                  {{"measure", &bound.measure, 0, 0, "what is bounded"},
+                   {"min", &bound.min, -1e12, 1e12, "lower end"},
+                   {"max", &bound.max, -1e12, 1e12, "upper end"}},
+                  label, false);
+  return bound;
+}
+
+// Of data/, or of a table in a test.
+template <class Item, class Read>
+std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector<std::string>& names,
+                         const char* kind, Read&& read) {
+  std::string known;
+  for (const EmbeddedText& text : stored) known.append(known.empty() ? "" : ", ").append(text.name);
+  std::vector<Item> items;
+  std::set<std::string> taken;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(stored.begin(), stored.end(),
+                                    [&](const EmbeddedText& text) { return name == text.name; });
+    if (found == stored.end()) throw InputError(std::string(kind) + " " + name, "unknown; allowed " + known);
+    if (!taken.insert(name).second)
+      throw InputError(std::string(kind) + " " + name, "comes twice; allowed once");
+    items.push_back(read(name, found->json));
+  }
+  if (!names.empty()) return items;
+  for (const EmbeddedText& text : stored) items.push_back(read(text.name, text.json));
+  return items;
+}
+
+// The measures of a scene's sweep: those of its bounds, those it names, and what a renderer did in every
+// tick.
+std::vector<std::string> measured(const BenchmarkScene& scene) {
+  std::vector<std::string> names;
+  const auto add = [&names](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Bound& bound : scene.success) add(bound.measure);
+  for (const BenchmarkScene::Judged& judged : scene.measures) add(judged.measure);
+  add("mean_steps"), add("non_finite_fraction");
+  return names;
+}
+
+}  // namespace
+
+const std::vector<double>& scorecard_noise_m() {
+  static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
+  return levels;
+}
+
+Method read_method(const std::string& name, const std::string& json) {
+  const std::string label = "method " + name;
+  const Json object = read_object(json, label, {"title", "renderer"});
+  return {name, text_of(object, "title", label), object_of(object, "renderer", label)};
+}
+
+BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
+  const std::string label = "scene " + name;
+  const Json object = read_object(json, label, {"title", "experiment", "noise", "measures", "success"});
+  BenchmarkScene scene{
+      name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
+  if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
+  const Json measures = parse_json(object_of(object, "measures", label), label);
+  for (const auto& item : measures.items())
+    scene.measures.push_back({item.key(), better_of(item.value(), label + ": measures." + item.key())});
+  const std::string rule = label + ": success";
+  const Json success = read_object(object_of(object, "success", label), rule, {"meaning", "bounds"});
+  scene.meaning = text_of(success, "meaning", rule);
+  const auto bounds = success.find("bounds");
+  if (bounds == success.end() || !bounds->is_array() || bounds->empty())
+    throw InputError(rule + ".bounds", "missing; allowed a list of {\"measure\", \"min\", \"max\"}");
+  for (const Json& bound : *bounds) scene.success.push_back(bound_of(bound, rule + ".bounds"));
+  return scene;
+}
+
+Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
+  const std::string label = "scene " + name + " with " + method.name;
+  Json run = parse_json(experiment, label);
+  if (run.contains("renderer"))
+    throw InputError("scene " + name + ": experiment.renderer", "set; allowed none, methods bring it");
+  if (run.contains("seed"))
+    throw InputError("scene " + name + ": experiment.seed", "set; allowed none, the scorecard has its own");
+  run["renderer"] = parse_json(method.renderer, label);
+  run["seed"] = kScorecardSeed;
+  // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
+  const bool own_noise = noise.empty();
+  const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
+  return Sweep::from_json(Json{{"title", name + " with " + method.name + ": " + title},
+                               {"experiment", run},
+                               {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
+                               {"replicates", replicates},
+                               {"measures", measured(*this)}}
+                              .dump(),
+                          label);
+}
+
+std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
+                          int replicates) {
+  Json all = {{"replicates", replicates},
+              {"noise_sigma_m", scorecard_noise_m()},
+              {"seed", kScorecardSeed},
+              {"tuned_seeds", {1, kLastTunedSeed}}};
+  for (const Method& method : methods) all["methods"][method.name] = parse_json(method.renderer, method.name);
+  for (const BenchmarkScene& scene : scenes) {
+    Json& json = all["scenes"][scene.name];
+    json["experiment"] = parse_json(scene.experiment, scene.name);
+    if (!scene.noise.empty()) json["noise"] = scene.noise;
+    for (const Bound& bound : scene.success) {
+      Json limits = {{"measure", bound.measure}};
+      if (std::isfinite(bound.min)) limits["min"] = bound.min;
+      if (std::isfinite(bound.max)) limits["max"] = bound.max;
+      json["success"].push_back(limits);
+    }
+  }
+  return all.dump();
+}
+
+std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
+  return chosen<Method>(embedded_methods(), names, "method", read_method);
+}
+
+std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names) {
+  return chosen<BenchmarkScene>(embedded_scenes(), names, "scene", read_benchmark_scene);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,59 @@
+// Who is compared and on what: methods, which are renderers with settings (data/methods), and scenes,
+// which are experiments without a renderer, noise levels, measures and what counts as success (data/scenes).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/scorecard/ranking.h"
+#include "analysis/scorecard/success_rule.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+// r_c of every method's defaults, and the noise levels of the scorecard in metres.
+inline constexpr double kScorecardRadius_m = 0.005;
+const std::vector<double>& scorecard_noise_m();  // 0, .1, .2, .6, 1 and 2 r_c
+
+// The parameters of the tracked sheet were fixed with seeds 1 to kLastTunedSeed. The runs of a scorecard are
+// replicates of another.
+inline constexpr int kLastTunedSeed = 40;
+inline constexpr int kScorecardSeed = 301;
+
+struct Method {
+  std::string name, title;
+  std::string renderer;  // JSON
+};
+
+struct BenchmarkScene {
+  struct Judged {
+    std::string measure;
+    Better better;
+  };
+  std::string name, title;
+  std::string experiment;        // JSON, without a renderer
+  std::string noise;             // path of the parameter; empty: one column with the scene's own noise
+  std::vector<Judged> measures;  // beside those of the bounds
+  std::string meaning;           // of success, in words
+  std::vector<Bound> success;
+
+  // The runs of a method: noise levels by replicates, and nothing else, so that cell and replicate, the
+  // keys of all noise, are the same for every method. Throws InputError when it cannot be run.
+  Sweep sweep(const Method& method, int replicates) const;
+};
+
+// Both as JSON, to be kept with results.
+std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
+                          int replicates);
+
+// From JSON text; label names the source in InputErrors.
+Method read_method(const std::string& name, const std::string& json);
+BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
+
+// Those of these names, in the order of the names; none: all, in the order of data/. Throws InputError for a
+// name that is unknown, with those that are allowed, or comes twice.
+std::vector<Method> chosen_methods(const std::vector<std::string>& names);
+std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
+
+}  // namespace remote_touch

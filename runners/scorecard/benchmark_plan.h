@@ -1,0 +1,32 @@
+// All the sweeps of a scorecard: those of its scenes, and of the passivity audit.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/scorecard/benchmark_run.h"
+
+namespace remote_touch {
+
+struct ScenePlan {
+  BenchmarkScene scene;
+  std::vector<BenchmarkSweep> sweeps;  // of each method
+};
+
+struct BenchmarkPlan {
+  Benchmark benchmark;
+  std::vector<ScenePlan> scenes;
+  // Force laws that the audit compares, and their sweeps; empty without its scene.
+  std::vector<Method> laws;
+  std::vector<BenchmarkSweep> audit;
+  // Scenes whose recording is not on this machine, and why.
+  std::vector<std::pair<std::string, std::string>> skipped;
+
+  std::vector<BenchmarkSweep> sweeps() const;  // each once
+};
+
+// Resolves and checks every run. Throws InputError for what cannot be run.
+BenchmarkPlan plan_of(const Benchmark& benchmark);
+
+}  // namespace remote_touch

@@ -1,0 +1,121 @@
+#include "runners/trajectories/nearest_object.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kTrials = 300;  // planes tried; a plane with a fifth of the points is met with 1 - 0.09
+constexpr int kStride = 4;    // every 4th pixel in both directions takes part
+constexpr double kPlaneFraction = 0.2;    // of the measured points, to count as the scene's plane
+constexpr double kObjectFraction = 0.01;  // of the image, to count as large
+constexpr double kContinuous_m = 0.01;    // depth difference between neighbouring pixels of one object
+
+struct Plane {
+  Vec3 normal;
+  double offset;
+  // How far from the plane still belongs to it: sensor noise grows with the square of the depth.
+  bool holds(const Vec3& p) const { return std::abs(normal.dot(p) - offset) < 0.008 + 0.005 * p.z() * p.z(); }
+};
+
+std::vector<Vec3> sample(const DepthImage& image, const CameraIntrinsics& camera) {
+  std::vector<Vec3> points;
+  for (int v = 0; v < image.height; v += kStride)
+    for (int u = 0; u < image.width; u += kStride) {
+      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
+      if (std::isfinite(z)) points.push_back(unproject(camera, u, v, z));
+    }
+  return points;
+}
+
+// Random sample consensus with a fixed sequence (a linear congruential generator).
+std::optional<Plane> dominant_plane(const std::vector<Vec3>& points) {
+  if (points.size() < 3) return std::nullopt;
+  std::uint64_t state = 1;
+  const auto pick = [&]() -> const Vec3& {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return points[(state >> 33) % points.size()];
+  };
+  std::optional<Plane> best;
+  std::size_t max = static_cast<std::size_t>(kPlaneFraction * static_cast<double>(points.size()));
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Vec3 &a = pick(), &b = pick(), &c = pick();
+    const Vec3 across = (b - a).cross(c - a);
+    if (!(across.norm() > 1e-4)) continue;  // nearly in line
+    const Plane plane{across.normalized(), across.normalized().dot(a)};
+    const auto inliers = static_cast<std::size_t>(
+        std::count_if(points.begin(), points.end(), [&](const Vec3& p) { return plane.holds(p); }));
+    if (inliers > max) max = inliers, best = plane;
+  }
+  return best;
+}
+
+// Pixels of one patch of continuous depth, taken out of open.
+std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>& open) {
+  std::vector<int> patch{seed};
+  open[static_cast<std::size_t>(seed)] = 0;
+  for (std::size_t next = 0; next < patch.size(); ++next) {
+    const int i = patch[next], u = i % image.width;
+    const auto visit = [&](int neighbour) {
+      const auto n = static_cast<std::size_t>(neighbour);
+      if (!open[n] || std::abs(image.z_m[n] - image.z_m[static_cast<std::size_t>(i)]) > kContinuous_m) return;
+      open[n] = 0;
+      patch.push_back(neighbour);
+    };
+    if (u > 0) visit(i - 1);
+    if (u + 1 < image.width) visit(i + 1);
+    if (i >= image.width) visit(i - image.width);
+    if (i + image.width < image.width * image.height) visit(i + image.width);
+  }
+  return patch;
+}
+
+template <class Value>
+Value quantile(std::vector<Value> values, double fraction) {
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
+  std::vector<double> depth;
+  std::vector<int> rows, columns;
+  for (const int i : patch) {
+    depth.push_back(image.z_m[static_cast<std::size_t>(i)]);
+    rows.push_back(i / image.width), columns.push_back(i % image.width);
+  }
+  return {quantile(depth, 0.05), quantile(rows, 0.5), quantile(columns, 0.5)};
+}
+
+}  // namespace
+
+NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsics& camera) {
+  const std::optional<Plane> plane = dominant_plane(sample(image, camera));
+  std::vector<char> open(image.z_m.size(), 0);
+  std::vector<int> measured;
+  for (int i = 0; i < image.width * image.height; ++i) {
+    const double z = image.z_m[static_cast<std::size_t>(i)];
+    if (!std::isfinite(z)) continue;
+    measured.push_back(i);
+    open[static_cast<std::size_t>(i)] =
+        !plane || !plane->holds(unproject(camera, i % image.width, i / image.width, z));
+  }
+  if (measured.empty()) return {};
+
+  std::optional<NearestObject> nearest;
+  for (const int seed : measured) {
+    if (!open[static_cast<std::size_t>(seed)]) continue;
+    const std::vector<int> patch = take_patch(image, seed, open);
+    if (static_cast<double>(patch.size()) < kObjectFraction * static_cast<double>(image.z_m.size())) continue;
+    const NearestObject object = describe(image, patch);
+    if (!nearest || object.nearest_depth_m < nearest->nearest_depth_m) nearest = object;
+  }
+  return nearest ? *nearest : describe(image, measured);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,88 @@
+// Files are written whole or not at all.
+#include "analysis/storage/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/figures/result_file.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_unwritable(const fs::path& file) {
+  const std::string message = refusal([&] { write_trace(file, awkward_trace(2000), kProvenance, {}); });
+  EXPECT_HAS(message, file.string() + ": cannot be written (");
+  EXPECT_HAS(message, "; allowed a writable place");
+}
+
+TEST(WriteTrace, PlacesThatCannotBeWritten) {
+  const TestFolder folder("atomic_file_test");
+  folder.write("file", "as it was");
+  fs::create_directory(folder / "folder");
+  fs::create_symlink(folder / "loop", folder / "loop");
+  for (const char* name : {"missing/x.h5", "file/x.h5", "folder", "folder/", "loop/x.h5"})
+    expect_unwritable(folder / name);
+  expect_unwritable(folder / std::string(300, 'a'));
+  expect_unwritable("");
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"file", "folder", "loop"}));
+  EXPECT_TRUE(files_in(folder / "folder").empty());
+  EXPECT_EQ(bytes_of(folder / "file"), "as it was");
+  if (fs::exists("/dev/full")) expect_unwritable("/dev/full");
+}
+
+TEST(WriteTrace, FolderWithoutPermission) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const TestFolder folder("atomic_file_test");
+  fs::create_directory(folder / "locked");
+  fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  expect_unwritable(folder / "locked/x.h5");
+  EXPECT_TRUE(files_in(folder / "locked").empty());
+}
+
+// A limit on the length of files stands for a full disk: the write begins and then fails.
+TEST(WriteTrace, FailureInTheMiddleLeavesTheOldFile) {
+  const TestFolder folder("atomic_file_test");
+  folder.write("x.h5", "as it was");
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const rlimit tight{8192, old.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  expect_unwritable(folder / "x.h5");
+  expect_unwritable(folder / "y.h5");
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"x.h5"});
+  EXPECT_EQ(bytes_of(folder / "x.h5"), "as it was");
+}
+
+TEST(WriteWholeFile, ReplacesAndKeepsNothingElse) {
+  const TestFolder folder("atomic_file_test");
+  const std::string text = "new", empty;
+  folder.write("file", "old and longer");
+  write_file_atomically(folder / "file", text.data(), text.size());
+  EXPECT_EQ(bytes_of(folder / "file"), "new");
+  write_file_atomically(folder / "file", empty.data(), 0);
+  EXPECT_EQ(bytes_of(folder / "file"), "");
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"file"});
+}
+
+TEST(WriteWholeFile, DevicesAreWrittenThrough) {
+  if (!fs::exists("/dev/null")) GTEST_SKIP() << "no /dev/null";
+  const std::string text = "anything";
+  EXPECT_NO_THROW(write_file_atomically("/dev/null", text.data(), text.size()));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,70 @@
+// A changed byte in a finished result is found, wherever it is, before the HDF5 library sees the file.
+#include "analysis/storage/file_digest.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/sha256.h"
+#include "tests/support/result_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+namespace {
+
+TEST(FileDigest, IsTheSha256OfWhatFollows) {
+  const TestFolder folder("file_digest_test");
+  write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
+  const std::string bytes = bytes_of(folder / "trace.h5");
+  EXPECT_NE(bytes.substr(0, kDigestBlockSize).find(sha256_of_file(folder / "trace.h5", kDigestBlockSize)),
+            std::string::npos);
+  EXPECT_EQ(bytes.substr(kDigestBlockSize, 4), "\x89HDF");
+  EXPECT_EQ(file_digest_of(folder / "trace.h5"), FileDigest::valid);
+}
+
+// Every byte of the seal and of the file's beginning, then a sample: none may pass, and none may reach a
+// crash.
+TEST(FileDigest, NoChangedByteIsReadAsATrace) {
+  const TestFolder folder("file_digest_test");
+  write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
+  const std::string bytes = bytes_of(folder / "trace.h5");
+  std::size_t tried = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += i < 1024 ? 1 : 97) {
+    std::string changed = bytes;
+    changed[i] = static_cast<char>(changed[i] ^ (1 << (i % 8)));
+    const auto file = folder.write("changed.h5", changed);
+    EXPECT_HAS(refusal([&] { Hdf5Reader{file}; }), "damaged");
+    ++tried;
+  }
+  EXPECT_GT(tried, 1100u);
+}
+
+TEST(FileDigest, OtherHdf5FilesHaveNone) {
+  const TestFolder folder("file_digest_test");
+  const auto write = [&](const char* schema, const char* name) {
+    Hdf5Writer hdf5(Hdf5Writer::Finished::no);
+    hdf5.attribute("/", "schema", schema);
+    hdf5.save(folder / name);
+  };
+  write("of-another/1", "other.h5"), write("remote-touch-trace/2", "ours.h5");
+  EXPECT_EQ(file_digest_of(folder / "other.h5"), FileDigest::absent);
+  const Hdf5Reader reader(folder / "other.h5");
+  EXPECT_HAS(refusal([&] { reader.require_schema("mine/1", "what I write"); }), "of-another/1");
+  EXPECT_HAS(refusal([&] { Hdf5Reader{folder / "ours.h5"}; }), "seal is missing");
+}
+
+TEST(Sha256, KnownValues) {
+  const TestFolder folder("file_digest_test");
+  EXPECT_EQ(sha256_of_file(folder.write("abc", "abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_of_file(folder.write("empty", "")),
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of_file(folder.write("xyabc", "xyabc"), 2),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_HAS(refusal([&] { sha256_of_file(folder / "missing"); }), "cannot be read");
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,162 @@
+// The scorecard's scenes and methods as they are in data/: each runs with each, over the same noise.
+#include "runners/scorecard/benchmark.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <set>
+
+#include "analysis/storage/digest.h"
+#include "runners/scorecard/benchmark_plan.h"
+#include "runners/scorecard/passivity.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/simulation/simulation.h"
+#include "scenarios/recordings/recording_part.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch {
+
+// What a test says of its scene.
+void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+namespace {
+
+// Recordings are in REMOTE_TOUCH_DATA, else in ../shared/data beside the project.
+void look_for_recordings() {
+  const auto beside = std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR).parent_path() / "shared/data";
+  ::setenv("REMOTE_TOUCH_DATA", beside.c_str(), 0);
+}
+
+// The run with the noise of 0.6 r_c, or the scene's own, cut short: four frames.
+Experiment beginning(const Sweep& sweep) {
+  const std::size_t cell = std::min<std::size_t>(3, sweep.plan().cell_count() - 1);
+  Json json = parse_json(sweep.experiment(cell, 1).to_json(), "run");
+  json["duration_s"] = 0.11;
+  return Experiment::from_json(std::move(json));
+}
+
+class Scenes : public testing::TestWithParam<BenchmarkScene> {};
+
+TEST_P(Scenes, RunWithEveryContenderOverTheSameNoise) {
+  look_for_recordings();
+  const BenchmarkScene& scene = GetParam();
+  std::vector<std::uint64_t> hashes;
+  for (const Method& method : chosen_methods({})) {
+    SimulationOptions options;
+    options.hash_frames = true;
+    Trace trace;
+    try {
+      trace = simulate(beginning(scene.sweep(method, 2)), options);
+    } catch (const MissingRecording& missing) {
+      GTEST_SKIP() << scene.name << ": " << missing.what();
+    }
+    EXPECT_GE(trace.length(), 110u) << method.name;
+    EXPECT_NE(trace.frame_hash.back(), 0u) << method.name;
+    if (hashes.empty()) hashes = trace.frame_hash;
+    EXPECT_EQ(trace.frame_hash, hashes) << method.name;
+  }
+}
+
+TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
+  const Sweep sweep = GetParam().sweep(chosen_methods({"proxy"}).front(), 2);
+  const SweepResult plan = sweep.plan();
+  for (const Bound& bound : GetParam().success) EXPECT_NO_THROW(plan.measure(bound.measure));
+  for (const auto& judged : GetParam().measures) EXPECT_NO_THROW(plan.measure(judged.measure));
+  EXPECT_EQ(plan.cell_count(), GetParam().noise.empty() ? 1u : scorecard_noise_m().size());
+  EXPECT_EQ(plan.replicates, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfData, Scenes, testing::ValuesIn(chosen_scenes({})), [](const auto& scene) {
+  std::string name = scene.param.name;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+});
+
+TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
+  const auto two = chosen_methods({"tracked-sheet", "proxy"});
+  EXPECT_EQ(two[0].name, "tracked-sheet");
+  EXPECT_EQ(two[1].name, "proxy");
+  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown; allowed god-object, ");
+  EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown; allowed ");
+  EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");
+}
+
+TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
+  const auto scene = [](const std::string& text) {
+    return refusal([&] { read_benchmark_scene("x", text); });
+  };
+  EXPECT_HAS(scene("[]"), "scene x");
+  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"), "colour: unknown; allowed title, experiment, noise");
+  EXPECT_HAS(scene(R"({"title": "t"})"), "experiment: missing");
+  const std::string begin = R"({"title": "t", "experiment": {}, )";
+  EXPECT_HAS(scene(begin + R"("measures": {"force_fraction": "bigger"}})"), "allowed larger, smaller");
+  EXPECT_HAS(scene(begin + R"("measures": {}, "success": {"meaning": "m", "bounds": []}})"), "bounds");
+  EXPECT_HAS(
+      scene(
+          begin +
+          R"("measures": {}, "success": {"meaning": "m", "bounds": [{"measure": "end_distance", "least": 1}]}})"),
+      "least");
+  const Method proxy = chosen_methods({"proxy"}).front();
+  BenchmarkScene with_renderer = chosen_scenes({"flat-press"}).front();
+  with_renderer.experiment = R"({"renderer": {"name": "proxy"}})";
+  EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "methods bring it");
+  EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
+}
+
+TEST(Benchmark, RunsNoSeedThatParametersWereFixedWith) {
+  const Method proxy = chosen_methods({"proxy"}).front();
+  for (const BenchmarkScene& scene : chosen_scenes({"flat-press", "camera"})) {
+    const Sweep sweep = scene.sweep(proxy, 2);
+    for (std::size_t cell = 0; cell < sweep.plan().cell_count(); ++cell)
+      EXPECT_GT(sweep.experiment(cell, 1).settings().key.seed, 40u) << scene.name;
+  }
+  BenchmarkScene tuned = chosen_scenes({"flat-press"}).front();
+  tuned.experiment = R"({"seed": 1})";
+  EXPECT_HAS(refusal([&] { tuned.sweep(proxy, 2); }), "experiment.seed");
+}
+
+TEST(Benchmark, CostsAreThoseOfTheSamePoints) {
+  const BenchmarkScene scene = chosen_scenes({"flat-slide"}).front();
+  for (const Method& method : chosen_methods({})) {
+    Json json = parse_json(beginning(scene.sweep(method, 2)).to_json(), "run");
+    json["duration_s"] = 0.3;
+    const Experiment run = Experiment::from_json(std::move(json));
+    SimulationOptions made;
+    made.generate_all_points = true;
+    EXPECT_EQ(digest(simulate(run).columns()), digest(simulate(run, made).columns())) << method.name;
+  }
+}
+
+TEST(Benchmark, TheAuditsOwnForceLawsAreTheScenesSweeps) {
+  const BenchmarkPlan plan =
+      plan_of({chosen_methods({"proxy", "penalty"}), chosen_scenes({kPassivityScene}), 2, "card"});
+  std::set<std::string> names;
+  for (const BenchmarkSweep& sweep : plan.sweeps())
+    EXPECT_TRUE(names.insert(sweep.name).second) << sweep.name;
+  EXPECT_EQ(names.size(), plan.laws.size());
+}
+
+TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {
+  const auto count = [](const char* name) { return force_laws_of(chosen_methods({name}).front()).size(); };
+  EXPECT_EQ(count("proxy"), 9u);  // three signs of the velocity term, without damper and with either sign
+  EXPECT_EQ(count("predecessor"), 3u);  // estimates no velocity
+  EXPECT_EQ(count("penalty"), 2u);
+  EXPECT_EQ(count("god-object"), 1u);
+  std::set<std::string> names, renderers;
+  for (const Method& method : chosen_methods({}))
+    for (const Method& law : force_laws_of(method)) {
+      EXPECT_TRUE(names.insert(law.name).second) << law.name;
+      EXPECT_TRUE(renderers.insert(law.renderer).second) << law.renderer;
+    }
+}
+
+}  // namespace
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// A cloud as renderers read it: a tree, or tiles.
+#pragma once
+
+#include <memory>
+
+#include "core/cloud/point_cloud.h"
+
+namespace remote_touch {
+
+template <class Form>
+std::shared_ptr<const Form> formatted(const PointCloud& cloud) {
+  const auto form = std::make_shared<Form>();
+  form->assign(cloud);
+  return form;
+}
+
+}  // namespace remote_touch
