@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-std::string version();   // "0.1.0"
+std::string version();   // "0.2.0"
 std::string cpu_name();  // as the system tells it; empty where it does not
 
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON.
