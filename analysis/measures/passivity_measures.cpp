@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoCycle = std::numeric_limits<double>::quiet_NaN();
 
 // From tick i until the next.
 double work_J(const Trace& trace, std::size_t i) {
@@ -46,12 +46,12 @@ double mean_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
   double sum = 0;
   for (const double piece : pieces) sum += piece;
-  return pieces.empty() ? kNone : sum / static_cast<double>(pieces.size());
+  return pieces.empty() ? kNoCycle : sum / static_cast<double>(pieces.size());
 }
 
 double max_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
-  return pieces.empty() ? kNone : *std::max_element(pieces.begin(), pieces.end());
+  return pieces.empty() ? kNoCycle : *std::max_element(pieces.begin(), pieces.end());
 }
 
 }  // namespace remote_touch

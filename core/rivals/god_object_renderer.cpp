@@ -11,7 +11,7 @@ namespace {
 // Radius of the ball in which the mesh is made, and the longest way of one round, in units of the edge limit.
 constexpr double kMeshed = 0.5, kMaxStride = 0.25;
 // A shorter way is none, and planes are obeyed up to this, in units of the surface offset.
-constexpr double kAtRest = 1e-6;
+constexpr double kRestTolerance = 1e-6;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ GodObjectRenderer::GodObjectRenderer(const GodObjectParameters& parameters, doub
     : RivalRenderer(parameters.max_edge_length_m, parameters.stiffness_N_per_m, kernels),
       p_(parameters),
       mesh_(parameters.max_edge_length_m),
-      planes_(kAtRest * parameters.surface_offset_m) {}
+      planes_(kRestTolerance * parameters.surface_offset_m) {}
 
 void GodObjectRenderer::reserve(std::size_t points) {
   RivalRenderer::reserve(points);
@@ -84,7 +84,7 @@ bool GodObjectRenderer::follow(const Vec3& hip_W) {
     active_planes_ = nearest.found ? nearest.active_planes : 3;
     if (!nearest.found || go(nearest.place)) break;
   }
-  return (proxy_W_ - start_W).norm() > kAtRest * p_.surface_offset_m;
+  return (proxy_W_ - start_W).norm() > kRestTolerance * p_.surface_offset_m;
 }
 
 // Straight to the goal, or up to the first triangle, whose plane then joins the others. Returns whether this

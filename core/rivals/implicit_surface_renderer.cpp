@@ -12,7 +12,7 @@ namespace {
 constexpr double kStride = 0.125;     // longest step of a walk or a slide
 constexpr double kMaxNewton = 0.5;    // longest step back to the surface
 constexpr double kOnSurface = 1e-10;  // nearer to f = 0 than this is on it
-constexpr double kAtRest = 1e-9;      // a shorter way is none
+constexpr double kMinMove = 1e-9;     // in units of R: a shorter displacement is none
 constexpr double kNearRest = 1e-4;    // shorter steps than this are the last ones
 constexpr int kNewtonSteps = 10, kBisections = 12, kHalvings = 6;
 
@@ -109,7 +109,7 @@ bool ImplicitSurfaceRenderer::walk(Place& here, const Vec3& hip_W) {
   }
   const Vec3 start = here.p_W;
   stop_at_surface(here, next);
-  return (here.p_W - start).norm() > kAtRest * R;
+  return (here.p_W - start).norm() > kMinMove * R;
 }
 
 // Bisects the way between both, then goes on by Newton's steps.
@@ -127,7 +127,7 @@ void ImplicitSurfaceRenderer::stop_at_surface(Place& outside, Place inside) {
 bool ImplicitSurfaceRenderer::slide(Place& here, const Vec3& hip_W) {
   const Vec3 n = here.sample.normal(), u = hip_W - here.p_W, tangential = less(u, n);
   const double length = tangential.norm(), R = p_.support_radius_m;
-  if (length <= kAtRest * R) return false;
+  if (length <= kMinMove * R) return false;
   double stride = std::min(length, kStride * R);
   for (int k = 0; k < kHalvings; ++k, stride *= 0.5) {
     Place next = place(here.p_W + (stride / length) * tangential, n);

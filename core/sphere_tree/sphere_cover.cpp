@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kMaxCells = 1e7;  // a slim body across its box would have far more
+constexpr double kMaxCellsOfBox = 1e7;  // a slim body across its box would have far more
 
 }  // namespace
 
@@ -20,7 +20,7 @@ SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, d
   low_ = -high;
   for (const Vec3& p : points) low_ = low_.cwiseMin(p), high = high.cwiseMax(p);
   if (points.empty()) low_ = high = Vec3::Zero();
-  while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMaxCells) cell_m_ *= 2;
+  while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMaxCellsOfBox) cell_m_ *= 2;
   for (int axis = 0; axis < 3; ++axis)
     cells_[axis] = static_cast<std::int64_t>((high[axis] - low_[axis]) / cell_m_) + 1;
   const auto cell_of = [&](const Vec3& p) {

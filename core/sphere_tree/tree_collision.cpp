@@ -9,13 +9,13 @@ namespace {
 
 static_assert(SphereTree::kBranching <= 32, "the topmost nodes are the bits of a word");
 
-constexpr double kRounding = 1 + 1e-12;  // of the sums: no region within the margin is passed over
+constexpr double kRoundingOfSums = 1 + 1e-12;  // of the sums: no region within the margin is passed over
 
 // Whether some region below a node may be. Without a root, and without a branch more for what is no number:
 // such spheres are never near.
 bool is_near(const Sphere& a, const SphereNode& node, double margin_m) {
   const SphereBox& box = node.box;
-  const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRounding;
+  const double reach_m = (a.radius_m + box.max_radius_m + margin_m) * kRoundingOfSums;
   const Vec3 beyond = (box.low - a.centre).cwiseMax(a.centre - box.high).cwiseMax(0);
   return reach_m >= 0 && beyond.squaredNorm() <= reach_m * reach_m;
 }

@@ -15,7 +15,7 @@ constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
 constexpr double kConfidence = 3;                // of an interval, in standard errors
 constexpr double kTooUnsure = 0.25;              // standard error that tells no height, contact radii
 constexpr double kMinNoise = 0.01;               // what the planes themselves cannot follow counts as noise
-constexpr double kMinPoints = 5;                 // points of a window
+constexpr double kMinWindowPoints = 5;           // points of a window
 
 int corner(double coordinate) {
   return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
@@ -127,7 +127,7 @@ void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const 
   const double u = HeightMap::node_at(i), v = HeightMap::node_at(j);
   double low = -kInfinity, high = kInfinity;
   for (const int half : kWindows) {
-    if (count(2 * i, 2 * j, half) < kMinPoints) continue;
+    if (count(2 * i, 2 * j, half) < kMinWindowPoints) continue;
     const PlaneFit fit = plane(window(2 * i, 2 * j, half), u, v);
     if (!fit.valid) continue;
     const double error = sigma * std::sqrt(fit.variance);

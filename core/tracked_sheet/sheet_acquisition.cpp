@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kReaches[] = {6, 12, 24, 40};  // contact radii
-constexpr std::size_t kEnough = 40, kMinPoints = 4;
+constexpr std::size_t kEnough = 40, kMinGathered = 4;
 
 double gather_near(const NeighbourSearch& frame, const Vec3& p_W, double unit_m, const Kernels& kernels,
                    GatheredPoints& gathered) {
@@ -74,7 +74,7 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
                                      double contact_radius_m, const Kernels& kernels,
                                      const AcquisitionBuffers& buffers) {
   const double reach = gather_near(frame, proxy_W, contact_radius_m, kernels, buffers.gathered);
-  if (buffers.gathered.size() < kMinPoints) return {};
+  if (buffers.gathered.size() < kMinGathered) return {};
   Vec3 normal = wide_normal(buffers.gathered, proxy_W, reach * contact_radius_m);
   if (normal.isZero(0)) return {};
   FoundSheet found;

@@ -14,14 +14,14 @@ namespace remote_touch {
 
 namespace {
 
-struct Part {
+struct ShardFile {
   std::string file;
   Shard shard;
   StoredSweep stored;
 };
 
-Part read_part(const std::string& file) {
-  Part part{file, {}, read_sweep(file)};
+ShardFile read_part(const std::string& file) {
+  ShardFile part{file, {}, read_sweep(file)};
   auto& attributes = part.stored.attributes;
   const auto shard =
       std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
@@ -36,7 +36,7 @@ Part read_part(const std::string& file) {
 }
 
 // Of one sweep, one build and the same recordings.
-void require_same_origin(const Part& part, const Part& first) {
+void require_same_origin(const ShardFile& part, const ShardFile& first) {
   const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
   for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
     for (const auto& [name, value] : *attributes)
@@ -51,10 +51,10 @@ void require_same_origin(const Part& part, const Part& first) {
 }
 
 // Every shard once.
-void require_complete(const std::vector<Part>& parts) {
-  const Part& first = parts.front();
+void require_complete(const std::vector<ShardFile>& parts) {
+  const ShardFile& first = parts.front();
   std::map<int, std::string> seen;
-  for (const Part& part : parts) {
+  for (const ShardFile& part : parts) {
     if (part.shard.count != first.shard.count)
       throw InputError(part.file, "is shard " + part.shard.text() + "; allowed shards of " +
                                       std::to_string(first.shard.count) + ", as " + first.file);
@@ -69,7 +69,7 @@ void require_complete(const std::vector<Part>& parts) {
                        "shard " + Shard{i, first.shard.count}.text() + " is missing; allowed all of them");
 }
 
-void add(const Part& part, SweepResult& whole) {
+void add(const ShardFile& part, SweepResult& whole) {
   const SweepResult& result = part.stored.result;
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     if (result.state[run] == RunState::elsewhere || result.state[run] == RunState::not_sampled) continue;
@@ -101,7 +101,7 @@ void require_nothing_more(const std::string& file, const SweepResult& whole) {
 }  // namespace
 
 int command_merge(const CommandLine&, const MergeRequest& request) {
-  std::vector<Part> parts;
+  std::vector<ShardFile> parts;
   for (const std::string& file : request.shards) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, request.output, absent))

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kContactRadius_m = 0.005, kShell_m = 1e-5;
+constexpr double kShell_m = 1e-5;
 
 // First tick in which the HIP is below the surface.
 std::size_t jump_tick(const Trace& trace) {

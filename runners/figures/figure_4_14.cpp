@@ -10,7 +10,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kContactRadius_m = 0.005;
 constexpr double kSampling_m = 1e-5;  // of the exact profile; its corners are multiples of it
 
 // The closing of the true profile, on samples from x = low.

@@ -11,8 +11,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kContactRadius_m = 0.005;
-
 // Positions along one axis and heights along another, of HIP and proxy, and the force.
 Table path_table(const std::string& name, const Trace& trace, int along, int up) {
   std::vector<double> proxy_along, proxy_up, hip_along, hip_up, force;

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kContactRadius_m = 0.005, kFixtureRadius_m = 0.01;
+constexpr double kRegionRadius_m = 0.01;
 constexpr double kMin_N = 0.01;  // a force above this is felt
 
 // The part of a run in which the HIP moves along x, and where it stands then.
@@ -33,7 +33,7 @@ Crossing crossing(const Trace& trace) {
   return c;
 }
 
-Table table_of(const std::string& name, const Crossing& c) {
+Table crossing_table(const std::string& name, const Crossing& c) {
   Table table{name, "contact point, HIP and force while the HIP moves along x"};
   table.add("hip_x", "m", "HIP along the plane", c.hip_x);
   table.add("hip_y", "m", "height of the HIP", c.hip_y);
@@ -81,7 +81,7 @@ Panel path_panel(const std::string& title, const std::string& table) {
               "y (m)",
               true,
               {{"points", "x", "y", CurveStyle::dots, "points"},
-               {"first_region", "x", "y", CurveStyle::circle, "first region", kFixtureRadius_m},
+               {"first_region", "x", "y", CurveStyle::circle, "first region", kRegionRadius_m},
                {table, "hip_x", "hip_y", CurveStyle::dashed, "HIP"},
                {table, "contact_x", "contact_y", CurveStyle::line, "contact point"}}};
   panel.x_range = std::pair(-0.03, 0.03);
@@ -143,10 +143,10 @@ Figure figure_5_6(const FigureContext& context) {
       "the fixture. Right: a plane whose stiffness rises and then steps down, felt as the weighted "
       "mean (5.8) of the points around the proxy."};
   figure.tables = point_tables();
-  figure.tables.push_back(table_of("at_zero", at_zero));
-  figure.tables.push_back(table_of("below", below));
+  figure.tables.push_back(crossing_table("at_zero", at_zero));
+  figure.tables.push_back(crossing_table("below", below));
   figure.tables.push_back(stiffness_table(stiffness));
-  figure.tables.push_back(table_of("stiffness_run", stiffness));
+  figure.tables.push_back(crossing_table("stiffness_run", stiffness));
   figure.panels = {path_panel("HIP at y = 0", "at_zero"),
                    force_panel("at_zero"),
                    path_panel("HIP at y = -5 mm", "below"),
@@ -169,7 +169,7 @@ Figure figure_5_6(const FigureContext& context) {
 
   const std::size_t peak = max_force(at_zero), peak_below = max_force(below);
   const auto on_fixture = [&](std::size_t i) {
-    return at_zero.proxy_y[i] >= 0.99 * (kFixtureRadius_m + kContactRadius_m);
+    return at_zero.proxy_y[i] >= 0.99 * (kRegionRadius_m + kContactRadius_m);
   };
   figure.claims = {
       claim_near("y = 0: x of the HIP where force begins",

@@ -15,7 +15,7 @@ constexpr double kInTouch_s = 1;                                // the approach 
 constexpr double kGrows_s = 5, kGrown_s = 10, kSteady_s = 0.1;  // phases; and what the last frames need
 constexpr double kMax_m = 0.02, kGrowth_m_per_s = kMax_m / (kGrown_s - kGrows_s);
 constexpr double kAgreed_m = 2e-4;
-constexpr std::size_t kEvery = 5;  // ticks, in tables
+constexpr std::size_t kTableStride_5_8 = 5;  // ticks, in tables
 
 // The sensor of chapter 4's simulated camera.
 const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
@@ -116,7 +116,7 @@ Summary summary(const FixtureRun& run) {
 Table path_table(const std::string& name, const std::string& title, const FixtureRun& run) {
   const Trace& trace = run.trace;
   std::vector<std::vector<double>> rows;
-  for (std::size_t i = 0; i < trace.length(); i += kEvery) {
+  for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
     rows.push_back({trace.time_s[i], trace.hip(i).y(), trace.proxy(i).y(),
                     surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
                     run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force(i).norm()});

@@ -14,7 +14,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kInnerRadius_m = 0.00499;  // r_1: a surface that passes the centre by more was not felt
-constexpr double kGrown_s = 10, kSteady_s = 0.1;
+constexpr double kRecordedGrown_s = 10, kRecordedSteady_s = 0.1;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct RecordedRun {
@@ -50,7 +50,7 @@ Table frame_table(const RecordedRun& r) {
   return table_of(r.table, r.title + ": the last tick of each frame", columns, rows);
 }
 
-double known_fraction(const RecordedRun& r) {
+double known_side_fraction(const RecordedRun& r) {
   const auto& distance = r.run.trace.signed_distance_m;
   const auto known = std::count_if(distance.begin(), distance.end(), [](double d) { return !std::isnan(d); });
   return static_cast<double>(known) / static_cast<double>(distance.size());
@@ -81,7 +81,7 @@ double min_beyond_fixture_m(const RecordedRun& r) {
 double mean_deviation_m(const RecordedRun& r) {
   double sum = 0, count = 0;
   for (const FrameOutcome& frame : r.frames)
-    if (r.run.trace.time_s[frame.tick] >= kGrown_s + kSteady_s)
+    if (r.run.trace.time_s[frame.tick] >= kRecordedGrown_s + kRecordedSteady_s)
       sum += frame.nearest_distance_m - r.run.boundary_m(frame.tick), ++count;
   return sum / count;
 }
@@ -109,7 +109,7 @@ Table violation_table(const std::vector<RecordedRun>& runs) {
     rows.add(what, unit, values);
   };
   using R = const RecordedRun&;
-  add("ticks in which the side is known", "fraction", known_fraction);
+  add("ticks in which the side is known", "fraction", known_side_fraction);
   add("of those, ticks on the wrong side", "fraction", [](R r) { return wrong_side_fraction(r.run.trace); });
   add("deepest behind the surface", "m", [](R r) { return max_penetration_m(r.run.trace); });
   add("pop-throughs", "1", [](R r) { return static_cast<double>(r.pops.size()); });

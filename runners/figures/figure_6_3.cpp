@@ -13,10 +13,10 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kEvery = 5;  // ticks, in tables
+constexpr std::size_t kTableStride_6_3 = 5;  // ticks, in tables
 constexpr double kAgree_m = 1e-6, kAgree_rad = 1e-6;
 constexpr double kBlocked_rad = kRadiansPerDegree;
-constexpr double kVoxel_m = 5e-4;
+constexpr double kBoxVoxel_m = 5e-4;
 const std::vector<std::pair<std::string, std::string>> kRules = {{"look_ahead", "look-ahead"},
                                                                  {"voxels", "voxels"}};
 const std::vector<int> kSpacings_mm = {3, 2, 1};
@@ -75,7 +75,7 @@ double ticks_with(const Trace& trace, Holds&& holds) {
 Table motion_table(const BoxRun& run) {
   const Trace& t = run.trace;
   std::vector<std::vector<double>> rows;
-  for (std::size_t i = 0; i < t.length(); i += kEvery)
+  for (std::size_t i = 0; i < t.length(); i += kTableStride_6_3)
     rows.push_back({t.time_s[i], t.hip(i).y() - t.hip(0).y(), t.proxy(i).y() - t.hip(0).y(), device_deg(t, i),
                     tool_deg(t, i), static_cast<double>(t.contact_count[i]),
                     static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
@@ -153,8 +153,8 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
                       "ticks"));
   claim(claim_at_most(
       name, rule + "ticks with a count above 0 while the nearest point is a voxel or more away", "0",
-      ticks_with(t, [&](std::size_t i) { return t.nearest_distance_m[i] >= kVoxel_m && any_count(t, i); }), 0,
-      "ticks"));
+      ticks_with(t, [&](std::size_t i) { return t.nearest_distance_m[i] >= kBoxVoxel_m && any_count(t, i); }),
+      0, "ticks"));
   claim(claim_at_most(
       name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),

@@ -13,55 +13,55 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kEvery = 5;                  // ticks, in tables
+constexpr std::size_t kTableStride_6_4 = 5;        // ticks, in tables
 constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // phases of all three
 constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // what the pictures show
 constexpr double kVoxel_m = 5e-4;
 
 // How a run is drawn: the part of the recording around the object, and where it is seen from.
-struct Shown {
+struct DrawnMoment {
   const char *experiment, *table, *words;
   double remaining_m, right_m, top_m, bottom_m, max_depth_m;
   Vec3 eye, target;
   double width_m;
 };
 
-const Shown kShown[] = {{"fig6.4",
-                         "bunny",
-                         "Bunny, printed cube",
-                         -0.25,
-                         0.10,
-                         -0.20,
-                         0.16,
-                         0.62,
-                         {0.36, -0.16, 0.22},
-                         {-0.03, 0.02, 0.42},
-                         0.30},
-                        {"fig6.4-organ",
-                         "hand",
-                         "Hand, organ model",
-                         -0.02,
-                         0.32,
-                         -0.22,
-                         0.14,
-                         0.75,
-                         {-0.23, -0.17, 0.33},
-                         {0.12, -0.03, 0.58},
-                         0.36},
-                        {"fig6.4-box",
-                         "drill",
-                         "Power drill, cereal box",
-                         -0.32,
-                         0.14,
-                         -0.05,
-                         0.26,
-                         0.80,
-                         {-0.36, -0.10, 0.24},
-                         {-0.01, 0.13, 0.52},
-                         0.46}};
+const DrawnMoment kDrawnMoments[] = {{"fig6.4",
+                                      "bunny",
+                                      "Bunny, printed cube",
+                                      -0.25,
+                                      0.10,
+                                      -0.20,
+                                      0.16,
+                                      0.62,
+                                      {0.36, -0.16, 0.22},
+                                      {-0.03, 0.02, 0.42},
+                                      0.30},
+                                     {"fig6.4-organ",
+                                      "hand",
+                                      "Hand, organ model",
+                                      -0.02,
+                                      0.32,
+                                      -0.22,
+                                      0.14,
+                                      0.75,
+                                      {-0.23, -0.17, 0.33},
+                                      {0.12, -0.03, 0.58},
+                                      0.36},
+                                     {"fig6.4-box",
+                                      "drill",
+                                      "Power drill, cereal box",
+                                      -0.32,
+                                      0.14,
+                                      -0.05,
+                                      0.26,
+                                      0.80,
+                                      {-0.36, -0.10, 0.24},
+                                      {-0.01, 0.13, 0.52},
+                                      0.46}};
 
 struct TouchRun {
-  const Shown* shown;
+  const DrawnMoment* shown;
   Experiment experiment;
   Trace trace;
 };
@@ -74,7 +74,7 @@ std::size_t tick_at(const Trace& trace, double time_s) {
 Table touch_table(const TouchRun& run) {
   const Trace& t = run.trace;
   std::vector<std::vector<double>> rows;
-  for (std::size_t i = 0; i < t.length(); i += kEvery)
+  for (std::size_t i = 0; i < t.length(); i += kTableStride_6_4)
     rows.push_back({t.time_s[i], static_cast<double>(t.frame_index[i]), lag_m(t, i),
                     lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
                     static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
@@ -97,7 +97,7 @@ Table touch_table(const TouchRun& run) {
 }
 
 // Every second pixel, in a chequered pattern, of the points that are to be seen.
-std::vector<std::size_t> seen_points(const PointCloud& cloud, const Shown& shown) {
+std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment& shown) {
   std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -122,7 +122,7 @@ void add_picture_tables(Figure& figure, const FigureContext& context, const Touc
 }
 
 void add_panels(Figure& figure, const TouchRun& run, int row) {
-  const Shown& shown = *run.shown;
+  const DrawnMoment& shown = *run.shown;
   for (std::size_t instant = 0; instant < 2; ++instant) {
     const double time_s = run.trace.time_s[tick_at(run.trace, instant == 0 ? kFirst_s : kSecond_s)];
     figure.panels.push_back(
@@ -218,11 +218,11 @@ Table summary_table(const std::vector<TouchRun>& runs) {
 
 std::vector<TouchRun> touch_runs(const FigureContext& context) {
   std::vector<Experiment> experiments;
-  for (const Shown& shown : kShown) experiments.push_back(Experiment::load(shown.experiment));
+  for (const DrawnMoment& shown : kDrawnMoments) experiments.push_back(Experiment::load(shown.experiment));
   std::vector<Trace> traces = context.run(experiments);
   std::vector<TouchRun> runs;
   for (std::size_t r = 0; r < experiments.size(); ++r)
-    runs.push_back({&kShown[r], std::move(experiments[r]), std::move(traces[r])});
+    runs.push_back({&kDrawnMoments[r], std::move(experiments[r]), std::move(traces[r])});
   return runs;
 }
 

@@ -23,11 +23,11 @@ struct Box {
 };
 
 // The ranges of hue were chosen on 0 and 40, among others; 12 and 52 were not looked at before.
-struct Shown {
+struct SegmentedFrame {
   int frame;
   Box box[2];  // of each rule's object
 };
-constexpr Shown kShown[] = {
+constexpr SegmentedFrame kSegmentedFrames[] = {
     {0, {{340, 138, 534, 318}, {452, 280, 582, 382}}},
     {12, {{342, 156, 534, 338}, {452, 298, 580, 402}}},
     {40, {{320, 188, 512, 388}, {428, 362, 558, 470}}},
@@ -98,7 +98,7 @@ MaskNumbers measure_mask(const PointCloud& cloud, const std::vector<char>& picke
 
 // The image at a third of its light, with the masks and boxes over it.
 std::vector<std::uint32_t> overlay(const PointCloud& cloud, const std::vector<std::vector<char>>& masks,
-                                   const Shown& shown) {
+                                   const SegmentedFrame& shown) {
   const int width = cloud.image->camera.width;
   std::vector<std::uint32_t> picture = cloud.colour;
   for (std::size_t i = 0; i < picture.size(); ++i) {
@@ -131,7 +131,7 @@ Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
   std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const MaskNumbers& n = numbers[i];
-    rows.push_back({static_cast<double>(kShown[i].frame), n.picked, n.in_box / n.picked,
+    rows.push_back({static_cast<double>(kSegmentedFrames[i].frame), n.picked, n.in_box / n.picked,
                     n.max_component / n.picked, n.in_pieces_of_100 / n.picked, n.mean_shift_m,
                     n.mean_to_point_m});
   }
@@ -193,7 +193,7 @@ Figure figure_7_1_recorded(const FigureContext& context) {
       "would be off. A box tells what is certainly wrong, not what is missed."};
   std::vector<MaskNumbers> numbers[2];
   int row = 0;
-  for (const Shown& shown : kShown) {
+  for (const SegmentedFrame& shown : kSegmentedFrames) {
     const PointCloud cloud = scenario->cloud(shown.frame);
     std::vector<std::vector<char>> masks;
     for (std::size_t k = 0; k < 2; ++k) {

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRegion_m = 0.04;
+constexpr double kValveRegion_m = 0.04;
 constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // in the middle of the two pushes
 constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
 
@@ -71,7 +71,7 @@ void add_claims(Figure& figure, const ValveTask& task) {
     claim(claim_at_least(name,
                          std::string("least distance of the tool's mesh to the true ") +
                              (valve == Valve::left ? "left" : "right") + " valve, regions of 40 mm",
-                         "-", min_clearance_m(task, valve), kRegion_m - 1e-3, "m"));
+                         "-", min_clearance_m(task, valve), kValveRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);
 }
 
@@ -85,7 +85,7 @@ void add_slip(Figure& figure, const ValveTask& slip) {
                                          aside.y(), 0.01, "m"));
   figure.claims.push_back(claim_at_least(figure.name,
                                          slip.words + ": least distance of its mesh to the true valve", "-",
-                                         min_clearance_m(slip, Valve::left), kRegion_m - 1e-3, "m"));
+                                         min_clearance_m(slip, Valve::left), kValveRegion_m - 1e-3, "m"));
   add_task_claims(figure, slip);
 }
 

@@ -12,9 +12,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRegion_m = 0.02;
-constexpr double kPressed_s = 3, kPushed_s = 2.8;
-constexpr std::size_t kEvery = 20;  // ticks, where the clearance is looked for
+constexpr double kOrganRegion_m = 0.02;
+constexpr double kButtonPressed_s = 3, kButtonPushed_s = 2.8;
+constexpr std::size_t kClearanceStride = 20;  // ticks, where the clearance is looked for
 
 // The frames with their regions, filtered as the renderer gets them; the recording plays them to and fro.
 class RegionFrames {
@@ -43,7 +43,7 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
   RegionFrames frames(task.experiment, kernels);
   const Trace& t = task.trace;
   double min = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < t.length(); i += kEvery) {
+  for (std::size_t i = 0; i < t.length(); i += kClearanceStride) {
     if (t.contact_count[i] == 0) continue;
     const PointCloud& cloud = frames.of(t.frame_index[i]);
     for (std::size_t k = 0; k < cloud.size(); ++k) {
@@ -74,16 +74,16 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string name = figure.name;
   claim(claim_at_least(name, "force of the organ's region, pushed towards it", "-",
-                       t.force(tick_of(t, kPushed_s)).norm(), 1, "N"));
+                       t.force(tick_of(t, kButtonPushed_s)).norm(), 1, "N"));
   claim(claim_at_least(
       name,
       "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",
-      "-", min_point_distance_m(task, kernels), kRegion_m - 1e-3, "m"));
+      "-", min_point_distance_m(task, kernels), kOrganRegion_m - 1e-3, "m"));
   claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
                       "m"));
   const std::vector<SequenceEntry> log = sequence_log(t);
-  claim(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s, kPressed_s,
-                      kPressed_s + 1e-9, "s"));
+  claim(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s,
+                      kButtonPressed_s, kButtonPressed_s + 1e-9, "s"));
   claim(claim_at_most(name, "steps of the task that are missed", "-", t.sequence_missed.back(), 0, "steps"));
   claim(claim_between(name, "steps of the task that are done or missed at the end", "-",
                       t.sequence_step.back(), 1, 1, "steps"));
@@ -91,7 +91,7 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
 }
 
 // Nearer than the wall behind, every second pixel of every second row.
-std::vector<std::size_t> shown_points(const PointCloud& cloud) {
+std::vector<std::size_t> cloud_samples(const PointCloud& cloud) {
   std::vector<std::size_t> chosen;
   const auto width = static_cast<std::size_t>(cloud.image->camera.width);
   for (std::size_t i = 0; i < cloud.size(); ++i)
@@ -105,11 +105,11 @@ void add_pictures(Figure& figure, const Kernels& kernels, const ValveTask& task)
   const std::string name = task.name;
   figure.tables.push_back([&] {
     const PointCloud cloud = processed_cloud(task.experiment, kernels, 0);
-    return cloud_table(name + "_cloud", "points of the first frame", cloud, shown_points(cloud));
+    return cloud_table(name + "_cloud", "points of the first frame", cloud, cloud_samples(cloud));
   }());
   figure.tables.push_back(vertex_table(name + "_vertices", task.tool->mesh));
   figure.tables.push_back(triangle_table(name + "_triangles", task.tool->mesh));
-  figure.tables.push_back(pose_table(name + "_poses", t, {tick_of(t, kPushed_s), t.length() - 1}));
+  figure.tables.push_back(pose_table(name + "_poses", t, {tick_of(t, kButtonPushed_s), t.length() - 1}));
   const Scene scene{{-0.28, -0.38, 0.12}, {0.1, 0, 0.5}, -Vec3::UnitY(), 0.5, 0.8, {}};
   for (std::size_t instant = 0; instant < 2; ++instant) {
     Scene seen = scene;

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 // Of the experiments late-surface and late-heart.
-constexpr double kFixtureRadius_m = 0.02, kContactRadius_m = 0.005, kFrameRate_hz = 30;
+constexpr double kLatencyRadius_m = 0.02, kFrameRate_hz = 30;
 constexpr double kSpeed_m_per_s = 0.1, kLatency_s = 0.05;
 // By then an estimate of the velocity has settled.
 constexpr double kSettled_s = 1.5;
@@ -30,7 +30,7 @@ Violation violation(const Trace& trace) {
     min = std::min(min, distance);
     if (trace.time_s[i] >= kSettled_s) settled = std::min(settled, distance);
   }
-  return {kFixtureRadius_m + kContactRadius_m - min, kFixtureRadius_m + kContactRadius_m - settled};
+  return {kLatencyRadius_m + kContactRadius_m - min, kLatencyRadius_m + kContactRadius_m - settled};
 }
 
 // A frame shows the surface as it was; until the next one comes it is older by a frame's interval.
@@ -91,7 +91,7 @@ Table tissue_table() {
   std::vector<double> latency, speed;
   for (int ms = 67; ms <= 200; ++ms) {
     latency.push_back(ms);
-    speed.push_back(kFixtureRadius_m / (1e-3 * ms + 1 / kFrameRate_hz));
+    speed.push_back(kLatencyRadius_m / (1e-3 * ms + 1 / kFrameRate_hz));
   }
   table.add("latency", "ms", "from capture to arrival", latency);
   table.add("speed", "m/s", "of the surface", speed);
@@ -101,7 +101,7 @@ Table tissue_table() {
 // Replicates as mean and largest; one row for each value of the only axis.
 Table spread_table(const std::string& axis, const std::string& unit, double scale, const Measured& m) {
   const auto replicates = static_cast<std::size_t>(m.plan.replicates);
-  std::vector<double> place, mean, max, mean_ahead;
+  std::vector<double> place, mean, highest, mean_ahead;
   for (std::size_t cell = 0; cell < m.plan.cell_count(); ++cell) {
     double sum = 0, sum_ahead = 0, max = 0;
     for (std::size_t run = cell * replicates; run < (cell + 1) * replicates; ++run) {
@@ -109,13 +109,13 @@ Table spread_table(const std::string& axis, const std::string& unit, double scal
       max = std::max(max, m.plain[run].max_m);
     }
     place.push_back(scale * m.axis(0)[cell]);
-    mean.push_back(1e3 * sum / m.plan.replicates), max.push_back(1e3 * max);
+    mean.push_back(1e3 * sum / m.plan.replicates), highest.push_back(1e3 * max);
     mean_ahead.push_back(1e3 * sum_ahead / m.plan.replicates);
   }
   Table table{axis, "violation over 20 runs"};
   table.add(axis, unit, m.plan.axes[0].long_name, place);
   table.add("mean", "mm", "mean of the runs' largest depths", mean);
-  table.add("largest", "mm", "largest of them", max);
+  table.add("max", "mm", "maximum of the runs", highest);
   table.add("with_prediction", "mm", "mean with the slave sent ahead, from 1.5 s on", mean_ahead);
   return table;
 }
@@ -196,7 +196,7 @@ double fraction_known(const Table& map) {
   const auto &measured = numbers(map, "violation"), &predicted = numbers(map, "predicted");
   double agree = 0;
   for (std::size_t i = 0; i < measured.size(); ++i)
-    agree += (measured[i] > 1e3 * kFixtureRadius_m) == (predicted[i] > 1e3 * kFixtureRadius_m) ? 1 : 0;
+    agree += (measured[i] > 1e3 * kLatencyRadius_m) == (predicted[i] > 1e3 * kLatencyRadius_m) ? 1 : 0;
   return agree / static_cast<double>(measured.size());
 }
 

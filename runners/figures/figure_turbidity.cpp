@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLevels_per_m[] = {0, 0.3, 0.6, 1, 1.5, 2, 3};
 constexpr double kDefault_per_m = 0.6;
-constexpr std::size_t kShown[] = {0, 2, 4};  // of the levels
+constexpr std::size_t kShownLevels[] = {0, 2, 4};  // of the levels
 constexpr int kFrames = 5;
 constexpr int kEnoughPicked = 100;  // for a precision to mean anything
 constexpr PictureCrop kCrop{205, 195, 435, 290};
@@ -111,7 +111,7 @@ Panel fraction_panel(const std::string& title, const std::string& value, int col
 
 void add_pictures(Figure& figure, const std::vector<Level>& levels) {
   int column = 0;
-  for (const std::size_t shown : kShown) {
+  for (const std::size_t shown : kShownLevels) {
     const Level& level = levels[shown];
     const std::string number = std::to_string(shown);
     std::string beta = std::to_string(level.turbidity_per_m);

@@ -16,6 +16,9 @@
 
 namespace remote_touch {
 
+// r_c of every figure of chapters 4 and 5: Table 4.2.
+inline constexpr double kContactRadius_m = 0.005;
+
 // How a figure gets its traces. Independent runs go side by side; results do not depend on how many.
 class FigureContext {
  public:

@@ -12,8 +12,7 @@
 
 namespace remote_touch {
 
-// Of fig4.12 and the sweeps on it: Table 4.2, 4.3.2.
-inline constexpr double kContactRadius_m = 0.005;
+// Of fig4.12 and the sweeps on it: 4.3.2.
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 

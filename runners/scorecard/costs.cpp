@@ -20,7 +20,7 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(values.size());
 }
 
-Json number(double value) {
+Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
@@ -60,8 +60,8 @@ void write_costs(const std::filesystem::path& file, const std::vector<Cost>& cos
   for (const Cost& cost : costs)
     list.push_back({{"scene", cost.scene},
                     {"method", cost.method},
-                    {"tick_s", number(cost.tick_s)},
-                    {"frame_s", number(cost.frame_s)}});
+                    {"tick_s", number_or_null(cost.tick_s)},
+                    {"frame_s", number_or_null(cost.frame_s)}});
   Json all = Json::object();
   for (const auto& [name, value] : origin) all[name] = value;
   all["costs"] = list;

@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const CacheKind kKind{"spheres", kSpheresFormat};
+const CacheKind kSpheresKind{"spheres", kSpheresFormat};
 
 // A tree follows from its leaves and how many each node of the lowest level has.
 struct FlatTree {
@@ -60,13 +60,13 @@ std::optional<ToolSpheres> read_spheres(const fs::path& folder, const std::strin
   ToolSpheres spheres;
   FlatTree tree;
   const auto take = [&](CacheReader& unpack) { visit(unpack, tree, spheres); };
-  if (!read_cache_file(folder, kKind, key, take) || !grow(tree, spheres.spheres)) return {};
+  if (!read_cache_file(folder, kSpheresKind, key, take) || !grow(tree, spheres.spheres)) return {};
   return spheres;
 }
 
 bool write_spheres(const fs::path& folder, const std::string& key, const ToolSpheres& spheres) {
   const FlatTree tree = flat(spheres.spheres);
-  return write_cache_file(folder, kKind, key, [&](CacheWriter& pack) { visit(pack, tree, spheres); });
+  return write_cache_file(folder, kSpheresKind, key, [&](CacheWriter& pack) { visit(pack, tree, spheres); });
 }
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const CacheKind kKind{"tool", kToolFormat};
+const CacheKind kToolKind{"tool", kToolFormat};
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));  // lists of vectors are lists of numbers
 
@@ -60,7 +60,8 @@ std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& se
 
 std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
   StoredTool stored;
-  if (!read_cache_file(folder, kKind, key, [&](CacheReader& unpack) { visit(unpack, stored); })) return {};
+  if (!read_cache_file(folder, kToolKind, key, [&](CacheReader& unpack) { visit(unpack, stored); }))
+    return {};
   const VoxelGrid& grid = stored.tool.grid;
   if (stored.tool.voxels.size() != grid.cell_count() || stored.tool.distance_m.size() != grid.node_count())
     return {};
@@ -68,7 +69,7 @@ std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& k
 }
 
 bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
-  return write_cache_file(folder, kKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
+  return write_cache_file(folder, kToolKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
 }
 
 }  // namespace remote_touch

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCollision_m = 1e-4;
 
 // Looks without progress that end a tick: on noisy surfaces the tool can go to and fro by a hair for ever.
-constexpr int kPatience = 8;
+constexpr int kLookAheadPatience = 8;
 
 ContactState state_of(const NearContacts& near) {
   if (near.deepest_m > kCollision_m) return ContactState::entrenched;
@@ -58,7 +58,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
-  Progress progress(p_.rest_threshold_m, kPatience);
+  Progress progress(p_.rest_threshold_m, kLookAheadPatience);
   while (true) {
     const NearContacts near = source.near(pose, settling_ ? side_ : 0);
     ++report.detections;

@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 // Looks in contact without progress that end a tick: contact and collision can take turns for ever.
-constexpr int kPatience = 4;
+constexpr int kVoxelPatience = 4;
 
 }  // namespace
 
@@ -96,7 +96,7 @@ ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, Conta
   PoseQuery here = query(pose, contacts, report);
   const ContactState first = here.state;
   bool same_state = true;
-  Progress progress(p_.rest_threshold_m, kPatience);
+  Progress progress(p_.rest_threshold_m, kVoxelPatience);
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
     const DesiredStep desired = desired_step(pose, a_gu, here, report);

@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kStep = 4;  // cells along a cube
+constexpr int kCubeSize = 4;  // cells along a cube
 
 // What is nearest to the corners of all cubes.
 class CubeCorners {
@@ -21,12 +21,13 @@ class CubeCorners {
       for (int j = 0; j < corners_[1]; ++j) {
         TriangleTree::Nearest found;
         for (int i = 0; i < corners_[0]; ++i)
-          nearest_[index(i, j, k)] = found = tree.nearest(place(kStep * i, kStep * j, kStep * k), found.face);
+          nearest_[index(i, j, k)] = found =
+              tree.nearest(place(kCubeSize * i, kCubeSize * j, kCubeSize * k), found.face);
       }
   }
 
   int cubes(int axis) const {
-    return grid_.cells[axis] / kStep + 1;
+    return grid_.cells[axis] / kCubeSize + 1;
   }  // the last may reach out of the grid
 
   Vec3 place(int i, int j, int k) const {
@@ -48,7 +49,7 @@ class CubeCorners {
       const auto end = faces.face.begin() + faces.count;
       if (std::find(faces.face.begin(), end, corner.face) == end) faces.face[faces.count++] = corner.face;
     }
-    const double to_corner = std::sqrt(3.0) / 2 * kStep * grid_.size_m;  // from anywhere in the cube
+    const double to_corner = std::sqrt(3.0) / 2 * kCubeSize * grid_.size_m;  // from anywhere in the cube
     faces.near = std::sqrt(squared) <= kExactField_m + to_corner;
     return faces;
   }
@@ -104,7 +105,7 @@ std::vector<float> distance_field(const TriangleTree& tree, const VoxelGrid& gri
   std::vector<float> field(grid.node_count());
   const CubeCorners corners(tree, grid);
   const std::size_t columns = grid.cells[0] + 1, rows = grid.cells[1] + 1;
-  const double half = 0.5 * (kStep - 1) * grid.size_m;  // a cube's own nodes are 0 to kStep - 1
+  const double half = 0.5 * (kCubeSize - 1) * grid.size_m;  // a cube's own nodes are 0 to kCubeSize - 1
   const int rows_of_cubes = corners.cubes(1) * corners.cubes(2);
 #pragma omp parallel for schedule(dynamic)
   for (int row = 0; row < rows_of_cubes; ++row) {
@@ -113,12 +114,13 @@ std::vector<float> distance_field(const TriangleTree& tree, const VoxelGrid& gri
     for (int ci = 0; ci < corners.cubes(0); ++ci) {
       const CubeCorners::Faces faces = corners.around(ci, cj, ck);
       if (faces.near) {
-        const Vec3 middle = corners.place(kStep * ci, kStep * cj, kStep * ck) + Vec3::Constant(half);
+        const Vec3 middle =
+            corners.place(kCubeSize * ci, kCubeSize * cj, kCubeSize * ck) + Vec3::Constant(half);
         near.gather(tree, middle, std::sqrt(3.0) * half, corners.upper_bound(faces, middle));
       }
-      for (int k = kStep * ck; k <= std::min(kStep * ck + kStep - 1, grid.cells[2]); ++k)
-        for (int j = kStep * cj; j <= std::min(kStep * cj + kStep - 1, grid.cells[1]); ++j)
-          for (int i = kStep * ci; i <= std::min(kStep * ci + kStep - 1, grid.cells[0]); ++i) {
+      for (int k = kCubeSize * ck; k <= std::min(kCubeSize * ck + kCubeSize - 1, grid.cells[2]); ++k)
+        for (int j = kCubeSize * cj; j <= std::min(kCubeSize * cj + kCubeSize - 1, grid.cells[1]); ++j)
+          for (int i = kCubeSize * ci; i <= std::min(kCubeSize * ci + kCubeSize - 1, grid.cells[0]); ++i) {
             const std::size_t node = i + columns * (j + rows * k);
             const Vec3 p = corners.place(i, j, k);
             const double distance = faces.near ? near.distance(tree, p) : corners.upper_bound(faces, p);

@@ -94,7 +94,7 @@ InsideNodes inside_nodes(const TriangleMesh& mesh, const VoxelGrid& grid) {
 
 namespace {
 
-constexpr int kStep = 4;
+constexpr int kBlockSize = 4;
 
 // Above 1/2 by more than rounding: where symmetry makes it 1/2, it is outside on every machine.
 bool is_inside(const TriangleTree& tree, const VoxelGrid& grid, int i, int j, int k) {
@@ -102,9 +102,9 @@ bool is_inside(const TriangleTree& tree, const VoxelGrid& grid, int i, int j, in
 }
 
 bool has_crossed(const VoxelGrid& grid, const std::vector<std::uint8_t>& crossed, int i0, int j0, int k0) {
-  for (int k = k0; k < std::min(k0 + kStep, grid.cells[2]); ++k)
-    for (int j = j0; j < std::min(j0 + kStep, grid.cells[1]); ++j)
-      for (int i = i0; i < std::min(i0 + kStep, grid.cells[0]); ++i)
+  for (int k = k0; k < std::min(k0 + kBlockSize, grid.cells[2]); ++k)
+    for (int j = j0; j < std::min(j0 + kBlockSize, grid.cells[1]); ++j)
+      for (int i = i0; i < std::min(i0 + kBlockSize, grid.cells[0]); ++i)
         if (crossed[i + grid.cells[0] * (j + std::size_t(grid.cells[1]) * k)]) return true;
   return false;
 }
@@ -114,14 +114,14 @@ bool has_crossed(const VoxelGrid& grid, const std::vector<std::uint8_t>& crossed
 std::vector<std::uint8_t> inside_nodes_of_open(const TriangleTree& tree, const VoxelGrid& grid,
                                                const std::vector<std::uint8_t>& crossed) {
   std::array<int, 3> blocks, corners;
-  for (int a = 0; a < 3; ++a) blocks[a] = grid.cells[a] / kStep + 1, corners[a] = blocks[a] + 1;
+  for (int a = 0; a < 3; ++a) blocks[a] = grid.cells[a] / kBlockSize + 1, corners[a] = blocks[a] + 1;
   std::vector<std::uint8_t> corner(std::size_t(corners[0]) * corners[1] * corners[2]);
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < corners[2]; ++k)
     for (int j = 0; j < corners[1]; ++j)
       for (int i = 0; i < corners[0]; ++i)
         corner[i + corners[0] * (j + std::size_t(corners[1]) * k)] =
-            is_inside(tree, grid, kStep * i, kStep * j, kStep * k);
+            is_inside(tree, grid, kBlockSize * i, kBlockSize * j, kBlockSize * k);
   std::vector<std::uint8_t> inside(grid.node_count());
 #pragma omp parallel for schedule(dynamic)
   for (int bk = 0; bk < blocks[2]; ++bk)
@@ -131,11 +131,11 @@ std::vector<std::uint8_t> inside_nodes_of_open(const TriangleTree& tree, const V
         for (int c = 0; c < 8; ++c)
           set += corner[bi + (c & 1) +
                         corners[0] * (bj + (c >> 1 & 1) + std::size_t(corners[1]) * (bk + (c >> 2)))];
-        const bool mixed =
-            (set > 0 && set < 8) || has_crossed(grid, crossed, kStep * bi, kStep * bj, kStep * bk);
-        for (int k = kStep * bk; k < std::min(kStep * (bk + 1), grid.cells[2] + 1); ++k)
-          for (int j = kStep * bj; j < std::min(kStep * (bj + 1), grid.cells[1] + 1); ++j)
-            for (int i = kStep * bi; i < std::min(kStep * (bi + 1), grid.cells[0] + 1); ++i)
+        const bool mixed = (set > 0 && set < 8) ||
+                           has_crossed(grid, crossed, kBlockSize * bi, kBlockSize * bj, kBlockSize * bk);
+        for (int k = kBlockSize * bk; k < std::min(kBlockSize * (bk + 1), grid.cells[2] + 1); ++k)
+          for (int j = kBlockSize * bj; j < std::min(kBlockSize * (bj + 1), grid.cells[1] + 1); ++j)
+            for (int i = kBlockSize * bi; i < std::min(kBlockSize * (bi + 1), grid.cells[0] + 1); ++i)
               inside[i + (grid.cells[0] + std::size_t(1)) * (j + (grid.cells[1] + std::size_t(1)) * k)] =
                   mixed ? is_inside(tree, grid, i, j, k) : set > 0;
       }

@@ -35,10 +35,10 @@ struct Eapi {
   int (*get_device_info)(Handle, char* product, char* name, int size) = nullptr;
 };
 
-const SharedLibrary::Place kPlace{
+const SharedLibrary::Place kEapiLibrary{
     {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"};
 
-Eapi::Eapi() : library(kPlace) {
+Eapi::Eapi() : library(kEapiLibrary) {
   library.find("openEAPI", open);
   library.find("connectDeviceEAPI", connect_device);
   library.find("closeEAPI", close);
@@ -51,7 +51,7 @@ Eapi::Eapi() : library(kPlace) {
   library.find_optional("getDeviceInfoEAPI", get_device_info);
 }
 
-constexpr double kMPerMm = 1e-3, kNmmPerNm = 1e3;
+constexpr double kMetrePerMm = 1e-3, kNmmPerNm = 1e3;
 
 class Entact : public GatedDevice {
  public:
@@ -137,8 +137,8 @@ DeviceFault Entact::sense(DeviceReading& reading) noexcept {
     return {"Entact: the pose cannot be read", -1};
   if (eapi_.read_task_velocity(handle_, velocity.data(), 6) != Eapi::kOk)
     return {"Entact: the velocity cannot be read", -1};
-  reading.position_m = from_user_right_up(Vec3(pose.data())) * kMPerMm;
-  reading.velocity_m_per_s = from_user_right_up(Vec3(velocity.data())) * kMPerMm;
+  reading.position_m = from_user_right_up(Vec3(pose.data())) * kMetrePerMm;
+  reading.velocity_m_per_s = from_user_right_up(Vec3(velocity.data())) * kMetrePerMm;
   reading.angular_velocity_rad_per_s = from_user_right_up(Vec3(velocity.data() + 3));
   reading.buttons = 0;  // it has none that the library knows
   const Eigen::Matrix3d rotation =

@@ -42,10 +42,10 @@ struct Dhd {
   double (*get_max_torque)(char id) = nullptr;
 };
 
-const SharedLibrary::Place kPlace{
+const SharedLibrary::Place kDhdLibrary{
     {"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"};
 
-Dhd::Dhd() : library(kPlace) {
+Dhd::Dhd() : library(kDhdLibrary) {
   library.find("dhdGetDeviceCount", get_device_count);
   library.find("dhdOpenID", open_id);
   library.find("dhdClose", close);
@@ -65,7 +65,7 @@ Dhd::Dhd() : library(kPlace) {
   library.find_optional("dhdGetMaxTorque", get_max_torque);
 }
 
-constexpr std::array<KnownFault, 5> kFaults{{
+constexpr std::array<KnownFault, 5> kDhdFaults{{
     {2, "Force Dimension: the device does not communicate"},
     {5, "Force Dimension: the device is gone"},
     {7, "Force Dimension: the device did not answer in time"},
@@ -129,7 +129,7 @@ void ForceDimension::learn_traits() {
 }
 
 DeviceFault ForceDimension::last_fault(const char* what) const noexcept {
-  return fault_of(kFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
+  return fault_of(kDhdFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
 }
 
 // A device without a wrist is asked for no turn.

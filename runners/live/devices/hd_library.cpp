@@ -4,12 +4,12 @@ namespace remote_touch {
 
 namespace {
 
-const SharedLibrary::Place kPlace{
+const SharedLibrary::Place kHdLibrary{
     {"libHD.so", "libHD.so.3.5", "libHD.so.3.4"}, "REMOTE_TOUCH_LIBHD", "3D Systems' OpenHaptics"};
 
 }  // namespace
 
-HdLibrary::HdLibrary() : library(kPlace) {
+HdLibrary::HdLibrary() : library(kHdLibrary) {
   library.find("hdInitDevice", init_device);
   library.find("hdDisableDevice", disable_device);
   library.find("hdMakeCurrentDevice", make_current_device);

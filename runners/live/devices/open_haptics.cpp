@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMPerMm = 1e-3, kMmPerM = 1e3, kNmPerMNm = 1e-3, kMNmPerNm = 1e3;
 
-constexpr std::array<KnownFault, 10> kFaults{{
+constexpr std::array<KnownFault, 10> kHdFaults{{
     {0x0200, "OpenHaptics: the motors are warm"},
     {0x0201, "OpenHaptics: the force is too large for the device"},
     {0x0202, "OpenHaptics: the force changes too fast for the device"},
@@ -118,7 +118,7 @@ void OpenHaptics::learn_traits() {
 
 DeviceFault OpenHaptics::newest_error(const char* what) const noexcept {
   const HdLibrary::Error error = hd_.get_error();
-  return error.code == 0 ? DeviceFault{} : fault_of(kFaults, static_cast<int>(error.code), what);
+  return error.code == 0 ? DeviceFault{} : fault_of(kHdFaults, static_cast<int>(error.code), what);
 }
 
 // The transform has the position in its last column.
