@@ -58,7 +58,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
   for (const RecordingPart& part : sweep.inputs())
     for (const RecordingPart& mine : experiment.inputs())
       if (part.path == mine.path) parts.push_back(part);
-  for (const auto& input : changed_inputs(attribute(stored.attributes, "inputs"), input_hashes(parts)))
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), input_hashes(parts)))
     if (input.now != "absent")
       std::printf("  from %s: %s; now %s\n", input.path.c_str(), input.before.c_str(), input.now.c_str());
 }

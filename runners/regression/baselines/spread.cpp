@@ -43,7 +43,7 @@ Made read_made(const std::string& program, const std::string& command, const std
 
 void require_same_source(const std::string& program, const TextAttributes& reference,
                          const TextAttributes& other) {
-  for (const char* name : {"version", "git_commit", "sources", "config"})
+  for (const char* name : {"version", "git_commit", "source_digest", "config"})
     if (attribute(reference, name) != attribute(other, name))
       throw InputError(program, std::string("is of another ") + name + ", " + attribute(other, name) +
                                     "; allowed a build of the same source as this program");

@@ -280,7 +280,7 @@ TEST(Bisection, TakesALogarithmOfLooksAndFindsTheSameTick) {
     const TraceComparison whole = compare_traces(baseline, candidate, {}, {});
     ASSERT_TRUE(whole.divergence);
     EXPECT_EQ(whole.divergence->tick, from);
-    EXPECT_EQ(whole.divergence->parted, from);
+    EXPECT_EQ(whole.divergence->first_difference, from);
     EXPECT_EQ(compare_hashes(hashes_of_trace(StoredTrace(folder / "a.h5"), 1),
                              hashes_of_trace(StoredTrace(folder / "b.h5"), 1))
                   .different,

@@ -164,11 +164,11 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
   const Normals normals = draw(stream, every);
   for (const double x : {0.0, 0.5, -2.0, 3.5})
     for (const double z : {0.0, 1.0, -2.5}) {
-      const std::vector<std::uint64_t> asks(kCount, word_bounds(std::abs(x), x));
+      const std::vector<std::uint64_t> bounds(kCount, word_bounds(std::abs(x), x));
       std::vector<std::vector<std::uint32_t>> found;
       for (const Kernels* kernels : every_level()) {
         found.emplace_back(kCount + kLanes);
-        found.back().resize(kernels->candidates(stream, kFirst, kCount, asks.data(),
+        found.back().resize(kernels->candidates(stream, kFirst, kCount, bounds.data(),
                                                 word_bounds(std::abs(z), z), found.back().data()));
         ASSERT_EQ(found.back(), found.front()) << kernels->isa;
       }

@@ -216,7 +216,7 @@ std::unique_ptr<const FixtureRule> near(const Vec3& point_m, FixtureRole role, d
   NearPoint::Settings settings;
   settings.values.role = role;
   settings.values.schedule = {0, strength};
-  settings.point_m = point_m, settings.within_m = 0.1;
+  settings.point_m = point_m, settings.inner_radius_m = 0.1;
   return std::make_unique<NearPoint>(settings);
 }
 

@@ -144,7 +144,7 @@ TEST(RendererContract, AGuidedStepAllocatesNothing) {
       EXPECT_EQ(allocation_count(), before) << entry.name << " at tick " << tick;
     }
     EXPECT_EQ(out.guidance->sequence_missed, 1) << entry.name;
-    EXPECT_TRUE(out.guidance->pulls) << entry.name;
+    EXPECT_TRUE(out.guidance->active) << entry.name;
   }
 }
 

@@ -318,7 +318,7 @@ TEST(SensorFaultFrames, RefusesWhatIsNone) {
              "faults.dropout: unknown; the nearest allowed is faults.dropout_probability");
   EXPECT_HAS(why("faults=3"), "faults: allowed {parameters}");
   SensorFaults blind;
-  blind.view.setZero();
+  blind.view_direction.setZero();
   EXPECT_THROW(faulty(blind), std::invalid_argument);
 }
 

@@ -249,7 +249,7 @@ TEST(Refinement, ItsRuleAndFirstRound) {
              "refine.threshold=3", R"(axes.1={"parameter": "seed", "values": [4, 5]})"});
   EXPECT_EQ(sweep.refinement()->strides, (std::vector<std::size_t>{4, 1}));
   EXPECT_EQ(sweep.refinement()->measure, "mean_steps");
-  EXPECT_EQ(sweep.refinement()->above, 3);
+  EXPECT_EQ(sweep.refinement()->threshold, 3);
   const SweepResult plan = sweep.plan();
   EXPECT_EQ(plan.run_count(), 9u * 2 * 9);
   for (std::size_t run = 0; run < plan.run_count(); ++run) {

@@ -25,7 +25,7 @@ TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
   MovingShape::Settings noisy = rising_plane();
   noisy.noise_sigma_m = 0.001;
   SensorFaults off;
-  off.view = {0.3, -0.7, 0.1};
+  off.view_direction = {0.3, -0.7, 0.1};
   const FaultySensor same = faulty(off, bare(noisy)), seen = faulty(off, camera());
   const auto plane = bare(noisy), scene = camera();
   EXPECT_EQ(same.frame_count(), plane->frame_count());
@@ -54,8 +54,8 @@ TEST(SensorFaults, ASectionOfNothingChangesNoRun) {
 
 TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
   SensorFaults s;
-  s.quantisation_m = 0.003, s.view = {1, -2, 2};
-  const Vec3 view = s.view / 3;
+  s.quantisation_m = 0.003, s.view_direction = {1, -2, 2};
+  const Vec3 view_direction = s.view_direction / 3;
   MovingShape::Settings rough = rising_plane();
   rough.noise_sigma_m = 0.004;
   const auto clean = bare(rough);
@@ -63,18 +63,18 @@ TEST(SensorFaults, QuantisedPlacesAreTheNearestMultiplesAlongTheView) {
   for (const int frame : {0, 9}) {
     const PointCloud before = clean->cloud(frame), after = sensor.cloud(frame);
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double steps = after.point(i).dot(view) / 0.003;
+      const double steps = after.point(i).dot(view_direction) / 0.003;
       ASSERT_NEAR(steps, std::round(steps), 1e-10);
       const Vec3 displacement = after.point(i) - before.point(i);
       ASSERT_LE(displacement.norm(), 0.0015 + 1e-15);
-      ASSERT_LT((displacement - displacement.dot(view) * view).norm(), 1e-15);
+      ASSERT_LT((displacement - displacement.dot(view_direction) * view_direction).norm(), 1e-15);
     }
   }
 }
 
 TEST(SensorFaults, FlyingPointsAreAShareThatLeavesAlongTheView) {
   SensorFaults s;
-  s.flying_probability = 0.2, s.max_flying_distance_m = 0.03, s.view = {0, 0, 5};
+  s.flying_probability = 0.2, s.max_flying_distance_m = 0.03, s.view_direction = {0, 0, 5};
   const auto clean = bare();
   const FaultySensor sensor = faulty(s);
   double flown = 0, all = 0, sum = 0, squares = 0;
@@ -184,11 +184,11 @@ TEST(SensorFaults, DropoutLosesItsShareOneByOne) {
 }
 
 // What is gone is what lies within the radius of some middle that is gone, and nothing else.
-void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view,
+void expect_round_holes(const PointCloud& before, const PointCloud& after, const Vec3& view_direction,
                         double radius_m) {
   const auto apart = [&](std::size_t i, std::size_t j) {
     const Vec3 displacement = before.point(i) - before.point(j);
-    return (displacement - displacement.dot(view) * view).norm();
+    return (displacement - displacement.dot(view_direction) * view_direction).norm();
   };
   std::vector<bool> explained(before.size());
   for (std::size_t middle = 0; middle < before.size(); ++middle) {
@@ -205,9 +205,9 @@ void expect_round_holes(const PointCloud& before, const PointCloud& after, const
 }
 
 TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
-  for (const Vec3& view : {Vec3(0, -1, 0), Vec3(0.6, -0.8, 0)}) {
+  for (const Vec3& view_direction : {Vec3(0, -1, 0), Vec3(0.6, -0.8, 0)}) {
     SensorFaults s;
-    s.hole_fraction = 0.25, s.hole_radius_m = 0.007, s.view = view;
+    s.hole_fraction = 0.25, s.hole_radius_m = 0.007, s.view_direction = view_direction;
     const FaultySensor sensor = faulty(s);
     std::vector<PointCloud> frames;
     for (const int frame : {0, 1, 2}) {
@@ -216,7 +216,7 @@ TEST(SensorFaults, HolesAreRoundAndTakeAboutTheirShare) {
       const double lost = 3000 - static_cast<double>(measured(frames.back()));
       EXPECT_GE(lost, 750);
       EXPECT_LE(lost, 750 + 3.2 * 0.007 * 0.007 / (0.002 * 0.002) * 1.7);  // the last hole, seen aslant
-      expect_round_holes(before, frames.back(), view, 0.007);
+      expect_round_holes(before, frames.back(), view_direction, 0.007);
     }
     EXPECT_FALSE(same_bits(frames[0].x, frames[1].x)) << "elsewhere in each frame";
   }

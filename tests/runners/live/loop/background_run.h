@@ -23,7 +23,7 @@ class BackgroundRun {
     options_.kernels = &scenes::kernels();
     options_.stop = &stop_;
     options_.duration_s = 60;
-    options_.tell = [this](const std::string& line) {
+    options_.report_line = [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
       told_ += line + "\n";
     };
