@@ -24,7 +24,7 @@ void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
   hdf5.group("/hashes");
   hdf5.columns("/hashes",
                {{"tick", "1", "number of the haptic tick", hashes.tick, 1, {}},
-                {"tick_hash", "1", "fingerprint of all columns up to this tick", hashes.hash, 1, {}}},
+                {"tick_hash", "1", "64-bit hash of all columns up to this tick", hashes.hash, 1, {}}},
                "tick");
   hdf5.save(file);
 }

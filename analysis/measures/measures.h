@@ -13,7 +13,7 @@ double popped_through(const Trace& trace);
 // How far the centre was at most behind the true surface, m; 0 when never. Ticks without a known truth do not
 // count; NaN without any other.
 double max_penetration_m(const Trace& trace);
-// The smallest distance of the slave's command to the true surface, m, over the ticks with a known truth; NaN
+// The minimum distance of the slave command to the true surface, m, over the ticks with a known truth; NaN
 // without any. With a uniform radius a fixture is violated by r_f + r_c less this.
 double min_slave_distance_m(const Trace& trace);
 // Share of the ticks with a known truth whose proxy centre lies behind the surface; NaN without any.

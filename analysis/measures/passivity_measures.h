@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// The most work that the hand had got by any time since the beginning, J; 0 when it never had more than it
-// gave. A passive renderer without stored energy at the beginning cannot exceed 0: the observer of B.
+// The maximum over time of the energy injected into the hand since the beginning, J; 0 when it never had more
+// than it gave. A passive renderer without stored energy at the beginning cannot exceed 0: the observer of B.
 // Hannaford and J.-H. Ryu, IEEE Trans. Robotics and Automation 18 (2002), read from the other side.
 double max_energy_injected_J(const Trace& trace);
 

@@ -41,7 +41,7 @@ void flush_folder(const std::filesystem::path& target) {
 
 [[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
   throw InputError(target.string(),
-                   std::string("cannot be written (") + std::strerror(error) + "); allowed " + allowed);
+                   std::string("cannot be written (") + std::strerror(error) + "): expected " + allowed);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void flush_folder(const std::filesystem::path& target) {
 void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input) {
   std::error_code absent;
   if (std::filesystem::equivalent(target, input, absent))
-    throw InputError(target.string(), "is the input itself; allowed another file");
+    throw InputError(target.string(), "is the input file: expected another output file");
 }
 
 std::filesystem::path resolved(const std::filesystem::path& target) {

@@ -33,7 +33,7 @@ void write_file_digest(const std::filesystem::path& file) {
   const std::string text = block(sha256_of_file(file, kDigestBlockSize));
   std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
   stream.write(text.data(), static_cast<std::streamsize>(text.size())).flush();
-  if (!stream) throw InputError(file.string(), "cannot be sealed; allowed a writable place");
+  if (!stream) throw InputError(file.string(), "cannot be sealed: expected a writable place");
 }
 
 FileDigest file_digest_of(const std::filesystem::path& file) {

@@ -38,11 +38,11 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(target.string() 
     descriptor_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor_ < 0)
       throw InputError(target.string(), std::string("cannot be written (") + std::strerror(errno) +
-                                            "); allowed a file in a writable folder");
+                                            "): expected a file in a writable folder");
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) continue;
     if (errno != EWOULDBLOCK) return;
     ::close(descriptor_);
-    throw InputError(target.string(), "another process is writing it; allowed one at a time");
+    throw InputError(target.string(), "another process is writing it: expected one at a time");
   } while (!is_same_file(descriptor_, lock_));
   remove_leftovers(target);
 }

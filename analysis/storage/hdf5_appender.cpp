@@ -41,7 +41,7 @@ void Hdf5Appender::guarded(const Call& call) {
     throw;
   } catch (const std::exception& error) {
     throw InputError(target_.string(), std::string("cannot be written (") + error.what() +
-                                           "); allowed a writable place with room");
+                                           "): expected a writable place with room");
   }
 }
 

@@ -44,18 +44,17 @@ TextAttributes root_attributes(hid_t file) {
 bool require_readable(const std::filesystem::path& file) {
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable))
-    throw InputError(file.string(), "no such file; allowed an HDF5 result");
+    throw InputError(file.string(), "no such file: expected an HDF5 result");
   if (std::filesystem::is_directory(file, unreachable))
-    throw InputError(file.string(), "a folder; allowed an HDF5 result");
+    throw InputError(file.string(), "a folder: expected an HDF5 result");
   if (std::filesystem::file_size(file, unreachable) == 0)
-    throw InputError(file.string(), "empty; allowed an HDF5 result");
+    throw InputError(file.string(), "empty: expected an HDF5 result");
   const FileDigest found = file_digest_of(file);
   if (found == FileDigest::broken)
-    throw InputError(
-        file.string(),
-        "damaged (not as it was written: its SHA-256 is another); allowed a result of this program");
+    throw InputError(file.string(),
+                     "damaged or modified (its SHA-256 does not match): expected a result of this program");
   if (H5Fis_hdf5(file.c_str()) <= 0)
-    throw InputError(file.string(), "not a readable HDF5 file; allowed a result of this program");
+    throw InputError(file.string(), "not a readable HDF5 file: expected a result of this program");
   return found == FileDigest::valid;
 }
 
@@ -84,18 +83,19 @@ auto Hdf5Reader::guarded(Read&& read) const {
 }
 
 void Hdf5Reader::damaged(const std::string& how) const {
-  throw InputError(file_, "damaged (" + how + "); allowed a result of this program");
+  throw InputError(file_, "damaged (" + how + "): expected a result of this program");
 }
 
 void Hdf5Reader::require_schema(const std::string& schema, const std::string& allowed) const {
   const std::string found = attribute(attributes_, "schema");
   if (found == schema) return;
-  throw InputError(file_, (found.empty() ? "names no schema" : "is of schema " + found) + "; allowed " +
+  throw InputError(file_, (found.empty() ? "names no schema" : "is of schema " + found) + ": expected " +
                               schema + ", " + allowed);
 }
 
 void Hdf5Reader::require_file_digest() const {
-  if (!sealed_) damaged("its seal is missing: it was changed, or written before there were seals");
+  if (!sealed_)
+    damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string()) {

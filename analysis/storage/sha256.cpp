@@ -41,7 +41,7 @@ std::string sha256_of_file(const std::filesystem::path& file, std::size_t from) 
   Sha256 hash;
   while (in && in.read(part.data(), static_cast<std::streamsize>(part.size())).gcount() > 0)
     hash.add(part.data(), static_cast<std::size_t>(in.gcount()));
-  if (!in.eof()) throw InputError(file.string(), "cannot be read; allowed a readable file");
+  if (!in.eof()) throw InputError(file.string(), "cannot be read: expected a readable file");
   return hash.hex();
 }
 

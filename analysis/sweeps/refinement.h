@@ -12,7 +12,7 @@ namespace remote_touch {
 
 struct RefinementRule {
   std::string measure = "popped_through";
-  double threshold = 0.5;    // the event: the measure is above this
+  double threshold = 0.5;    // the event happens when the measure is above this
   std::uint64_t budget = 0;  // runs in all, those of the first round included
   int first_replicates = 1;  // of a cell that is sampled for the first time; also how many a round adds
   std::vector<std::size_t> strides;  // of the first round's cells along each axis, powers of two

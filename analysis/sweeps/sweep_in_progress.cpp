@@ -28,7 +28,7 @@ SweepInProgress::SweepInProgress(const std::filesystem::path& file, const SweepR
   checksum_offset_ = offset_of(file, "/sweep/checksum");
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
-    refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "); allowed a writable file");
+    refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "): expected a writable file");
 }
 
 SweepInProgress::~SweepInProgress() {
@@ -64,7 +64,7 @@ void SweepInProgress::flush() {
   struct stat ours = {}, there = {};
   if (::fstat(descriptor_, &ours) != 0 || ::stat(file_.c_str(), &there) != 0 || ours.st_ino != there.st_ino ||
       ours.st_dev != there.st_dev)
-    refuse(file_, "was replaced or removed while it was written; allowed one process at a time");
+    refuse(file_, "was replaced or removed while it was written: expected one process at a time");
 }
 
 }  // namespace remote_touch

@@ -23,7 +23,7 @@ int half(int window) {
 std::string wrong_window(const char* name, int window) {
   return window % 2 == 1
              ? ""
-             : std::string(name) + " = " + std::to_string(window) + ": allowed odd numbers, 3 to 15";
+             : std::string(name) + " = " + std::to_string(window) + ": expected odd numbers, 3 to 15";
 }
 
 // A band's room for weights: as few as there are threads are in use, and these stay in the cache.
@@ -57,13 +57,13 @@ Parameters parameters(DepthPipelineSettings& s) {
   return {
       {"filter", &s.filter, 0, 1, "filter the depth image spatially (7.1)"},
       {"filter_window", &s.filter_window, 3, 15,
-       "pixels in width and height that (7.1) takes the mean of; odd"},
+       "width and height of the filter window of (7.1) in pixels; odd"},
       {"sigma_f_m", &s.sigma_f_m, 1e-4, 1,
-       "width of the filter's weights (7.2); a step that is not several times as high is smeared"},
+       "sigma_f of the filter weights (7.2); depth steps smaller than a few sigma_f are smoothed"},
       {"normal_window", &s.normal_window, 3, 15,
-       "pixels in width and height that a normal is from, 6.2.1; odd"},
+       "width and height of the window of a normal in pixels, 6.2.1; odd"},
       {"normal_radius_m", &s.normal_radius_m, 1e-3, 1,
-       "distance at which the weight (4.2) of a neighbour in the plane of a normal is 0, r_w of 6.2.1"},
+       "r_w of 6.2.1: neighbours at this distance or more have weight 0 (4.2) in a normal"},
   };
 }
 

@@ -9,32 +9,32 @@ constexpr double kRounding_s = 1e-9;  // of differences of times
 Parameters parameters(SequenceStep& s) {
   return {
       {"action", choice(s.action, {"lock", "unlock", "activate", "release", "wait"}), 0, 0,
-       "lock: a forbidden region counts; unlock: it does not; activate: a guidance fixture pulls, and any other "
-       "lets go; release: it lets go"},
-      {"fixture", &s.fixture, 0, 0, "label of the fixture"},
+       "lock: enable a forbidden region; unlock: disable it; activate: start a guidance fixture and stop any other; release: stop it; wait: do nothing"},
+      {"fixture", &s.fixture, 0, 0, "label of the fixture that the action is about"},
       {"start", choice(s.start, {"previous", "button"}), 0, 0,
-       "when the step before has ended, or after that when a button is pressed"},
-      {"not_before_s", &s.not_before_s, 0, 86400, "but not before this time"},
+       "previous: start when the previous step has ended; button: then wait for the button"},
+      {"not_before_s", &s.not_before_s, 0, 86400, "earliest start time"},
       {"done", choice(s.done, {"immediately", "reached", "button"}), 0, 0,
-       "the step ends at once, when the tool is within the fixture's radius_m of its goal, or with a press"},
-      {"button", &s.button, 0, 31, "of the device"},
+       "when the step ends: immediately, when the tool has reached the goal, or when the button is pressed"},
+      {"button", &s.button, 0, 31, "number of the button"},
       {"deadline_s", &s.deadline_s, 0, 86400,
-       "a step that is not done so long after its beginning is missed, and the next one comes; 0: none"},
-      {"offset_m", &s.offset_m, -1, 1, "activate: added to the goal's place, base frame"},
+       "maximum duration; a longer step counts as missed and the next one starts; 0: no limit"},
+      {"offset_m", &s.offset_m, -1, 1, "for activate: offset added to the goal, base frame"},
   };
 }
 
 std::string validate(const SequenceStep& s) {
   const bool needs_fixture = s.action != FixtureAction::wait || s.done == StepEnd::reached;
-  if (needs_fixture && s.fixture.empty()) return "fixture = \"\": allowed the label of a fixture";
+  if (needs_fixture && s.fixture.empty()) return "fixture = \"\": expected the label of a fixture";
   if (!needs_fixture && !s.fixture.empty())
-    return "fixture = \"" + s.fixture + "\": allowed none for wait, unless done = reached";
+    return "fixture = \"" + s.fixture + "\": expected none for wait, unless done = reached";
   if (s.action != FixtureAction::activate && !s.offset_m.isZero(0))
-    return "offset_m: allowed other than 0 for action = activate only";
+    return "offset_m: expected other than 0 for action = activate only";
   if (s.done == StepEnd::immediately && s.deadline_s > 0)
-    return "deadline_s = " + std::to_string(s.deadline_s) + ": allowed 0 for done = immediately";
+    return "deadline_s = " + std::to_string(s.deadline_s) + ": expected 0 for done = immediately";
   const bool guided = s.action == FixtureAction::activate || s.action == FixtureAction::wait;
-  if (s.done == StepEnd::reached && !guided) return "done = reached: allowed for activate and wait";
+  if (s.done == StepEnd::reached && !guided)
+    return "done = reached: expected only with action = activate or wait";
   return {};
 }
 

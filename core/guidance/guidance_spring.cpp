@@ -23,28 +23,27 @@ Eigen::Quaterniond shortest_rotation(const Vec3& from, const Vec3& to) {
 Parameters parameters(GuidanceSettings& s) {
   return {
       {"orientation", choice(s.orientation, {"fixed", "plane"}), 0, 0,
-       "of the goal: rotation_deg in the base frame, or against the plane of the target's points where they lie in "
-       "one"},
+       "orientation of the goal: fixed: rotation_deg; plane: perpendicular to the plane of the target's points, if they lie in a plane"},
       {"rotation_deg", &s.rotation_deg, -360, 360,
-       "rotation vector of the goal in the base frame, from the tool's axes"},
-      {"approach_axis", &s.approach_axis, -1, 1, "of the tool, in its own axes: what points at the target"},
-      {"standoff_m", &s.standoff_m, 0, 1,
-       "the goal lies so far in front of the target, against the approach axis"},
-      {"offset_m", &s.offset_m, -1, 1, "and beside it by this, base frame"},
-      {"min_points", &s.min_points, 1, 1000000, "a frame that shows fewer points shows no target"},
+       "rotation vector (axis times angle) from the axes of the tool to the goal, base frame"},
+      {"approach_axis", &s.approach_axis, -1, 1, "axis of the tool that points at the target, tool frame"},
+      {"standoff_m", &s.standoff_m, 0, 1, "distance of the goal from the target, against the approach axis"},
+      {"offset_m", &s.offset_m, -1, 1, "offset added to the goal, base frame"},
+      {"min_points", &s.min_points, 1, 1000000,
+       "minimum number of points of a target; with fewer, guidance is off"},
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
-       "of the spring to the goal, for fixtures without a stiffness of their own"},
+       "stiffness of the spring to the goal, for fixtures without their own"},
       {"gyration_radius_m", &s.gyration_radius_m, 0, 1,
-       "the rotational stiffness is stiffness times its square"},
-      {"max_force_N", &s.max_force_N, 0, 1000, "longer guidance forces are cut to this length"},
-      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "longer guidance torques are cut to this length"},
+       "rotational stiffness = stiffness times this squared"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum magnitude of the guidance force"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum magnitude of the guidance torque"},
       {"reached_deg", &s.reached_deg, 0, 180,
-       "a tool within the fixture's radius_m of the goal and turned from it by no more has reached it"},
+       "the goal is reached within radius_m of the fixture and this angle"},
   };
 }
 
 std::string validate(const GuidanceSettings& s) {
-  if (s.approach_axis.norm() < 1e-3) return "approach_axis: allowed 0.001 or longer";
+  if (s.approach_axis.norm() < 1e-3) return "approach_axis: expected 0.001 or longer";
   return {};
 }
 

@@ -47,19 +47,19 @@ bool first_action_is(const std::vector<SequenceStep>& steps, const std::string& 
 
 std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps) {
   if (!steps.empty() && fixtures.size() > FixtureSwitches::kMaxCount)
-    return "fixtures: " + std::to_string(fixtures.size()) + " rules: allowed " +
+    return "fixtures: " + std::to_string(fixtures.size()) + " rules: expected " +
            std::to_string(FixtureSwitches::kMaxCount) + " with a sequence";
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!fixtures[i].label.empty() && fixtures[i].label == fixtures[j].label)
         return "fixtures." + std::to_string(i) + ".label = \"" + fixtures[i].label +
-               "\": allowed a label of its own, fixtures." + std::to_string(j) + " has this one";
+               "\": expected a label of its own, fixtures." + std::to_string(j) + " has this one";
   std::size_t unnamed = 0;
   for (std::size_t i = 0; i < fixtures.size(); ++i) {
     if (fixtures[i].role != FixtureRole::guidance || is_named(steps, fixtures[i].label)) continue;
     if (++unnamed > 1)
       return "fixtures." + std::to_string(i) +
-             ".role = guidance: allowed once where no step of a sequence activates or releases it";
+             ".role = guidance: expected once where no step of a sequence activates or releases it";
   }
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].fixture.empty()) continue;
@@ -67,10 +67,10 @@ std::string validate(const std::vector<FixtureValues>& fixtures, const std::vect
     const auto named = std::find_if(fixtures.begin(), fixtures.end(),
                                     [&](const auto& fixture) { return fixture.label == steps[i].fixture; });
     if (named == fixtures.end())
-      return at + ".fixture = \"" + steps[i].fixture + "\": allowed the label of a fixture" +
+      return at + ".fixture = \"" + steps[i].fixture + "\": expected the label of a fixture" +
              labels_of(fixtures);
     if (!is_for(steps[i].action, named->role))
-      return at + ".action = \"" + action_name(steps[i]) + "\": allowed " +
+      return at + ".action = \"" + action_name(steps[i]) + "\": expected " +
              (named->role == FixtureRole::forbidden
                   ? "lock, unlock for a fixture with role = forbidden"
                   : "activate, release, wait for a fixture with role = guidance");

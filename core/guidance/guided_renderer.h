@@ -15,16 +15,16 @@
 
 namespace remote_touch {
 
-// What is wrong about a task with these fixtures, as one line; empty when they fit together: labels are
-// unique and known, forbidden fixtures are locked and guidance is activated; of guidance that no step names
-// there is one at most.
+// Describes the first mistake in a task with these fixtures in one line; empty if there is none. Labels must
+// be unique and known; only forbidden fixtures can be locked, only guidance can be activated; at most one
+// guidance fixture may be used by no step.
 std::string validate(const std::vector<FixtureValues>& fixtures, const std::vector<SequenceStep>& steps);
 
 class GuidedRenderer final : public Renderer {
  public:
   // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment looks at. A
-  // fixture begins as the opposite of what the task does first with it; one that no step names is locked or
-  // active from the beginning. pre: validate(fixtures, steps) is empty.
+  // fixture starts disabled if the task first enables it, and the other way round; one that no step uses is
+  // enabled from the start. pre: validate(fixtures, steps) is empty.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);

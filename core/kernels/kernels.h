@@ -35,7 +35,7 @@ struct ProxyRegions {
   double stiffness;  // of points without one of their own
 };
 
-// What one pass over the points tells about a proxy position. r_n = |P - x| - r_f, (5.5).
+// Local statistics of the points around a proxy position. r_n = |P - x| - r_f, (5.5).
 struct ContactQuery {
   double nearest;        // smallest r_n; infinite without points
   double normal_sum[3];  // (4.1): sum of (P - x)/|P - x| psi(r_n), not normalised
@@ -149,7 +149,8 @@ struct NearRegions {
   std::uint32_t* number;
 };
 
-// What is left of them in the columns, and the deepest of it: the first with the least gap, or count.
+// Number of remaining regions in the columns, and the index of the deepest (smallest gap), or count if there
+// is none.
 struct RemainingRegions {
   std::size_t deepest, count;
 };

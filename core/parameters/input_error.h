@@ -1,5 +1,5 @@
 // The one exception for bad input: a file, a parameter or a flag that cannot be used. The message is a single
-// line "subject: what is wrong, what is allowed"; the command line prints it and exits with 2.
+// line "subject: what is wrong, what is expected"; the command line prints it and exits with 2.
 #pragma once
 
 #include <stdexcept>

@@ -15,9 +15,9 @@ double scheduled(const std::vector<double>& rows, double time_s) {
 std::string validate_schedule(const std::vector<double>& rows, const std::string& name,
                               const std::string& what) {
   for (std::size_t i = 0; i < rows.size(); i += 2) {
-    if (rows[i + 1] > 1) return name + ": " + what + " " + std::to_string(rows[i + 1]) + ": allowed 0 to 1";
+    if (rows[i + 1] > 1) return name + ": " + what + " " + std::to_string(rows[i + 1]) + ": expected 0 to 1";
     if (i > 0 && rows[i] < rows[i - 2])
-      return name + ": time " + std::to_string(rows[i]) + ": allowed no earlier than the row before";
+      return name + ": time " + std::to_string(rows[i]) + ": expected no earlier than the row before";
   }
   return {};
 }

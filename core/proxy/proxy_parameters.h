@@ -45,7 +45,7 @@ struct ProxyParameters {
 };
 
 Parameters parameters(ProxyParameters& p);
-// What contradicts what, as one line; empty when the settings fit together.
+// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ProxyParameters& p);
 
 }  // namespace remote_touch

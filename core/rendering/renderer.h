@@ -32,7 +32,7 @@ struct ToolOutput {
   int contact_clusters = 0;       // groups of touching points, 10 mm cells of the tool frame
   double tool_penetration_m = 0;  // of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
-  bool budget_exhausted = false;  // the tick ended before the tool came to rest
+  bool budget_exhausted = false;  // the tick ended before the tool had converged
   int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
 };
 
@@ -45,7 +45,7 @@ struct GuidanceOutput {
   Eigen::Quaterniond goal_orientation_W{Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN())};
   int sequence_step = 0;          // the task's current step; as many as it has after the last
   bool sequence_running = false;  // the step has begun
-  int sequence_missed = 0;        // steps that ended by their deadline so far
+  int sequence_missed = 0;        // number of steps that missed their deadline so far
   // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
   double sequence_distance_m = std::numeric_limits<double>::quiet_NaN();
   double sequence_angle_rad = std::numeric_limits<double>::quiet_NaN();
@@ -76,15 +76,15 @@ struct RenderOutput {
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  // What takes long of taking a frame, so that on_frame() is short: sets frame.prepared, for renderers of the
-  // same kind and settings. May run beside on_frame() and step(). The answers are the same without.
+  // The slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers of
+  // the same kind and settings. May run in parallel to on_frame() and step(). Results do not depend on it.
   virtual void prepare(Frame& /*frame*/) const {}
   // Room for frames of so many points, or of images of so many pixels, both sides rounded up to multiples of
   // 16; with it on_frame() of a prepared frame allocates nothing. It lets the one before go: see that it is
   // held elsewhere when memory must not be given back either.
   virtual void reserve(std::size_t /*points*/) {}
-  // A new cloud, prepared or not. A frame captured no later than the newest one is dropped, and the next
-  // output says so.
+  // A new cloud, prepared or not. A frame that is not newer than the last one is dropped, and the status of
+  // the next output reports it.
   virtual void on_frame(const Frame& frame) = 0;
   // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: trouble is a
   // status.

@@ -18,12 +18,12 @@ constexpr double kRestTolerance = 1e-6;
 Parameters parameters(GodObjectParameters& p) {
   return {
       {"max_edge_length_m", &p.max_edge_length_m, 1e-6, 1,
-       "triangles with a longer edge are left out, as at depth edges"},
+       "triangles with a longer edge are ignored, as at depth edges"},
       {"surface_offset_m", &p.surface_offset_m, 1e-9, 0.01,
-       "the god-object stays so far off the planes that hold it, so that its side is clear"},
+       "distance that the god-object keeps from constraint planes, so that its side is unambiguous"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
        "spring k_s between HIP and god-object, Zilles and Salisbury 1995"},
-      {"steps_per_tick", &p.steps_per_tick, 1, 100000, "largest number of rounds in a haptic tick"},
+      {"steps_per_tick", &p.steps_per_tick, 1, 100000, "maximum number of iterations in a haptic tick"},
   };
 }
 
@@ -32,7 +32,7 @@ std::string validate(const GodObjectParameters& p) {
   if (kMinRatio * p.surface_offset_m <= p.max_edge_length_m) return {};
   std::ostringstream text;
   text << "surface_offset_m = " << p.surface_offset_m
-       << ": allowed up to a tenth of max_edge_length_m = " << p.max_edge_length_m;
+       << ": expected up to a tenth of max_edge_length_m = " << p.max_edge_length_m;
   return text.str();
 }
 

@@ -38,7 +38,7 @@ struct GodObjectParameters {
 };
 
 Parameters parameters(GodObjectParameters& p);
-// What contradicts what, as one line; empty when the settings fit together.
+// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const GodObjectParameters& p);
 
 class GodObjectRenderer final : public RivalRenderer {

@@ -37,12 +37,12 @@ Parameters parameters(ImplicitSurfaceParameters& p) {
        "[84]: f = T - sum of weights, or f = n . (p - a) by weighted total least squares"},
       {"weight", choice(p.weight, {"wyvill", "wendland"}), 0, 0,
        "w(q): 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2, or (1 - q)^4 (4 q + 1)"},
-      {"support_radius_m", &p.support_radius_m, 1e-6, 1, "R of [84]: points farther away have no weight"},
+      {"support_radius_m", &p.support_radius_m, 1e-6, 1,
+       "R of [84]: points at a larger distance have weight 0"},
       {"threshold", &p.threshold, 1e-3, 1000,
-       "T of the metaballs [84], in points: below 1 a single point is solid"},
+       "T of the metaballs [84]; with T below 1 a single point is solid"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy"},
-      {"steps_per_tick", &p.steps_per_tick, 1, 100000,
-       "no step begins after so many evaluations of f in a haptic tick"},
+      {"steps_per_tick", &p.steps_per_tick, 1, 100000, "maximum number of evaluations of f in a haptic tick"},
   };
 }
 

@@ -13,9 +13,9 @@ Parameters parameters(PenaltyParameters& p) {
   return {
       {"contact_radius_m", &p.contact_radius_m, 1e-6, 1,
        "radius r_c of the ball around the HIP; the force is at most k_s r_c"},
-      {"r3_m", &p.r3_m, 1e-6, 1, "points nearer than this form the normal (4.1)"},
+      {"r3_m", &p.r3_m, 1e-6, 1, "radius of the points that are averaged to the normal (4.1)"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
-       "spring k_s by how far the nearest point is in the ball"},
+       "spring k_s, times the depth of the nearest point in the ball"},
       {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper along the normal, in contact"},
   };
 }
@@ -23,7 +23,7 @@ Parameters parameters(PenaltyParameters& p) {
 std::string validate(const PenaltyParameters& p) {
   if (p.contact_radius_m < p.r3_m) return {};
   std::ostringstream text;
-  text << "contact_radius_m = " << p.contact_radius_m << ": allowed below r3_m = " << p.r3_m;
+  text << "contact_radius_m = " << p.contact_radius_m << ": expected below r3_m = " << p.r3_m;
   return text.str();
 }
 

@@ -29,7 +29,7 @@ struct PenaltyParameters {
 };
 
 Parameters parameters(PenaltyParameters& p);
-// What contradicts what, as one line; empty when the settings fit together.
+// Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const PenaltyParameters& p);
 
 class PenaltyRenderer final : public RivalRenderer {

@@ -16,11 +16,11 @@ struct Ball {
   double radius;
 };
 
-// Room for numbers that are written before they are read; pages never written cost nothing.
+// Buffer for numbers that are written before they are read; memory that is never written is never allocated.
 template <class T>
 class Buffer {
  public:
-  // When the room grows the first ones that are to be kept stay, what else was stored is lost.
+  // When the buffer grows, the first `kept` values stay; all others are lost.
   void grow(std::size_t size, std::size_t kept = 0) {
     if (size <= size_) return;
     auto more = std::make_unique_for_overwrite<T[]>(size);

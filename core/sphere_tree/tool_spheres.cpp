@@ -182,7 +182,7 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   const TriangleTree triangles(tool.mesh);
   std::vector<Sphere> balls = inscribed_balls(tool, triangles);
   if (balls.empty())
-    throw InputError("tool", "no place of its grid is inside; allowed a smaller renderer.tool_voxel_m");
+    throw InputError("tool", "no place of its grid is inside: expected a smaller renderer.tool_voxel_m");
   const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * max_leaves));
   const SphereCover cover(thinned(surface_samples(tool.mesh, spacing_m), spacing_m), std::move(balls),
                           2 * spacing_m);

@@ -11,14 +11,13 @@ Parameters parameters(TrackedSheetParameters& p) {
   std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });  // it is measured
   SheetSettings& s = p.sheet;
   const Parameters more = {
-      {"gate_m", &s.gate_m, 1e-4, 1,
-       "how far from where it is predicted a tracked sheet is looked for first"},
+      {"gate_m", &s.gate_m, 1e-4, 1, "search range around the predicted position of the sheet"},
       {"initial_gate_m", &s.initial_gate_m, 1e-4, 1,
-       "how far a sheet that was seen once is looked for, and one that is not within gate_m"},
-      {"max_gate_m", &s.max_gate_m, 1e-4, 1, "how far a sheet is looked for before it counts as gone"},
+       "search range for a new sheet, and for one not found within gate_m"},
+      {"max_gate_m", &s.max_gate_m, 1e-4, 1, "maximum search range; a sheet not found within it is lost"},
       {"max_missed_frames", &s.max_missed_frames, 0, 100,
-       "frames without the sheet through which a proxy in contact is held; after them it is let go"},
-      {"denoise", &s.denoise, 0, 1, "show the proxy the sheet's points without their noise, or as they are"},
+       "number of frames without the sheet for which a proxy in contact stays in contact; then it is released"},
+      {"denoise", &s.denoise, 0, 1, "remove the noise from the points of the sheet"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;
@@ -27,7 +26,7 @@ Parameters parameters(TrackedSheetParameters& p) {
 std::string validate(const TrackedSheetParameters& p) {
   const SheetSettings& s = p.sheet;
   const auto line = [](const char* name, double value, const char* other, double min) {
-    return std::string(name) + " = " + std::to_string(value) + ": allowed from " + other + " = " +
+    return std::string(name) + " = " + std::to_string(value) + ": expected from " + other + " = " +
            std::to_string(min);
   };
   if (s.initial_gate_m < s.gate_m) return line("initial_gate_m", s.initial_gate_m, "gate_m", s.gate_m);

@@ -7,25 +7,24 @@ namespace remote_touch {
 Parameters parameters(FixtureValues& v) {
   return {
       {"radius_m", &v.radius_m, -1, 1,
-       "forbidden-region radius r_f of the points (5.2); -1: as it was, 0 without another rule"},
+       "radius r_f of the forbidden regions around the points (5.2); -1: do not change"},
       {"stiffness_N_per_m", &v.stiffness_N_per_m, -1, 10000,
-       "stiffness k_s of the points (5.3); -1: as it was, which is the renderer's own without another rule"},
+       "stiffness k_s of the points (5.3); -1: do not change (default: stiffness of the renderer)"},
       {"schedule", Rows{{"time_s", "strength"}, &v.schedule}, 0, 86400,
-       "how far the rule counts, 0 to 1, over the time of capture: even between rows; none: always 1"},
+       "strength of the rule, 0 to 1, over the time of capture; linear between rows; no rows: always 1"},
       {"role", choice(v.role, {"forbidden", "guidance"}), 0, 0,
-       "forbidden: its points are kept away from; guidance: their mean is where the hand is led to, radius_m is "
-       "how near counts as there, stiffness_N_per_m that of the spring"},
-      {"label", &v.label, 0, 0, "by which the steps of a sequence name the rule"},
+       "forbidden: keep the tool away from the points; guidance: pull the hand towards their mean (radius_m: distance at which the goal is reached; stiffness_N_per_m: of the spring)"},
+      {"label", &v.label, 0, 0, "name of the rule for the steps of a sequence"},
   };
 }
 
 std::string validate(const FixtureValues& v) {
   if (v.radius_m < 0 && v.radius_m != -1)
-    return "radius_m = " + std::to_string(v.radius_m) + ": allowed 0 or more, or -1";
+    return "radius_m = " + std::to_string(v.radius_m) + ": expected 0 or more, or -1";
   if (v.stiffness_N_per_m < 0 && v.stiffness_N_per_m != -1)
-    return "stiffness_N_per_m = " + std::to_string(v.stiffness_N_per_m) + ": allowed 0 or more, or -1";
+    return "stiffness_N_per_m = " + std::to_string(v.stiffness_N_per_m) + ": expected 0 or more, or -1";
   if (v.role == FixtureRole::guidance && v.radius_m <= 0)
-    return "radius_m = " + std::to_string(v.radius_m) + ": allowed above 0 for role = guidance";
+    return "radius_m = " + std::to_string(v.radius_m) + ": expected above 0 for role = guidance";
   return validate_schedule(v.schedule, "schedule", "strength");
 }
 

@@ -5,14 +5,15 @@ namespace remote_touch {
 Parameters parameters(HalfSpace::Settings& s) {
   Parameters list = parameters(s.values);
   list.push_back({"point_m", &s.point_m, -100, 100, "a point of the plane, world frame"});
-  list.push_back({"normal", &s.normal, -1e6, 1e6, "points into the half-space; its length does not matter"});
-  list.push_back({"transition_m", &s.transition_m, 0, 100,
-                  "the rule's share of a point rises evenly over this distance from the plane; 0: a step"});
+  list.push_back({"normal", &s.normal, -1e6, 1e6, "direction into the half-space; any length"});
+  list.push_back(
+      {"transition_m", &s.transition_m, 0, 100,
+       "the weight of the rule rises linearly from 0 to 1 over this distance from the plane; 0: a step"});
   return list;
 }
 
 std::string validate(const HalfSpace::Settings& s) {
-  if (!(s.normal.norm() > 1e-9)) return "normal: allowed longer than 0";
+  if (!(s.normal.norm() > 1e-9)) return "normal: expected longer than 0";
   return validate(s.values);
 }
 

@@ -10,9 +10,9 @@ Parameters parameters(HueRange::Settings& s) {
   const Parameters more = {
       {"from_deg", &s.from_deg, 0, 360, "first hue: 0 red, 120 green, 240 blue"},
       {"to_deg", &s.to_deg, 0, 360, "last hue; below from_deg the range goes through 0"},
-      {"min_saturation", &s.min_saturation, 0, 1, "greyer points are not picked: greys have no hue"},
-      {"min_lightness", &s.min_lightness, 0, 1, "nor are darker ones, whose hue is noise"},
-      {"max_lightness", &s.max_lightness, 0, 1, "nor lighter ones"},
+      {"min_saturation", &s.min_saturation, 0, 1, "minimum saturation; grey points have no hue"},
+      {"min_lightness", &s.min_lightness, 0, 1, "minimum lightness; the hue of dark points is noise"},
+      {"max_lightness", &s.max_lightness, 0, 1, "maximum lightness"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;
@@ -21,7 +21,7 @@ Parameters parameters(HueRange::Settings& s) {
 std::string validate(const HueRange::Settings& s) {
   if (s.min_lightness > s.max_lightness)
     return "min_lightness = " + std::to_string(s.min_lightness) +
-           ": allowed up to max_lightness = " + std::to_string(s.max_lightness);
+           ": expected up to max_lightness = " + std::to_string(s.max_lightness);
   return validate(s.values);
 }
 
@@ -36,7 +36,7 @@ bool HueRange::holds(std::uint32_t rgb) const {
 
 std::vector<double> HueRange::weights(const PointCloud& cloud) const {
   if (cloud.colour.empty() && cloud.size() > 0)
-    throw InputError("hue-range", "the frame has no colours; allowed with coloured frames");
+    throw InputError("hue-range", "the frame has no colours: expected coloured frames");
   std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     weights[i] = cloud.point(i).allFinite() && holds(cloud.colour[i]) ? 1 : 0;

@@ -9,19 +9,20 @@ namespace remote_touch {
 Parameters parameters(NearPoint::Settings& s) {
   Parameters list = parameters(s.values);
   const Parameters more = {
-      {"point_m", &s.point_m, -100, 100, "the picked point, world frame"},
-      {"row", &s.row, -1, 4095, "image row: what this pixel sees is the picked point; -1: point_m is"},
-      {"column", &s.column, -1, 4095, "image column; -1: point_m is the picked point"},
-      {"inner_radius_m", &s.inner_radius_m, 0, 100, "points no farther than this from it are picked wholly"},
+      {"point_m", &s.point_m, -100, 100, "centre of the selection, world frame"},
+      {"row", &s.row, -1, 4095, "image row of the centre of the selection; -1: use point_m"},
+      {"column", &s.column, -1, 4095, "image column of the centre; -1: use point_m"},
+      {"inner_radius_m", &s.inner_radius_m, 0, 100,
+       "points within this distance of the centre have weight 1"},
       {"falloff_m", &s.falloff_m, 0, 100,
-       "beyond, the rule's share of a point falls to 0 over this distance"},
+       "beyond inner_radius_m the weight falls linearly to 0 over this distance"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;
 }
 
 std::string validate(const NearPoint::Settings& s) {
-  if ((s.row < 0) != (s.column < 0)) return "row and column: allowed both 0 or more, or both -1";
+  if ((s.row < 0) != (s.column < 0)) return "row and column: expected both 0 or more, or both -1";
   return validate(s.values);
 }
 
@@ -47,10 +48,11 @@ Vec3 nearest_measured(const PointCloud& cloud, const CameraIntrinsics& camera, i
 Vec3 NearPoint::picked(const PointCloud& cloud) const {
   if (settings_.row < 0) return settings_.point_m;
   if (!cloud.image)
-    throw InputError("near-point: row, column", "the frame is no image; allowed with a camera");
+    throw InputError("near-point: row, column",
+                     "the frame is not an image: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   if (settings_.row >= camera.height || settings_.column >= camera.width)
-    throw InputError("near-point: row, column", "allowed below " + std::to_string(camera.height) + " and " +
+    throw InputError("near-point: row, column", "expected below " + std::to_string(camera.height) + " and " +
                                                     std::to_string(camera.width));
   return nearest_measured(cloud, camera, settings_.column, settings_.row);
 }

@@ -101,7 +101,7 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
       print(missing);
       checks.push_back(std::move(missing));
     }
-  if (checks.empty()) throw InputError(request.folder, "holds no baselines; allowed a folder with some");
+  if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
   if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
   if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));
   return exit_code(checks);
@@ -111,11 +111,11 @@ int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& 
   std::vector<std::string> names = request.names;
   const bool all = names == std::vector<std::string>{"all"};
   if ((all || names.size() > 1) && !(request.run.empty() && request.sweep.empty()))
-    throw InputError("--run, --sweep", "with several names; allowed with one");
+    throw InputError("--run, --sweep", "expected with one name only");
   if (all) {
     names.clear();
     for (const Baseline& baseline : read_manifest(request.folder).baselines) names.push_back(baseline.name);
-    if (names.empty()) throw InputError(request.folder, "holds no baselines; allowed a folder with some");
+    if (names.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
   }
   for (const std::string& name : names) {
     const std::string done = bless({request.folder, name, request.reason, request.run, request.sweep,

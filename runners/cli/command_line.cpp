@@ -37,105 +37,111 @@ void add_lists(Subcommands& commands) {
   commands.add("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
                command_list);
   auto [describe, described] =
-      commands.add("describe", "every parameter: range, default, meaning", command_describe);
-  describe->add_option("name", described->name, "a name of the list")->required();
-  auto [inspect, inspected] = commands.add("inspect", "what is in a result file", command_inspect);
+      commands.add("describe", "describe parameters: range, default, meaning", command_describe);
+  describe->add_option("name", described->name, "a name from `remote-touch list`")->required();
+  auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
   inspect->add_option("file", inspected->file, "an HDF5 file")->required();
 }
 
 void add_run(Subcommands& commands) {
   auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
-  command->add_option("experiment", run->experiment, "a name of the list, a JSON file, or a live session")
+  command
+      ->add_option("experiment", run->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
       ->required();
   add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
   command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
-  command->add_flag("--timing", run->timing, "also store the wall clock of each tick");
+  command->add_flag("--timing", run->timing, "also store the duration of each tick");
 }
 
 void add_sweep(Subcommands& commands) {
-  auto [command, sweep] =
-      commands.add("sweep", "run an experiment over a grid of parameters; resumes by itself", command_sweep);
-  command->add_option("sweep", sweep->sweep, "a name of the list, or a JSON file")->required();
+  auto [command, sweep] = commands.add(
+      "sweep", "run an experiment over a grid of parameters; the same command resumes it", command_sweep);
+  command->add_option("sweep", sweep->sweep, "a name from `remote-touch list`, or a JSON file")->required();
   add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
   command->add_option("-o,--output", sweep->output,
-                      "the HDF5 file to write or to go on with; {shard} stands for the shard, 2of7");
-  command->add_option("--threads", sweep->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+                      "the HDF5 file to write or to resume; {shard} is replaced by the shard, such as 2of7");
+  command->add_option("--threads", sweep->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
       ->check(CLI::Range(1, 4096));
   command->add_option("--shard", sweep->shard,
-                      "i/N: only part i of N (default: as Slurm or mpirun say, else all of it)");
+                      "i/N: only part i of N (default: from Slurm or mpirun, else everything)");
   command->add_flag("--dry-run", sweep->dry_run,
                     "check every cell, estimate time and file size, write nothing");
 }
 
 void add_merge_and_replay(Subcommands& commands) {
-  auto [command, merge] = commands.add("merge", "put the shards of a sweep together", command_merge);
+  auto [command, merge] = commands.add("merge", "merge the shards of a sweep", command_merge);
   command->add_option("shards", merge->shards, "the files of all shards")->required();
   command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
 
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
   again->add_option("map", replay->map, "the result of a sweep")->required();
-  again->add_option("--cell", replay->cell, "place on each axis, counted from 0, for example 3,40")
-      ->required();
-  again->add_option("--replicate", replay->replicate, "counted from 0");
+  again->add_option("--cell", replay->cell, "index on each axis, from 0, for example 3,40")->required();
+  again->add_option("--replicate", replay->replicate, "number of the replicate, from 0");
   again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
 }
 
 void add_figure(Subcommands& commands) {
   auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", command_figure);
-  command->add_option("names", figure->names, "figures of the list, or all")->required();
+  command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
   command
       ->add_option("--coarse", figure->coarse,
-                   "maps of every Nth value of their axes, to look at: no claim of theirs is judged")
+                   "use every Nth value of the axes of maps: a quick preview whose claims are not judged")
       ->check(CLI::Range(1, 10));
 }
 
 void add_scorecard(Subcommands& commands) {
-  auto [command, scorecard] = commands.add(
-      "scorecard", "renderers against each other over many scenes and noise levels: HDF5 and a page",
-      command_scorecard);
-  command->add_option("methods", scorecard->methods, "of the list (default: all)");
-  command->add_option("--scene", scorecard->scenes, "of the list (default: all)");
-  command->add_option("-o,--output", scorecard->folder, "the folder to write into, or to go on with")
-      ->required();
+  auto [command, scorecard] =
+      commands.add("scorecard", "compare renderers over many scenes and noise levels: HDF5 and an HTML page",
+                   command_scorecard);
+  command->add_option("methods", scorecard->methods, "names from `remote-touch list` (default: all)");
+  command->add_option("--scene", scorecard->scenes, "names from `remote-touch list` (default: all)");
+  command->add_option("-o,--output", scorecard->folder, "the folder to write to, or to resume")->required();
   command
-      ->add_option("--seeds", scorecard->seeds, "runs of each scene and noise level, each with its own noise")
+      ->add_option("--seeds", scorecard->seeds,
+                   "number of number of runs of each scene and noise level, each with its own noise")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
-  command->add_option("--threads", scorecard->threads, "how many threads (default: OMP_NUM_THREADS, or all)")
+  command->add_option("--threads", scorecard->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
       ->check(CLI::Range(1, 4096));
 }
 
 void add_compare(Subcommands& commands) {
   auto [command, compare] = commands.add(
-      "compare", "two results side by side: 0 same, 1 regressed, 2 could not compare", command_compare);
+      "compare", "compare two results; exit code 0: same, 1: different, 2: not comparable", command_compare);
   command->add_option("baseline", compare->baseline, "a trace, sweep, figure or hashes")->required();
   command->add_option("candidate", compare->candidate, "another of the same kind")->required();
   command
       ->add_option("--tolerance", compare->tolerances,
-                   "COLUMN=ABSOLUTE[,RELATIVE], * for every column; without it exact")
+                   "COLUMN=ABSOLUTE[,RELATIVE]; * for every column; default: exact")
       ->allow_extra_args(false);
   command->add_flag("--paired", compare->paired,
-                    "judge sweeps by paired tests over regions: single runs may differ");
-  command->add_option("--margin", compare->margin, "largest change of a share of runs that counts as none")
+                    "compare sweeps by paired tests over regions; single runs may differ");
+  command
+      ->add_option("--margin", compare->margin, "maximum change of a fraction of runs that counts as equal")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command
-      ->add_option("--shift-margin", compare->shift_margin,
-                   "the same for measures that are no events: of runs up less runs down, and of the mean")
+      ->add_option(
+          "--shift-margin", compare->shift_margin,
+          "the same for measures that are not events: runs that increased minus runs that decreased, and change of the mean")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--alpha", compare->alpha, "probability of calling a region changed when none is")
+  command
+      ->add_option("--alpha", compare->alpha,
+                   "significance level: probability of reporting a change where there is none")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--json", compare->json, "also write everything to this file");
   command->add_option("--junit", compare->junit, "also write JUnit's XML");
   command->add_option("--plot", compare->plot,
-                      "also write the deviation over time as a figure (HDF5, for scripts/plot)");
+                      "also write a figure of the deviation over time (HDF5, for scripts/plot)");
 
   auto [hash, hashes] = commands.add(
-      "hashes", "the running hash of a trace alone, to find where runs on two machines part", command_hashes);
+      "hashes", "extract the running hash of a trace, to find the first tick that differs on another machine",
+      command_hashes);
   hash->add_option("trace", hashes->trace, "a trace")->required();
   hash->add_option("--every", hashes->every, "keep every n-th tick");
   hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
@@ -143,40 +149,39 @@ void add_compare(Subcommands& commands) {
 
 void add_baseline(Subcommands& commands) {
   CLI::App* parent =
-      commands.app.add_subcommand("baseline", "stored results that later programs are held against");
+      commands.app.add_subcommand("baseline", "stored results that later versions are compared with");
   parent->require_subcommand(1);
   Subcommands below{*parent, commands.line, commands.act};
   auto [command, check] =
-      below.add("check", "make every stored result again and compare", command_baseline_check);
-  command->add_option("names", check->names, "some of them (default: all, and none may be missing)");
+      below.add("check", "run every stored result again and compare", command_baseline_check);
+  command->add_option("names", check->names, "names of baselines (default: all; none may be missing)");
   command->add_option("--folder", check->folder, "where they are")->capture_default_str();
   command->add_option("--json", check->json, "also write everything to this file");
   command->add_option("--junit", check->junit, "also write JUnit's XML");
 
   auto [other, bless] =
-      below.add("bless", "store a result, with the spread over builds", command_baseline_bless);
+      below.add("bless", "store a result with its spread over builds", command_baseline_bless);
   other->add_option("names", bless->names, "of the baselines, or all")->required();
-  other->add_option("--reason", bless->reason, "why these numbers are right");
+  other->add_option("--reason", bless->reason, "why the new numbers are correct");
   other->add_option("--run", bless->run,
                     "a new baseline: the experiment, a name or a JSON file in the folder");
   other->add_option("--sweep", bless->sweep, "a new baseline: the sweep");
   add_set(other, bless->overrides, "parameter=value of a new baseline");
   other->add_option("--other-build", bless->also, "a build of the same source by another compiler")
       ->allow_extra_args(false);
-  other->add_flag("--one-compiler", bless->one_compiler, "measure the spread without one");
+  other->add_flag("--one-compiler", bless->one_compiler, "measure the spread with this compiler only");
   other->add_option("--folder", bless->folder, "where to store")->capture_default_str();
 }
 
 void add_repro_and_verify(Subcommands& commands) {
   auto [command, repro] = commands.add(
-      "repro", "the command that makes a result again; with --run, does it and compares", command_repro);
+      "repro", "print the command that reproduces a result; with --run, run it and compare", command_repro);
   command->add_option("file", repro->file, "a trace, sweep or figure")->required();
-  command->add_flag("--run", repro->run, "make it again from the stored configuration and compare");
+  command->add_flag("--run", repro->run, "run it again from the stored configuration and compare");
   command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
 
   auto [other, verify] = commands.add(
-      "verify", "metamorphic checks of renderers: what must stay true when a scene is told differently",
-      command_verify);
+      "verify", "metamorphic checks: relations that must hold when a scene is transformed", command_verify);
   other->add_option("renderers", verify->renderers, "of the list (default: all of three degrees of freedom)");
   add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
   other->add_option("--junit", verify->junit, "also write JUnit's XML");
@@ -185,7 +190,9 @@ void add_repro_and_verify(Subcommands& commands) {
 void add_live(Subcommands& commands) {
   auto [command, live] =
       commands.add("live", "run an experiment in real time, with a sensor and a haptic device", command_live);
-  command->add_option("experiment", live->experiment, "a name of the list, a JSON file, or a live session")
+  command
+      ->add_option("experiment", live->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
       ->required();
   add_set(command, live->overrides, "parameter=value, for example safety.max_force_N=3");
   command->add_option("--device", live->device, "SCHEME:ADDRESS, see remote-touch devices")
@@ -194,13 +201,15 @@ void add_live(Subcommands& commands) {
       ->capture_default_str();
   command->add_option("--duration", live->duration_s, "seconds (default: until SIGINT)")
       ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--record", live->record, "the HDF5 file for what device and sensor tell");
+  command->add_option("--record", live->record, "record device and sensor to this HDF5 file");
   command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
-  command->add_option("--report", live->report,
-                      "the HDF5 file for times and counts, a figure for scripts/plot; also at SIGUSR1");
-  commands.add("devices", "sensors and haptic devices: what is compiled in, what is found, why not",
+  command->add_option(
+      "--report", live->report,
+      "write timing and counts to this HDF5 file (a figure for scripts/plot); also on SIGUSR1");
+  commands.add("devices", "list sensors and haptic devices: compiled in or not, found or why not",
                command_devices);
-  auto [other, jitter] = commands.add("jitter", "how punctual this machine's haptic loop is", command_jitter);
+  auto [other, jitter] =
+      commands.add("jitter", "measure the timing of the haptic loop on this machine", command_jitter);
   other->add_option("--duration", jitter->duration_s, "seconds")
       ->check(CLI::Range(0.01, 86400.0))
       ->capture_default_str();
@@ -219,7 +228,7 @@ InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   std::string known;
   for (const CLI::App* command : place->get_subcommands(nullptr))
     known += (known.empty() ? "" : ", ") + command->get_name();
-  return InputError(left.front(), "unknown; allowed " + known);
+  return InputError(left.front(), "unknown: expected " + known);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ void add_tolerance(const std::string& text, Tolerances& tolerances) {
   const auto refuse = [&] {
     throw InputError(
         "--tolerance " + text,
-        "allowed COLUMN=ABSOLUTE or COLUMN=ABSOLUTE,RELATIVE with numbers of 0 or more; * is every column");
+        "expected COLUMN=ABSOLUTE or COLUMN=ABSOLUTE,RELATIVE with numbers of 0 or more; * is every column");
   };
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0) refuse();
@@ -50,7 +50,7 @@ std::string normalised(const CompareRequest& request) {
 
 void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
   if (!request.plot.empty() && comparison.kind != "trace")
-    throw InputError("--plot " + request.plot, "of " + comparison.kind + "; allowed with two traces");
+    throw InputError("--plot " + request.plot, "of " + comparison.kind + ": expected with two traces");
 }
 
 void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {

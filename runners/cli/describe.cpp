@@ -129,36 +129,35 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_method(name);
   found |= describe_scene(name);
   if (name == "run") {
-    std::puts("run: what an experiment says beside its parts");
+    std::puts("run: parameters of the run itself");
     print_run_settings();
     found = true;
   }
   found |= describe_section<SensorFaults>(
-      "faults", "\"faults\" of an experiment: what the sensor makes of the frames of any scenario", name);
+      "faults", "\"faults\" of an experiment: sensor faults, for any scenario", name);
   found |= describe_section<DepthPipelineSettings>(
       "depth-pipeline",
       "\"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1", name);
   found |= describe_section<GuidanceSettings>(
       "guidance", "\"guidance\" of an experiment: the springs of fixtures with role = guidance, 7.3.2", name);
   found |= describe_section<SequenceStep>(
-      "sequence", "\"sequence\" of an experiment: a list of such steps, which lock and activate fixtures",
-      name);
+      "sequence", "\"sequence\" of an experiment: steps that enable and disable fixtures", name);
   found |= describe_section<OperatorSettings>(
       "operator",
       "\"operator\" of an experiment: a simulated hand that follows the trajectory and feels forces", name);
   found |= describe_section<MotorSettings>(
-      "device", "\"device\" of an experiment: which axes of the haptic device have motors", name);
+      "device", "\"device\" of an experiment: actuated axes of the haptic device", name);
   found |= describe_section<LiveSettings>(
       "live", "\"live\" of an experiment: where device and camera stand when it is run in real time", name);
   found |= describe_section<SafetyLimits>(
-      "safety", "\"safety\" of an experiment: what a haptic device may be told in real time", name);
+      "safety", "\"safety\" of an experiment: limits of the force on a real haptic device", name);
   found |= describe_tool(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())
     if (name == measure.name)
       found = std::printf("%s: a measure: %s, %s\n", measure.name, measure.meaning, measure.unit) > 0;
-  if (!found) throw InputError(name, "unknown; allowed a name that remote-touch list prints");
+  if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
   return kDone;
 }
 

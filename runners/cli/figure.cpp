@@ -23,7 +23,7 @@ std::vector<const FigureEntry*> chosen_figures(const std::vector<std::string>& n
   for (const std::string& name : names) {
     const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
     if (std::none_of(figures().begin(), figures().end(), is_named))
-      throw InputError("figure " + name, "unknown; allowed a name that remote-touch list prints");
+      throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
   }
   std::vector<const FigureEntry*> chosen;
   for (const FigureEntry& entry : figures()) {
@@ -108,7 +108,8 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
   std::error_code failure;
   std::filesystem::create_directories(request.folder, failure);
   if (failure)
-    throw InputError(request.folder, "cannot be made (" + failure.message() + "); allowed a writable folder");
+    throw InputError(request.folder,
+                     "cannot be made (" + failure.message() + "): expected a writable folder");
 
   const auto claims_file = std::filesystem::path(request.folder) / "claims.json";
   nlohmann::ordered_json claims = other_claims(claims_file, chosen);

@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 int command_hashes(const CommandLine&, const HashesRequest& request) {
-  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "allowed 1 or more");
+  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
   require_different_file(request.output, request.trace);
   require_writable(request.output);
   const StoredTrace trace(request.trace);

@@ -69,8 +69,9 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
               result.real_time.c_str(), result.ended.c_str());
   const LiveReport report = live_report(result.log, result.counts);
   if (result.force_scale < 1)
-    std::printf("  the device got %.3g of every force and torque, for its largest stiffness\n",
-                result.force_scale);
+    std::printf(
+        "    forces and torques were scaled by %.3g, so that no spring exceeds the maximum stiffness of the device\n",
+        result.force_scale);
   std::fputs(text(report).c_str(), stdout);
   if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
   const std::string sum = request.output.empty() ? digest(result.log.trace.columns())

@@ -37,7 +37,7 @@ const Kernels& chosen_kernels() {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
     if (isa <= best && kernels_for(isa).isa == std::string(requested)) return kernels_for(isa);
   throw InputError(std::string("REMOTE_TOUCH_ISA = ") + requested,
-                   std::string("allowed x86-64 up to ") + kernels_for(best).isa + " on this machine");
+                   std::string("expected x86-64 up to ") + kernels_for(best).isa + " on this machine");
 }
 
 // One line, whatever the user's names contain.
@@ -64,10 +64,10 @@ int main(int argc, char** argv) {
     line.rearm = &rearm_requested;
     const int code = run_command_line(argc, argv, line, chosen_kernels);
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
-      throw InputError("standard output", "cannot be written; allowed a place with room");
+      throw InputError("standard output", "cannot be written: expected a place with room");
     return code;
   } catch (const Interrupted&) {
-    complain("interrupted; nothing half-written was left behind");
+    complain("interrupted: no incomplete file is left");
     return kInterrupted;
   } catch (const std::bad_alloc&) {
     complain("out of memory");

@@ -25,13 +25,14 @@ ShardFile read_part(const std::string& file) {
   auto& attributes = part.stored.attributes;
   const auto shard =
       std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
-  if (shard == attributes.end()) throw InputError(file, "the result of a whole sweep; allowed shards of one");
+  if (shard == attributes.end())
+    throw InputError(file, "the result of a whole sweep: expected shards of one");
   part.shard = parse_shard(shard->second);
   attributes.erase(shard);
   const std::size_t pending = part.stored.result.runs_in(RunState::pending).size();
   if (pending > 0 || part.stored.in_progress)
     throw InputError(file, "not finished (" + std::to_string(pending) +
-                               " runs are left); allowed once its sweep command has ended");
+                               " runs are left): expected once its sweep command has ended");
   return part;
 }
 
@@ -43,11 +44,11 @@ void require_same_origin(const ShardFile& part, const ShardFile& first) {
       if (name != "input_digests" && name != "command" &&  // the way to one file may be written differently
           attribute(ours, name) != attribute(theirs, name))
         throw InputError(part.file, "has another " + name + " than " + first.file +
-                                        "; allowed shards of one sweep, made by one build");
+                                        ": expected shards of one sweep, made by one build");
   for (const auto& input :
        changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
     throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
-                                    first.file + ": " + input.before + "); allowed shards of one sweep");
+                                    first.file + ": " + input.before + "): expected shards of one sweep");
 }
 
 // Every shard once.
@@ -56,17 +57,17 @@ void require_complete(const std::vector<ShardFile>& parts) {
   std::map<int, std::string> seen;
   for (const ShardFile& part : parts) {
     if (part.shard.count != first.shard.count)
-      throw InputError(part.file, "is shard " + part.shard.text() + "; allowed shards of " +
+      throw InputError(part.file, "is shard " + part.shard.text() + ": expected shards of " +
                                       std::to_string(first.shard.count) + ", as " + first.file);
     require_same_origin(part, first);
     if (const auto [twin, is_new] = seen.emplace(part.shard.index, part.file); !is_new)
       throw InputError(part.file,
-                       "is shard " + part.shard.text() + ", as is " + twin->second + "; allowed once");
+                       "is shard " + part.shard.text() + ", as is " + twin->second + ": expected once");
   }
   for (int i = 1; i <= first.shard.count; ++i)
     if (seen.count(i) == 0)
       throw InputError("merge",
-                       "shard " + Shard{i, first.shard.count}.text() + " is missing; allowed all of them");
+                       "shard " + Shard{i, first.shard.count}.text() + " is missing: expected all of them");
 }
 
 void add(const ShardFile& part, SweepResult& whole) {
@@ -95,7 +96,7 @@ void require_nothing_more(const std::string& file, const SweepResult& whole) {
   for (std::size_t run = 0; run < there.result.run_count(); ++run)
     if (there.result.state[run] == RunState::done &&
         (run >= whole.run_count() || whole.state[run] != RunState::done))
-      throw InputError(file, "holds runs that the shards do not; allowed another file");
+      throw InputError(file, "holds runs that the shards do not: expected another file");
 }
 
 }  // namespace
@@ -105,7 +106,7 @@ int command_merge(const CommandLine&, const MergeRequest& request) {
   for (const std::string& file : request.shards) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, request.output, absent))
-      throw InputError(request.output, "is one of the shards; allowed another file");
+      throw InputError(request.output, "is one of the shards: expected another file");
     parts.push_back(read_part(file));
   }
   require_complete(parts);

@@ -31,7 +31,7 @@ std::size_t cell_of(const std::string& text, const SweepResult& result) {
   }
   bool fits = next == end + 1 && place.size() == result.axes.size();
   for (std::size_t i = 0; fits && i < place.size(); ++i) fits = place[i] < result.axes[i].length();
-  if (!fits) throw InputError("--cell " + text, "allowed " + allowed);
+  if (!fits) throw InputError("--cell " + text, "expected " + allowed);
   return result.cell_at(place);
 }
 
@@ -76,7 +76,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const std::size_t cell = cell_of(request.cell, result);
   if (request.replicate < 0 || request.replicate >= result.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
-                     "allowed 0 to " + std::to_string(result.replicates - 1));
+                     "expected 0 to " + std::to_string(result.replicates - 1));
   require_writable(request.output);
 
   Progress progress("replay", line.quiet);

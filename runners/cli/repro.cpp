@@ -66,7 +66,7 @@ class Repro {
 
   void write_config(const std::string& target) const {
     if (kind_ == "figure")
-      throw InputError("--config", "of a figure; allowed with a trace, a sweep or hashes");
+      throw InputError("--config", "of a figure: expected with a trace, a sweep or hashes");
     require_different_file(target, file_);
     const std::string text = of("config") + "\n";
     write_file_atomically(target, text.data(), text.size());
@@ -89,7 +89,7 @@ class Repro {
       : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {
     if (kind_ == "figure" && of("figure") == kScorecardFigure)
       throw InputError(file_, "is a scorecard, which " + of("command") +
-                                  " -o FOLDER makes again; allowed a file of its runs/");
+                                  " -o FOLDER makes again: expected a file of its runs/");
   }
 
   // A replay's command is that of its sweep, and then its own.
@@ -107,7 +107,7 @@ class Repro {
   void print_figure_command() const {
     std::vector<std::string> words = words_of(of("command"));
     if (words.size() < 3 || words[0] != "remote-touch" || (words[1] != "figure" && words[1] != "compare"))
-      return comment("no command of this program made it");
+      return comment("not made by a command of this program");
     const bool is_plot = words[1] == "compare";
     words.insert(words.end(), {is_plot ? "--plot" : "-o", is_plot ? "again.h5" : "again"});
     std::printf("%s\n", shell_command(words).c_str());
@@ -193,7 +193,7 @@ class Repro {
   ResultComparison sweep_again() const {
     const StoredSweep stored = read_sweep(file_);
     if (!of("shard").empty() || stored.in_progress)
-      throw InputError(file_, "is a part of a sweep; allowed a finished one, whole or merged");
+      throw InputError(file_, "is a part of a sweep: expected a finished one, whole or merged");
     const Sweep sweep = Sweep::from_json(of("config"), file_ + " config");
     SweepRunOptions options;
     options.kernels = line_.kernels, options.stop = line_.stop;

@@ -25,7 +25,7 @@ void make_folders(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder / part, failure);
     if (failure)
       throw InputError((folder / part).string(),
-                       "cannot be made (" + failure.message() + "); allowed a writable folder");
+                       "cannot be made (" + failure.message() + "): expected a writable folder");
   }
 }
 
@@ -45,11 +45,11 @@ void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan
   const Json wanted = Json::parse(configuration_of(plan));
   for (const char* kind : {"methods", "scenes"}) {
     if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
-      throw InputError(file.string(), "is no scorecard, and would be replaced; allowed another folder");
+      throw InputError(file.string(), "is not a scorecard and would be overwritten: expected another folder");
     for (const auto& item : stored[kind].items())
       if (!wanted.contains(kind) || !wanted[kind].contains(item.key()))
         throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
-                                            ", and would be replaced; allowed those and others too, or "
+                                            ", and would be replaced: expected those and others too, or "
                                             "another folder");
   }
 }

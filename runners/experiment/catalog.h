@@ -24,7 +24,7 @@ const Entry& find_entry(std::span<const Entry> entries, const std::string& name,
     if (name == entry.name) return entry;
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw InputError(path + " = \"" + name + "\"", "allowed " + known);
+  throw InputError(path + " = \"" + name + "\"", "expected " + known);
 }
 
 }  // namespace remote_touch

@@ -12,17 +12,17 @@ namespace remote_touch {
 Parameters parameters(RunSettings& s) {
   return {
       {"title", &s.title, 0, 0, "one line for lists"},
-      {"duration_s", &s.duration_s, 0, 86400, "simulated time; 0: as long as the trajectory lasts"},
+      {"duration_s", &s.duration_s, 0, 86400, "simulated time; 0: duration of the trajectory"},
       {"haptic_rate_hz", &s.haptic_rate_hz, 100, 10000, "haptic ticks per second, f_h of (4.16)"},
       {"frame_latency_s", &s.transport.latency_s, 0, 10,
-       "shortest time from the capture of a frame to its arrival"},
+       "minimum time from the capture of a frame to its arrival"},
       {"frame_jitter_s", &s.transport.jitter_s, 0, 10,
-       "up to so much is added to it, evenly spread and drawn for each frame; they may overtake each other"},
+       "maximum additional delay, uniformly distributed for each frame; frames may overtake each other"},
       {"frame_drop_probability", &s.transport.drop_probability, 0, 1,
-       "share of the frames that never arrive"},
-      {"seed", &s.key.seed, 0, 18446744073709551615.0, "key of all noise"},
+       "probability that a frame never arrives"},
+      {"seed", &s.key.seed, 0, 18446744073709551615.0, "seed of all noise"},
       {"cell", &s.key.cell, 0, 4294967295.0, "second key of the noise: the cell of a sweep"},
-      {"replicate", &s.key.replicate, 0, 4294967295.0, "third key of the noise: the repetition of a cell"},
+      {"replicate", &s.key.replicate, 0, 4294967295.0, "third key of the noise: the replicate of a cell"},
   };
 }
 
@@ -31,9 +31,9 @@ namespace {
 template <class Entry>
 Part<Entry> read_part(const Json& json, std::span<const Entry> entries, const std::string& path) {
   if (json.is_object() && json.contains("name") && !json["name"].is_string())
-    throw InputError(path + ".name = " + json["name"].dump(), "allowed a name that remote-touch list prints");
+    throw InputError(path + ".name = " + json["name"].dump(), "expected a name from `remote-touch list`");
   if (!json.is_object() || !json.contains("name"))
-    throw InputError(path, "missing; allowed {\"name\": ..., parameters}");
+    throw InputError(path, "missing: expected {\"name\": ..., parameters}");
   Part<Entry> part;
   part.name = json["name"].template get<std::string>();
   part.factory = find_entry(entries, part.name, path + ".name").make();
@@ -55,7 +55,7 @@ Json taken(Json& configuration, const std::string& key) {
 std::vector<Part<FixtureEntry>> read_fixtures(const Json& list) {
   std::vector<Part<FixtureEntry>> parts;
   if (list.is_null()) return parts;
-  if (!list.is_array()) throw InputError("fixtures", "allowed a list of {\"name\": ..., parameters}");
+  if (!list.is_array()) throw InputError("fixtures", "expected a list of {\"name\": ..., parameters}");
   for (std::size_t i = 0; i < list.size(); ++i)
     parts.push_back(read_part(list[i], fixtures(), "fixtures." + std::to_string(i)));
   return parts;
@@ -63,7 +63,7 @@ std::vector<Part<FixtureEntry>> read_fixtures(const Json& list) {
 
 template <class Settings>
 Settings read_settings(const Json& json, const std::string& path) {
-  if (!json.is_object()) throw InputError(path, "allowed {parameters}, or to leave it out");
+  if (!json.is_object()) throw InputError(path, "expected an object of parameters, or nothing");
   Settings settings;
   read_parameters(json, parameters(settings), path, false);
   const std::string problem = validate(settings);
@@ -82,7 +82,7 @@ std::optional<Settings> read_section(Json& configuration, const std::string& pat
 std::vector<SequenceStep> read_sequence(const Json& list) {
   std::vector<SequenceStep> steps;
   if (list.is_null()) return steps;
-  if (!list.is_array()) throw InputError("sequence", "allowed a list of {\"action\": ..., parameters}");
+  if (!list.is_array()) throw InputError("sequence", "expected a list of {\"action\": ..., parameters}");
   for (std::size_t i = 0; i < list.size(); ++i)
     steps.push_back(read_settings<SequenceStep>(list[i], "sequence." + std::to_string(i)));
   return steps;
@@ -118,7 +118,7 @@ Json part_json(const Part<Entry>& part) {
 Experiment Experiment::from_json(const std::string& text, const std::string& label,
                                  const std::vector<std::string>& overrides) {
   Json configuration = parse_json(text, label);
-  if (!configuration.is_object()) throw InputError(label, "not an object; allowed {\"scenario\": ..., ...}");
+  if (!configuration.is_object()) throw InputError(label, "not an object: expected {\"scenario\": ..., ...}");
   for (const std::string& assignment : overrides) apply_override(configuration, assignment);
   return from_json(std::move(configuration));
 }
@@ -141,13 +141,13 @@ Experiment Experiment::from_json(Json configuration) {
   const std::string problem = validate(experiment.fixture_values(), experiment.sequence_);
   if (!problem.empty()) throw InputError(problem);
   if (experiment.guidance_ && !experiment.has_guidance())
-    throw InputError("guidance", "allowed where a fixture has role = guidance");
+    throw InputError("guidance", "expected only when a fixture has role = guidance");
   if (experiment.has_guidance() && !experiment.guidance_) experiment.guidance_.emplace();
   for (std::size_t i = 0; i < experiment.sequence_.size(); ++i)
     if (!experiment.can_be_pressed(experiment.sequence_[i]))
       throw InputError(
           "sequence." + std::to_string(i) + ".button = " + std::to_string(experiment.sequence_[i].button),
-          "allowed a button that operator.presses presses, or any with a section live");
+          "expected a button of operator.presses (any button in experiments with a section live)");
   return experiment;
 }
 

@@ -1,5 +1,5 @@
-// What a catalog entry makes: settings that can be read, listed and checked, and then built into the thing
-// itself.
+// Factory of a catalog entry: settings that can be read, listed and validated, and from which the object is
+// built.
 #pragma once
 
 #include <memory>
@@ -22,8 +22,8 @@ template <class Seam, class... Arguments>
 class Factory {
  public:
   virtual ~Factory() = default;
-  virtual Parameters settings() = 0;                      // pointers into this object
-  virtual std::string validate() const = 0;               // "r1_m = 1: allowed ..."; empty: they fit together
+  virtual Parameters settings() = 0;         // pointers into this object
+  virtual std::string validate() const = 0;  // "r1_m = 1: expected ..."; empty: they fit together
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };

@@ -17,7 +17,7 @@ std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
 void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) const {
   if (depth) {
     if (!cloud.image)
-      throw InputError("depth_pipeline", "this scenario's frames are no depth images; allowed none");
+      throw InputError("depth_pipeline", "this scenario's frames are no depth images: expected none");
     depth->process(cloud);
   }
   frame.guidance = fixtures.targets(cloud, frame.captured_s);

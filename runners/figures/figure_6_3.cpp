@@ -114,7 +114,7 @@ Table summary_table(const std::vector<BoxRun>& runs) {
                                            {"active", "1", "most active constraints at once"},
                                            {"clusters", "1", "most 10 mm cells that touch at once"},
                                            {"penetration", "m", "deepest point at the end of a tick"},
-                                           {"force", "N", "largest force"},
+                                           {"force", "N", "maximum force"},
                                            {"exhausted", "1", "ticks that used up their detections"},
                                            {"unheld", "1", "ticks in which points touch without holding"}};
   Table table = table_of("runs", "both rules, points 3, 2 and 1 mm apart", columns, rows);
@@ -168,7 +168,7 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
                       max_gap_untouched_m(t), 1e-9, "m"));
   claim(
       claim_at_most(name, rule + "most constraints active at once", "6", max(t.active_constraints), 6, "1"));
-  claim(claim_at_most(name, rule + "share of ticks with a number that is not finite", "-",
+  claim(claim_at_most(name, rule + "fraction of ticks with a value that is not finite", "-",
                       non_finite_fraction(t), 0, "fraction"));
 }
 

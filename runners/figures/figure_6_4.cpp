@@ -211,7 +211,7 @@ Table summary_table(const std::vector<TouchRun>& runs) {
     return static_cast<double>(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1));
   });
   add("points of a frame without a normal, at most", "1", [&](T t) { return max(t.disabled_points); });
-  add("largest force", "N", [](T t) { return max_force_N(t); });
+  add("maximum force", "N", [](T t) { return max_force_N(t); });
   add("largest force jump at a frame", "N", [](T t) { return max_force_jump_N(t); });
   return rows.table("runs", "what happened in the three runs");
 }

@@ -17,14 +17,15 @@ Vec3 cut(const Vec3& v, double max_length) {
 
 Parameters parameters(MotorSettings& s) {
   return {
-      {"force_x", &s.force_x, 0, 0, "has a motor along the base frame's x"},
-      {"force_y", &s.force_y, 0, 0, "along its y"},
-      {"force_z", &s.force_z, 0, 0, "along its z"},
-      {"torque_x", &s.torque_x, 0, 0, "has a motor about the handle's x, which is the tool's"},
-      {"torque_y", &s.torque_y, 0, 0, "about its y"},
-      {"torque_z", &s.torque_z, 0, 0, "about its z"},
-      {"max_force_N", &s.max_force_N, 0, 1000, "of the device; 0: no limit"},
-      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "of the device; 0: no limit"},
+      {"force_x", &s.force_x, 0, 0, "the device can exert a force along x of the base frame"},
+      {"force_y", &s.force_y, 0, 0, "the device can exert a force along y"},
+      {"force_z", &s.force_z, 0, 0, "the device can exert a force along z"},
+      {"torque_x", &s.torque_x, 0, 0,
+       "the device can exert a torque about x of the handle, which is that of the tool"},
+      {"torque_y", &s.torque_y, 0, 0, "the device can exert a torque about y of the handle"},
+      {"torque_z", &s.torque_z, 0, 0, "the device can exert a torque about z of the handle"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum of the device; 0: no limit"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum of the device; 0: no limit"},
   };
 }
 

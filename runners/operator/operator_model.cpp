@@ -18,37 +18,37 @@ Vec3 next_velocity(const Vec3& velocity, const Vec3& force, double mass, double 
 
 Parameters parameters(OperatorSettings& s) {
   return {
-      {"mass_kg", &s.mass_kg, 0.01, 100, "of hand and handle"},
-      {"inertia_kg_m2", &s.inertia_kg_m2, 1e-5, 10, "of hand and handle, the same about all axes"},
+      {"mass_kg", &s.mass_kg, 0.01, 100, "mass of hand and handle"},
+      {"inertia_kg_m2", &s.inertia_kg_m2, 1e-5, 10,
+       "moment of inertia moment of inertia of hand and handle, the same about all axes"},
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
-       "of the spring from the intended place to the hand"},
-      {"damping_Ns_per_m", &s.damping_Ns_per_m, 0, 1000, "of the damper beside it"},
+       "stiffness of the spring from the intended position to the hand"},
+      {"damping_Ns_per_m", &s.damping_Ns_per_m, 0, 1000, "damping parallel to that spring"},
       {"rotational_stiffness_Nm_per_rad", &s.rotational_stiffness_Nm_per_rad, 0, 1000,
-       "of the spring from the intended orientation to the hand's"},
+       "stiffness of the rotational spring from the intended orientation to that of the hand"},
       {"rotational_damping_Nms_per_rad", &s.rotational_damping_Nms_per_rad, 0, 100,
-       "of the damper beside it"},
+       "damping parallel to that spring"},
       {"grip", Rows{{"time_s", "fraction"}, &s.grip}, 0, 86400,
-       "how much of the springs is there, 0 to 1: even between rows; 0 lets the device lead the hand; none: "
-       "always 1"},
+       "strength of these springs over time, 0 (the hand follows the device) to 1; linear between rows; no rows: always 1"},
       {"presses", Rows{{"time_s", "button", "duration_s"}, &s.presses}, 0, 86400,
-       "presses of the handle's buttons 0 to 31, of 0.01 s or more"},
+       "button presses: start, button 0 to 31, duration of at least 0.01 s"},
   };
 }
 
 std::string validate(const OperatorSettings& s) {
   const double t2 = kMaxTick_s * kMaxTick_s;
   if (s.stiffness_N_per_m * t2 >= 4 * s.mass_kg)
-    return "stiffness_N_per_m = " + std::to_string(s.stiffness_N_per_m) + ": allowed below " +
+    return "stiffness_N_per_m = " + std::to_string(s.stiffness_N_per_m) + ": expected below " +
            std::to_string(4 * s.mass_kg / t2) + " for this mass";
   if (s.rotational_stiffness_Nm_per_rad * t2 >= 4 * s.inertia_kg_m2)
     return "rotational_stiffness_Nm_per_rad = " + std::to_string(s.rotational_stiffness_Nm_per_rad) +
-           ": allowed below " + std::to_string(4 * s.inertia_kg_m2 / t2) + " for this inertia";
+           ": expected below " + std::to_string(4 * s.inertia_kg_m2 / t2) + " for this inertia";
   if (const std::string wrong = validate_schedule(s.grip, "grip", "fraction"); !wrong.empty()) return wrong;
   for (std::size_t i = 0; i < s.presses.size(); i += 3) {
     if (const double button = s.presses[i + 1]; button > 31 || button != static_cast<int>(button))
-      return "presses: button " + std::to_string(button) + ": allowed integers 0 to 31";
+      return "presses: button " + std::to_string(button) + ": expected integers 0 to 31";
     if (s.presses[i + 2] < kMaxTick_s)  // no tick might see it
-      return "presses: duration " + std::to_string(s.presses[i + 2]) + ": allowed 0.01 or more";
+      return "presses: duration " + std::to_string(s.presses[i + 2]) + ": expected 0.01 or more";
   }
   return {};
 }

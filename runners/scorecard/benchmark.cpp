@@ -17,26 +17,26 @@ namespace {
 Json read_object(const std::string& json, const std::string& label,
                  std::initializer_list<const char*> parts) {
   Json object = parse_json(json, label);
-  if (!object.is_object()) throw InputError(label, "not an object; allowed {...}");
+  if (!object.is_object()) throw InputError(label, "not an object: expected {...}");
   std::string known;
   for (const char* part : parts) known.append(known.empty() ? "" : ", ").append(part);
   for (const auto& item : object.items())
     if (std::find(parts.begin(), parts.end(), item.key()) == parts.end())
-      throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
+      throw InputError(label + ": " + item.key(), "unknown: expected " + known);
   return object;
 }
 
 std::string text_of(const Json& object, const char* part, const std::string& label) {
   const auto found = object.find(part);
   if (found == object.end() || !found->is_string())
-    throw InputError(label + ": " + part, "missing; allowed a text");
+    throw InputError(label + ": " + part, "missing: expected a text");
   return found->get<std::string>();
 }
 
 std::string object_of(const Json& object, const char* part, const std::string& label) {
   const auto found = object.find(part);
   if (found == object.end() || !found->is_object())
-    throw InputError(label + ": " + part, "missing; allowed {...}");
+    throw InputError(label + ": " + part, "missing: expected {...}");
   return found->dump();
 }
 
@@ -45,7 +45,7 @@ Better better_of(const Json& word, const std::string& label) {
   if (word == "smaller") return Better::smaller;
   if (word == "near_zero") return Better::near_zero;
   if (word == "reported") return Better::reported;
-  throw InputError(label + " = " + word.dump(), "allowed larger, smaller, near_zero, reported");
+  throw InputError(label + " = " + word.dump(), "expected larger, smaller, near_zero, reported");
 }
 
 Bound bound_of(const Json& json, const std::string& label) {
@@ -69,9 +69,9 @@ std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector
   for (const std::string& name : names) {
     const auto found = std::find_if(stored.begin(), stored.end(),
                                     [&](const EmbeddedText& text) { return name == text.name; });
-    if (found == stored.end()) throw InputError(std::string(kind) + " " + name, "unknown; allowed " + known);
+    if (found == stored.end()) throw InputError(std::string(kind) + " " + name, "unknown: expected " + known);
     if (!taken.insert(name).second)
-      throw InputError(std::string(kind) + " " + name, "comes twice; allowed once");
+      throw InputError(std::string(kind) + " " + name, "comes twice: expected once");
     items.push_back(read(name, found->json));
   }
   if (!names.empty()) return items;
@@ -119,7 +119,7 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
   scene.meaning = text_of(success, "meaning", rule);
   const auto bounds = success.find("bounds");
   if (bounds == success.end() || !bounds->is_array() || bounds->empty())
-    throw InputError(rule + ".bounds", "missing; allowed a list of {\"measure\", \"min\", \"max\"}");
+    throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
   for (const Json& bound : *bounds) scene.success.push_back(bound_of(bound, rule + ".bounds"));
   return scene;
 }
@@ -128,9 +128,9 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   const std::string label = "scene " + name + " with " + method.name;
   Json run = parse_json(experiment, label);
   if (run.contains("renderer"))
-    throw InputError("scene " + name + ": experiment.renderer", "set; allowed none, methods bring it");
+    throw InputError("scene " + name + ": experiment.renderer", "set: expected none, methods bring it");
   if (run.contains("seed"))
-    throw InputError("scene " + name + ": experiment.seed", "set; allowed none, the scorecard has its own");
+    throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.

@@ -16,7 +16,7 @@ std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::st
   std::error_code unreachable;
   if (!in || std::filesystem::is_directory(name_or_file, unreachable))
     throw InputError(name_or_file,
-                     "cannot be read; allowed " + kind + " name (see remote-touch list) or a JSON file");
+                     "cannot be read: expected " + kind + " name (see remote-touch list) or a JSON file");
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 

@@ -149,9 +149,9 @@ std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const st
   const auto nearest = std::min_element(
       parameters.begin(), parameters.end(),
       [&](const auto& a, const auto& b) { return edit_distance(key, a.name) < edit_distance(key, b.name); });
-  throw InputError(prefix + key, "unknown; " + (nearest == parameters.end()
-                                                    ? std::string("nothing is allowed here")
-                                                    : "the nearest allowed is " + prefix + nearest->name));
+  throw InputError(prefix + key,
+                   "unknown; " + (nearest == parameters.end() ? std::string("no parameters here")
+                                                              : "did you mean " + prefix + nearest->name));
 }
 
 // As JSON, for a message: shortened, and safe to print whatever the value holds.
@@ -165,7 +165,7 @@ std::string shown(const Json& value) {
 // Throws Json::exception, or InputError for a value nested so deep that printing it would exhaust the stack.
 Json parse_shallow(const std::string& text, const std::string& label) {
   const auto refuse_deep = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > 64) throw InputError(label, "nested too deep; allowed 64 levels");
+    if (depth > 64) throw InputError(label, "nested too deep: expected 64 levels");
     return true;
   };
   return Json::parse(text, refuse_deep);
@@ -182,7 +182,7 @@ std::string value_text(const Parameter& parameter) {
 
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
                      bool skip_name) {
-  if (!object.is_object()) throw InputError(path, "not an object; allowed {\"name\": ..., ...}");
+  if (!object.is_object()) throw InputError(path, "not an object: expected {\"name\": ..., ...}");
   const std::string prefix = path.empty() ? "" : path + ".";
   for (const auto& item : object.items()) {
     const std::string& key = item.key();
@@ -192,7 +192,7 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });
     if (found == parameters.end()) refuse_key(key, parameters, prefix);
     if (!std::visit(Reader{value, *found}, found->value))
-      throw InputError(prefix + key + " = " + shown(value), "allowed " + allowed(*found));
+      throw InputError(prefix + key + " = " + shown(value), "expected " + allowed(*found));
   }
 }
 
@@ -208,14 +208,14 @@ Json parse_json(const std::string& text, const std::string& label) {
     std::string what = error.what();
     if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
     std::replace(what.begin(), what.end(), '\n', ' ');
-    throw InputError(label, what + "; allowed JSON with finite numbers");
+    throw InputError(label, what + ": expected JSON with finite numbers");
   }
 }
 
 void apply_override(Json& configuration, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw InputError("--set " + assignment, "allowed key=value, for example renderer.r1_m=0.004");
+    throw InputError("--set " + assignment, "expected key=value, for example renderer.r1_m=0.004");
   const std::string text = assignment.substr(equals + 1);
   Json value;
   try {
@@ -233,7 +233,8 @@ Json& element(Json& list, const std::string& key, const std::string& subject) {
   std::size_t i = 0;
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
   if (error != std::errc() || end != key.data() + key.size() || i >= list.size())
-    throw InputError(subject, "allowed 0 to " + std::to_string(list.size() - 1) + " for its place in a list");
+    throw InputError(subject,
+                     "expected 0 to " + std::to_string(list.size() - 1) + " for its place in a list");
   return list[i];
 }
 

@@ -14,12 +14,13 @@ namespace {
 std::size_t tick_count(const Experiment& experiment, const Trajectory& trajectory) {
   const RunSettings& settings = experiment.settings();
   const double duration = settings.duration_s > 0 ? settings.duration_s : trajectory.duration_s();
-  if (!(duration > 0)) throw InputError("duration_s = 0", "the trajectory has no end; allowed above 0");
+  if (!(duration > 0))
+    throw InputError("duration_s = 0", "the trajectory has no end: expected a duration above 0");
   // A millionth of a tick is rounding, not a tick more.
   const double ticks = std::ceil(duration * settings.haptic_rate_hz - 1e-6);
   if (!(ticks >= 1))
     throw InputError("duration_s = " + std::to_string(duration),
-                     "shorter than a tick; allowed 1 tick or more");
+                     "shorter than a tick: expected 1 tick or more");
   return static_cast<std::size_t>(ticks);
 }
 

@@ -9,11 +9,11 @@ namespace remote_touch {
 
 Parameters parameters(RefineSettings& r) {
   return {
-      {"measure", &r.measure, 0, 0, "the measure whose probability is wanted"},
-      {"threshold", &r.threshold, -1e12, 1e12, "the event: the measure is above this"},
-      {"budget", &r.budget, 1, 1e7, "runs in all, the first round included"},
-      {"max_replicates", &r.max_replicates, 1, 100000, "runs of a cell at most"},
-      {"levels", &r.levels, 0, 10, "how often the steps of the axes may be halved"},
+      {"measure", &r.measure, 0, 0, "measure that defines the event"},
+      {"threshold", &r.threshold, -1e12, 1e12, "the event happens when the measure is above this"},
+      {"budget", &r.budget, 1, 1e7, "maximum number of runs, including the first round"},
+      {"max_replicates", &r.max_replicates, 1, 100000, "maximum number of replicates of a cell"},
+      {"levels", &r.levels, 0, 10, "how many times the spacing of the axes may be halved"},
   };
 }
 
@@ -26,9 +26,9 @@ std::optional<RefineSettings> read_refine(const Json& json, const std::vector<Me
   const auto is_it = [&](const Measure& measure) { return refine.measure == measure.name; };
   if (std::none_of(chosen.begin(), chosen.end(), is_it))
     throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",
-                     "allowed one of the sweep's measures");
+                     "expected one of the sweep's measures");
   if (refine.max_replicates < replicates)
-    throw InputError(label + ": refine.max_replicates", "allowed at least replicates");
+    throw InputError(label + ": refine.max_replicates", "expected at least replicates");
   return refine;
 }
 

@@ -23,13 +23,13 @@ std::optional<int> variable(const char* name, std::optional<int> otherwise = std
   const char* text = std::getenv(name);
   if (text == nullptr || *text == '\0') return otherwise;
   const auto value = integer_value(text);
-  if (!value || *value < 0) throw InputError(std::string(name) + " = " + text, "allowed integers from 0");
+  if (!value || *value < 0) throw InputError(std::string(name) + " = " + text, "expected integers from 0");
   return value;
 }
 
 Shard checked(int index, int count, const std::string& source) {
   if (count < 1 || count > kMaxShards || index < 1 || index > count)
-    throw InputError(source, "allowed i/N with 1 <= i <= N <= " + std::to_string(kMaxShards));
+    throw InputError(source, "expected i/N with 1 <= i <= N <= " + std::to_string(kMaxShards));
   return {index, count};
 }
 

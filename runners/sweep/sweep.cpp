@@ -53,7 +53,7 @@ void refuse_unknown_part(const Json& json, const std::string& label) {
   std::string known;
   for (const char* part : kParts) known += (known.empty() ? "" : ", ") + std::string(part);
   for (const auto& item : json.items())
-    if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown; allowed " + known);
+    if (!is_of_sweep(item.key())) throw InputError(label + ": " + item.key(), "unknown: expected " + known);
 }
 
 // A path in a sweep's file is meant from the file's own folder.
@@ -66,10 +66,10 @@ std::string beside(const std::string& sweep_file, const std::string& experiment)
 Json read_experiment(const Json& json, const std::string& label, const std::vector<std::string>& overrides) {
   const auto found = json.find("experiment");
   if (found == json.end() || !(found->is_string() || found->is_object()))
-    throw InputError(label + ": experiment", "missing; allowed a name, a file or an experiment itself");
+    throw InputError(label + ": experiment", "missing: expected a name, a file or an experiment itself");
   std::vector<std::string> settings;
   if (const auto set = json.find("set"); set != json.end()) {
-    if (!set->is_object()) throw InputError(label + ": set", "allowed {\"path\": value, ...}");
+    if (!set->is_object()) throw InputError(label + ": set", "expected {\"path\": value, ...}");
     for (const auto& item : set->items()) settings.push_back(item.key() + "=" + item.value().dump());
   }
   settings.insert(settings.end(), overrides.begin(), overrides.end());
@@ -77,15 +77,14 @@ Json read_experiment(const Json& json, const std::string& label, const std::vect
                                     ? Experiment::load(beside(label, found->get<std::string>()), settings)
                                     : Experiment::from_json(found->dump(), label + ": experiment", settings);
   if (experiment.settings().key.cell != 0 || experiment.settings().key.replicate != 0)
-    throw InputError(label + ": experiment",
-                     "cell or replicate is set; allowed 0, the sweep sets them itself");
+    throw InputError(label + ": experiment", "cell and replicate are set by the sweep: expected 0");
   return parse_json(experiment.to_json(), label);
 }
 
 std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int levels) {
   const auto found = json.find("axes");
   if (found == json.end() || !found->is_array() || found->empty() || found->size() > 8)
-    throw InputError(label + ": axes", "allowed a list of 1 to 8 axes");
+    throw InputError(label + ": axes", "expected a list of 1 to 8 axes");
   std::vector<SweepAxis> axes;
   for (std::size_t i = 0; i < found->size(); ++i)
     axes.push_back(read_axis((*found)[i], label + ": axes." + std::to_string(i), levels));
@@ -97,7 +96,7 @@ void refuse_axes_among(const std::vector<std::string>& assignments, const std::v
     for (const std::string& assignment : assignments)
       if (assignment.rfind(axis.parameter + "=", 0) == 0)
         throw InputError("--set " + assignment,
-                         "an axis of this sweep; allowed another parameter, or --set axes...");
+                         "an axis of this sweep: expected another parameter, or --set axes...");
 }
 
 std::vector<Measure> read_measures(const Json& json, const std::string& label) {
@@ -107,7 +106,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   std::string known;
   for (const Measure& measure : measures()) known += (known.empty() ? "" : ", ") + std::string(measure.name);
   const auto refuse = [&](const std::string& what) {
-    throw InputError(label + ": measures", what + "; allowed a list of different names of " + known);
+    throw InputError(label + ": measures", what + ": expected a list of different names of " + known);
   };
   if (!found->is_array() || found->empty()) refuse("no list");
   for (const Json& name : *found) {
@@ -136,15 +135,14 @@ void Sweep::Definition::check_axes(const std::string& label) const {
   std::size_t runs = static_cast<std::size_t>(refine ? refine->max_replicates : replicates);
   for (const SweepAxis& axis : axes) {
     if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
-      throw InputError(label + ": axis " + axis.parameter,
-                       "the sweep sets it itself; allowed another parameter");
+      throw InputError(label + ": axis " + axis.parameter, "set by the sweep: expected another parameter");
     if (!names.insert(axis.name()).second)
       throw InputError(label + ": axis " + axis.parameter,
-                       "its name " + axis.name() + " is taken; allowed once");
+                       "its name " + axis.name() + " is taken: expected once");
     runs *= axis.values.size();
     if (runs > kMaxRuns)
-      throw InputError(label,
-                       "more than " + std::to_string(kMaxRuns) + " runs; allowed fewer values or replicates");
+      throw InputError(
+          label, "more than " + std::to_string(kMaxRuns) + " runs: expected fewer values or replicates");
   }
 }
 
@@ -154,7 +152,7 @@ void Sweep::Definition::check_budget(const std::string& label) const {
   for (const SweepAxis& axis : axes) first_round *= (axis.values.size() - 1) / axis.stride + 1;
   if (refine->budget < first_round)
     throw InputError(label + ": refine.budget = " + std::to_string(refine->budget),
-                     "allowed at least the " + std::to_string(first_round) + " runs of the first round");
+                     "expected at least the " + std::to_string(first_round) + " runs of the first round");
 }
 
 // In parallel, because a large map has many; the first cell in order is the one that is named. What a cell
@@ -188,7 +186,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
                        const std::vector<std::string>& overrides) {
   Json json = parse_json(text, label);
   if (!json.is_object())
-    throw InputError(label, "not an object; allowed {\"experiment\": ..., \"axes\": [...]}");
+    throw InputError(label, "not an object: expected {\"experiment\": ..., \"axes\": [...]}");
   std::vector<std::string> of_experiment;
   for (const std::string& assignment : overrides)
     if (is_of_sweep(assignment))

@@ -60,12 +60,12 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   RangeAxis axis;
   for (const char* needed : {"from", "to", "count"})
     if (!json.contains(needed))
-      throw InputError(label, std::string(needed) + " is missing; allowed from, to and count, or values");
+      throw InputError(label, std::string(needed) + " is missing: expected from, to and count, or values");
   read_parameters(json, parameters(axis), label, false);
   if (axis.count > 1 && axis.from == axis.to)
-    throw InputError(label + ".to = " + Json(axis.to).dump(), "allowed another value than from");
+    throw InputError(label + ".to = " + Json(axis.to).dump(), "expected a value different from \"from\"");
   if (axis.scale == Scale::log && !(axis.from > 0 && axis.to > 0))
-    throw InputError(label + ".scale = \"log\"", "allowed for from and to above 0");
+    throw InputError(label + ".scale = \"log\"", "expected for from and to above 0");
   SweepAxis result{axis.parameter, {}, std::size_t{1} << levels, {}};
   const std::size_t count = static_cast<std::size_t>(axis.count - 1) * result.stride + 1;
   if (count > kMaxValues)
@@ -75,7 +75,7 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
     result.values.push_back(value_of(axis, i, count));
     if (i > 0 && result.values[i] == result.values[i - 1])
       throw InputError(label + ".count = " + std::to_string(axis.count),
-                       "neighbouring values are equal; allowed fewer between from and to");
+                       "neighbouring values are equal: expected fewer between from and to");
   }
   Json definition = Json::object();
   write_parameters(parameters(axis), definition);
@@ -95,13 +95,13 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   read_parameters(rest, known, label, false);
   const Json& values = json["values"];
   if (!values.is_array() || values.empty() || values.size() > kMaxValues)
-    throw InputError(label + ".values", "allowed a list of 1 to " + std::to_string(kMaxValues) + " values");
+    throw InputError(label + ".values", "expected a list of 1 to " + std::to_string(kMaxValues) + " values");
   std::set<std::string> different;  // as they are named in a result
   for (const Json& value : values)
     if (text_of(value).empty() || !different.insert(text_of(value)).second)
       throw InputError(label + ".values",
-                       value.dump() + (text_of(value).empty() ? " is empty; allowed names"
-                                                              : " comes twice; allowed once"));
+                       value.dump() + (text_of(value).empty() ? " is empty: expected names"
+                                                              : " comes twice: expected once"));
   const Json definition = {{"parameter", parameter}, {"values", values}};
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }
@@ -139,10 +139,10 @@ Column SweepAxis::column() const {
 SweepAxis read_axis(const Json& json, const std::string& label, int levels) {
   if (!json.is_object() || !json.contains("parameter"))
     throw InputError(label,
-                     "allowed {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...} or values");
+                     "expected {\"parameter\": ..., \"from\": ..., \"to\": ..., \"count\": ...} or values");
   SweepAxis axis = json.contains("values") ? list_axis(json, label) : range_axis(json, label, levels);
   if (axis.parameter.empty() || axis.name().empty())
-    throw InputError(label + ".parameter = \"" + axis.parameter + "\"", "allowed the path of a parameter");
+    throw InputError(label + ".parameter = \"" + axis.parameter + "\"", "expected the path of a parameter");
   return axis;
 }
 

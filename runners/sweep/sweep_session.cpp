@@ -22,7 +22,7 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
                   const TextAttributes& ours) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(file.string(),
-                     what + "; allowed a file of the same sweep, shard and build, or a new file");
+                     what + ": expected a file of the same sweep, shard and build, or a new file");
   };
   if (attribute(theirs, "config") != attribute(ours, "config"))
     refuse("is of another configuration, first in " + first_difference(theirs, ours));
@@ -43,7 +43,7 @@ void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, 
         if (input.path == in_one_line(part.path))
           throw InputError(file.string(), "has runs on another recording " + input.path + " (" +
                                               input.before + "; now " + input.now +
-                                              "); allowed the same recording, or a new file");
+                                              "): expected the same recording, or a new file");
 }
 
 void set_attribute(TextAttributes& attributes, const std::string& name, const std::string& value) {
@@ -55,7 +55,7 @@ void set_attribute(TextAttributes& attributes, const std::string& name, const st
 void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
   if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
       earlier.round.size() != result.round.size())
-    throw InputError(file.string(), "damaged (its arrays do not fit its configuration); allowed a new file");
+    throw InputError(file.string(), "damaged (its arrays do not fit its configuration): expected a new file");
   for (std::size_t i = 0; i < result.measures.size(); ++i)
     result.measures[i].values = std::move(earlier.measures[i].values);
   for (std::size_t run = 0; run < result.run_count(); ++run)

@@ -5,7 +5,7 @@ namespace remote_touch {
 Parameters parameters(LoadedSpheres::Settings& s) {
   Parameters all = parameters(s.tool);
   all.push_back({"max_tool_leaves", &s.leaves, kMinLeaves, kMaxLeaves,
-                 "spheres of the tool at most, 7.4: fewer stand farther out of its surface"});
+                 "maximum number of spheres of the tool, 7.4; fewer spheres are less accurate"});
   for (Parameter& p : region_parameters(s.motion)) all.push_back(std::move(p));
   return all;
 }
@@ -14,7 +14,7 @@ std::string validate(const LoadedSpheres::Settings& s) {
   if (const std::string tool = validate(s.tool); !tool.empty()) return tool;
   // PairChoice lets go what no motion of half the look-ahead can run into.
   if (2 * s.motion.max_step_m > s.motion.look_ahead_m)
-    return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) + ": allowed twice max_step_m or more";
+    return "look_ahead_m = " + std::to_string(s.motion.look_ahead_m) + ": expected twice max_step_m or more";
   return validate(s.motion);
 }
 

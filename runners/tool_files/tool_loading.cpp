@@ -28,7 +28,7 @@ fs::path find_mesh(const std::string& name) {
   } catch (const MissingRecording&) {
     const char* data = std::getenv("REMOTE_TOUCH_DATA");
     throw MissingRecording("renderer.tool_mesh = " + name,
-                           "no such tool; allowed " + names_of_built_in() +
+                           "no such tool: expected " + names_of_built_in() +
                                ", or an OBJ, PLY or STL file here or below REMOTE_TOUCH_DATA" +
                                (data != nullptr ? std::string(" = ") + data : " (not set)"));
   }
@@ -39,20 +39,21 @@ fs::path find_mesh(const std::string& name) {
 Parameters parameters(ToolSettings& s) {
   return {
       {"tool_mesh", &s.mesh, 0, 0, "tool: " + names_of_built_in() + "; or a closed mesh, OBJ, PLY or STL"},
-      {"tool_size_m", &s.size_m, 0, 10, "longest side of the tool's box; 0: the mesh is in metres"},
+      {"tool_size_m", &s.size_m, 0, 10, "longest side of the tool's bounding box; 0: the mesh is in metres"},
       {"tool_voxel_m", &s.voxel_m, 1e-5, 0.1, "size of the tool's voxels, 6.2.2"},
-      {"tool_repair", &s.repair, 0, 0, "take a mesh that is not closed: weld, orient, fill holes"},
+      {"tool_repair", &s.repair, 0, 0,
+       "repair a mesh that is not closed: weld vertices, orient faces, fill holes"},
   };
 }
 
 std::string validate(const ToolSettings& s) {
   if (s.mesh.empty())
-    return "tool_mesh = \"\": allowed " + names_of_built_in() + ", or an OBJ, PLY or STL file";
+    return "tool_mesh = \"\": expected " + names_of_built_in() + ", or an OBJ, PLY or STL file";
   if (find_generated_tool(s.mesh) == nullptr && !is_mesh_file(s.mesh))
-    return "tool_mesh = " + s.mesh + ": allowed " + names_of_built_in() + ", or an OBJ, PLY or STL file";
+    return "tool_mesh = " + s.mesh + ": expected " + names_of_built_in() + ", or an OBJ, PLY or STL file";
   if (s.size_m > 0 && s.size_m < 2 * s.voxel_m)
     return "tool_size_m = " + std::to_string(s.size_m) +
-           ": allowed two voxels (tool_voxel_m = " + std::to_string(s.voxel_m) + ") or more, or 0";
+           ": expected two voxels (tool_voxel_m = " + std::to_string(s.voxel_m) + ") or more, or 0";
   return {};
 }
 

@@ -18,17 +18,18 @@ Parameters parameters(FollowSurface::Settings& s) {
   return {
       {"from_m", &s.from_m, -100, 100, "start; its height is not used"},
       {"to_m", &s.to_m, -100, 100, "end; its height is not used"},
-      {"depth_m", &s.depth_m, 0, 1, "how far inside the surface the HIP stays"},
+      {"depth_m", &s.depth_m, 0, 1, "depth of the HIP below the surface"},
       {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
       {"clearance_m", &s.clearance_m, 0, 10,
-       "how far above the surface the motion begins, ends and passes steps"},
-      {"step_m", &s.step_m, 0, 100, "a height difference larger than this within step_margin_m is a step"},
-      {"step_margin_m", &s.step_margin_m, 1e-4, 1, "how far before and behind a step the HIP is lifted"},
+       "height above the surface at the start, at the end and over steps"},
+      {"step_m", &s.step_m, 0, 100, "height difference within step_margin_m above which there is a step"},
+      {"step_margin_m", &s.step_margin_m, 1e-4, 1,
+       "distance before and after a step at which the HIP is lifted"},
   };
 }
 
 std::string validate(const FollowSurface::Settings& s) {
-  return s.from_m == s.to_m ? "to_m: allowed different from from_m" : "";
+  return s.from_m == s.to_m ? "to_m: expected different from from_m" : "";
 }
 
 namespace {
@@ -76,7 +77,7 @@ FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path
   }
   if (!std::isfinite(heights.front()))
     throw InputError("trajectory.name = follow-surface",
-                     "the scenario has no surface height; allowed with a height field");
+                     "the scenario has no surface height: expected a height field");
   const std::vector<double> depths = inside(heights, path.norm() / pieces, s.depth_m);
   const std::vector<double> tops = step_tops(heights, path.norm() / pieces, s);
   const auto at_height = [&](std::size_t i, double y) { return Vec3(places[i].x(), y, places[i].z()); };

@@ -14,23 +14,24 @@ Parameters parameters(ImageScan::Settings& s) {
   return {
       {"row", &s.row, -1, 4095, "image row; -1: the middle of the nearest large object"},
       {"first_column", &s.first_column, -1, 4095,
-       "first column; -1: as far left as the depth stays within span_m"},
+       "first image column; -1: as far left as the depth stays within span_m"},
       {"last_column", &s.last_column, -1, 4095,
-       "last column; -1: as far right as the depth stays within span_m"},
-      {"depth_m", &s.depth_m, -1, 1, "how far behind the seen surface the HIP stays, along the viewing ray"},
+       "last image column; -1: as far right as the depth stays within span_m"},
+      {"depth_m", &s.depth_m, -1, 1,
+       "depth of the HIP behind the surface of the first frame, along the viewing ray"},
       {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
-      {"clearance_m", &s.clearance_m, 0, 10, "how far in front of the surface the motion begins and ends"},
+      {"clearance_m", &s.clearance_m, 0, 10, "distance in front of the surface at the start and at the end"},
       {"span_m", &s.span_m, 1e-3, 100,
-       "the scan ends where the depth differs more than this from the object's"},
+       "the scan ends where the depth differs by more than this from that of the object"},
       {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
-       "a larger step from pixel to pixel within margin_m is an edge; doubled up to twice if all is"},
-      {"margin_m", &s.margin_m, 1e-3, 1, "the HIP stays this far from holes and edges"},
+       "depth difference of neighbouring pixels within margin_m above which there is an edge; doubled up to twice if no pixel is left"},
+      {"margin_m", &s.margin_m, 1e-3, 1, "minimum distance of the HIP from holes and depth edges"},
   };
 }
 
 std::string validate(const ImageScan::Settings& s) {
   const bool reversed = s.first_column >= 0 && s.last_column >= 0 && s.first_column >= s.last_column;
-  return reversed ? "first_column = " + std::to_string(s.first_column) + ": allowed below last_column" : "";
+  return reversed ? "first_column = " + std::to_string(s.first_column) + ": expected below last_column" : "";
 }
 
 namespace {
@@ -68,7 +69,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
   const PointCloud cloud = scenario.cloud(0);
   if (!cloud.image)
     throw InputError("trajectory.name = image-scan",
-                     "the frames are not organised images; allowed with a camera");
+                     "the frames are not images: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   const DepthImage image = depth_image(cloud);
   const NearestObject object = nearest_large_object(image, camera);
@@ -76,7 +77,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
   if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
         "trajectory.row, first_column, last_column",
-        "allowed below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
+        "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
 
   // A coarse sensor steps further from pixel to pixel than a proxy can bridge; better a rough scan than none.
   std::vector<double> depth;
@@ -92,7 +93,7 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::
   }
   if (patches_.empty())
     throw InputError("trajectory.row = " + std::to_string(row_),
-                     "nothing there was measured without holes; allowed another row or a smaller margin_m");
+                     "no surface without holes in this row: expected another row or a smaller margin_m");
 
   const auto place = [&](int u, double offset) {
     return Vec3(cloud.image->X_WC * unproject(camera, u, row_, depth[static_cast<std::size_t>(u)] + offset));

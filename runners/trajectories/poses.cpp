@@ -25,20 +25,18 @@ Parameters parameters(Poses::Settings& s) {
   return {
       {"poses", Rows{{"x_m", "y_m", "z_m", "rx_deg", "ry_deg", "rz_deg", "duration_s"}, &s.poses}, -1000,
        1000,
-       "poses to visit: place, rotation vector in the world frame, duration of the way there; 0 jumps. The "
-       "first is where the motion starts: its duration is not used. A way turns by less than 180 degrees, "
-       "the shorter way round: for more, put a pose between"}};
+       "poses: position, rotation vector (axis times angle, world frame) and duration of the motion to it; 0 jumps. The first pose is the start; its duration is ignored. A motion rotates by less than 180 degrees, in the shorter direction; for more, insert a pose"}};
 }
 
 std::string validate(const Poses::Settings& s) {
-  if (s.poses.empty()) return "poses = []: allowed one row or more";
+  if (s.poses.empty()) return "poses = []: expected one row or more";
   for (std::size_t i = 0; i + kColumns <= s.poses.size(); i += kColumns) {
     const double* const row = s.poses.data() + i;
-    if (row[6] < 0) return "poses: a duration of " + std::to_string(row[6]) + ": allowed 0 or more";
+    if (row[6] < 0) return "poses: a duration of " + std::to_string(row[6]) + ": expected 0 or more";
     if (i > 0 && row[6] > 0 &&
         rotation_to(pose(row - kColumns), pose(row)).norm() > kHalfRotation_deg * kRadiansPerDegree)
       return "poses: row " + std::to_string(i / kColumns) +
-             " is half a turn from the one before: allowed less, the way there is not unique";
+             "  is rotated by 180 degrees from the previous one: expected less, the direction of rotation is ambiguous";
   }
   return "";
 }

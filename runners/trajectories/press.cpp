@@ -9,17 +9,17 @@ namespace remote_touch {
 Parameters parameters(Press::Settings& s) {
   return {
       {"start_m", &s.start_m, -100, 100, "where the device waits"},
-      {"press_at_s", &s.press_at_s, 0, 1e6, "when it begins to press"},
-      {"depth_m", &s.depth_m, -1, 1, "how far below the true surface it then stays"},
+      {"press_at_s", &s.press_at_s, 0, 1e6, "time at which the press starts"},
+      {"depth_m", &s.depth_m, -1, 1, "depth below the true surface"},
       {"per_frame", &s.per_frame, 0, 1,
-       "follow the surface as the newest frame has it, or as it moves between frames"},
+       "true: follow the surface of the newest frame; false: follow it as it moves between frames"},
   };
 }
 
 Press::Press(const Settings& settings, const Scenario& scenario) : settings_(settings), scenario_(scenario) {
   if (!std::isfinite(scenario.surface_height(settings.start_m.x(), settings.start_m.z(), 0)))
     throw InputError("trajectory.name = press",
-                     "the scenario has no surface height; allowed with a height field");
+                     "the scenario has no surface height: expected a height field");
 }
 
 DeviceState Press::at(double time_s) const {

@@ -30,20 +30,20 @@ double slowest_rate(const RandomWalk::Settings& s) {
 
 Parameters parameters(RandomWalk::Settings& s) {
   return {
-      {"centre_m", &s.centre_m, -100, 100, "middle of the box that the device stays in"},
-      {"extent_m", &s.extent_m, 0, 100, "of the box, from its middle"},
-      {"max_rotation_deg", &s.max_rotation_deg, 0, 180, "the device turns by no more than this"},
-      {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "the device is never faster"},
-      {"seed", &s.seed, 0, 18446744073709551615.0, "another motion for every seed"},
-      {"duration_s", &s.duration_s, 1e-3, 1e5, "the device then rests"},
+      {"centre_m", &s.centre_m, -100, 100, "centre of the box that the device stays in"},
+      {"extent_m", &s.extent_m, 0, 100, "half size of the box"},
+      {"max_rotation_deg", &s.max_rotation_deg, 0, 180, "maximum rotation"},
+      {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "maximum speed"},
+      {"seed", &s.seed, 0, 18446744073709551615.0, "seed of the motion"},
+      {"duration_s", &s.duration_s, 1e-3, 1e5, "duration of the motion; the device then stops"},
   };
 }
 
 std::string validate(const RandomWalk::Settings& s) {
-  if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: allowed above 0 along one axis or more";
+  if (!(s.extent_m.norm() > 0)) return "extent_m = 0, 0, 0: expected above 0 along one axis or more";
   return slowest_rate(s) * s.duration_s < 1e5
              ? ""
-             : "extent_m is too small for speed_m_per_s and duration_s: allowed fewer than 15000 rounds";
+             : "extent_m is too small for speed_m_per_s and duration_s: expected fewer than 15000 oscillations";
 }
 
 RandomWalk::RandomWalk(const Settings& settings, const Scenario&)

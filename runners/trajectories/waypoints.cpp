@@ -5,15 +5,14 @@ namespace remote_touch {
 Parameters parameters(Waypoints::Settings& s) {
   return {
       {"waypoints", Rows{{"x_m", "y_m", "z_m", "speed_m_per_s"}, &s.waypoints}, -100, 100,
-       "points to visit, each with the speed of the way there; speed 0 jumps. The first is where the motion "
-       "starts: its speed is not used"}};
+       "positions, each with the speed of the motion to it; 0 jumps. The first is the start; its speed is ignored"}};
 }
 
 std::string validate(const Waypoints::Settings& s) {
   for (std::size_t i = 3; i < s.waypoints.size(); i += 4)
     if (s.waypoints[i] < 0)
-      return "waypoints: a speed of " + std::to_string(s.waypoints[i]) + ": allowed 0 or more";
-  return s.waypoints.empty() ? "waypoints = []: allowed one row or more" : "";
+      return "waypoints: a speed of " + std::to_string(s.waypoints[i]) + ": expected 0 or more";
+  return s.waypoints.empty() ? "waypoints = []: expected one row or more" : "";
 }
 
 Waypoints::Waypoints(const Settings& settings, const Scenario&)

@@ -40,7 +40,7 @@ Parameters parameters(BeatingHeart::Settings& s) {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
       {"rate_per_min", &s.rate_per_min, 1, 600, "beats per minute"},
       {"amplitude_m", &s.amplitude_m, 0, 0.015,
-       "how far the organ's top sinks in every beat; 0 keeps it at rest"},
+       "amplitude of the motion of the organ's top in each beat; 0: no motion"},
   };
   const Parameters camera = parameters(s.camera);
   list.insert(list.end(), camera.begin(), camera.end());

@@ -20,17 +20,19 @@ Parameters parameters(DepthCameraSettings& s) {
       {"focal_px", &s.focal_px, 1, 10000,
        "focal length, both axes; the principal point is the image's middle"},
       {"camera_position_m", &s.camera_position_m, -10, 10, "position of the camera"},
-      {"target_position_m", &s.target_position_m, -10, 10, "point that the optical axis passes through"},
-      {"noise_per_m", &s.noise_per_m, 0, 0.1, "depth noise: standard deviation = this times z^2"},
-      {"quantisation_per_m", &s.quantisation_per_m, 0, 0.1, "depth step = this times z^2; 0 switches it off"},
-      {"edge_jump_m", &s.edge_jump_m, 1e-4, 10, "a depth difference larger than this is an edge"},
-      {"hole_px", &s.hole_px, 0, 16, "no depth within so many pixels of an edge"},
+      {"target_position_m", &s.target_position_m, -10, 10, "point that the camera looks at"},
+      {"noise_per_m", &s.noise_per_m, 0, 0.1, "depth noise: standard deviation = this value times z^2"},
+      {"quantisation_per_m", &s.quantisation_per_m, 0, 0.1,
+       "depth quantisation: step = this value times z^2; 0: off"},
+      {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
+       "depth difference between neighbouring pixels above which there is a depth edge"},
+      {"hole_px", &s.hole_px, 0, 16, "number of pixels without depth on each side of a depth edge"},
   };
 }
 
 std::string validate(const DepthCameraSettings& s) {
   const bool same = (s.target_position_m - s.camera_position_m).norm() < kSamePlace_m;
-  return same ? "camera_position_m and target_position_m: allowed not to be equal" : "";
+  return same ? "camera_position_m and target_position_m: expected not to be equal" : "";
 }
 
 RigidTransform look_at(const Vec3& from, const Vec3& to) {

@@ -33,14 +33,15 @@ Parameters parameters(ValveTank::Settings& s) {
   Parameters list = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"},
       {"left_valve_position_m", &s.left_valve_position_m, -2, 2,
-       "centre of the left valve's wheel; z from the wall"},
+       "centre of the wheel of the left valve; z is the distance from the wall"},
       {"right_valve_position_m", &s.right_valve_position_m, -2, 2, "centre of the right valve's wheel"},
       {"ring_radius_m", &s.ring_radius_m, 0.02, 0.2,
        "radius of the wheels' rings, to the middle of the tube"},
       {"left_hue_deg", &s.left_hue_deg, 0, 360, "hue of the left valve's paint: 0 red"},
       {"right_hue_deg", &s.right_hue_deg, 0, 360,
        "hue of the right valve's paint: 46 yellow, which turns towards green in the water"},
-      {"turbidity_per_m", &s.turbidity_per_m, 0, 20, "attenuation of light in the water, beta; 0: clear"},
+      {"turbidity_per_m", &s.turbidity_per_m, 0, 20,
+       "attenuation coefficient beta of the water; 0: clear water"},
       {"colour_noise", &s.colour_noise, 0, 128, "standard deviation of each colour channel, 0 to 255"},
       {"dropout_probability", &s.dropout_probability, 0, 1,
        "probability that a pixel has no depth in clear water"},
@@ -52,10 +53,10 @@ Parameters parameters(ValveTank::Settings& s) {
 
 std::string validate(const ValveTank::Settings& s) {
   if (std::min(s.left_valve_position_m.z(), s.right_valve_position_m.z()) <= Handwheel::kHubHalfLength_m)
-    return "left_valve_position_m and right_valve_position_m: allowed with z above " +
+    return "left_valve_position_m and right_valve_position_m: expected with z above " +
            std::to_string(Handwheel::kHubHalfLength_m) + ", in front of the wall";
   if (s.camera.camera_position_m.z() <= 0)
-    return "camera_position_m: allowed with z above 0, in front of the wall";
+    return "camera_position_m: expected with z above 0, in front of the wall";
   return validate(s.camera);
 }
 

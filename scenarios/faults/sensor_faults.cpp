@@ -55,33 +55,34 @@ std::vector<double> readout(const PointCloud& cloud) {
 Parameters parameters(SensorFaults& s) {
   return {
       {"view_direction", &s.view_direction, -1, 1,
-       "the way the sensor looks; of an image the ray of each pixel counts instead"},
+       "viewing direction of the sensor; for images the ray of each pixel is used instead"},
       {"repeat_probability", &s.repeat_probability, 0, 1,
-       "of the frames, which show what the one before them showed"},
+       "probability that a frame repeats the previous one"},
       {"rolling_shutter_s", &s.rolling_shutter_s, 0, 10,
-       "time in which rows along z (of an image: its rows) are read, the last at the capture; moves points by "
-       "the change of the true distance, so only where a truth is known that moves between frames"},
-      {"flying_probability", &s.flying_probability, 0, 1, "of the points, which are moved along the view"},
+       "rolling shutter: time from reading the first row to the last; needs a scene whose true surface is known between frames"},
+      {"flying_probability", &s.flying_probability, 0, 1,
+       "probability that a point is moved along the viewing direction"},
       {"max_flying_distance_m", &s.max_flying_distance_m, 0, 100,
-       "how far at most, either way, evenly spread"},
+       "maximum displacement of such a point in either direction, uniformly distributed"},
       {"outlier_probability", &s.outlier_probability, 0, 1,
-       "of the points, which are put anywhere along the view"},
+       "probability that a point is an outlier anywhere along the viewing direction"},
       {"max_outlier_distance_m", &s.max_outlier_distance_m, 0, 100,
-       "within this of their place, evenly spread"},
-      {"quantisation_m", &s.quantisation_m, 0, 1,
-       "the coordinate along the view is a multiple of this; 0: any"},
+       "maximum distance of an outlier from its true place, uniformly distributed"},
+      {"quantisation_m", &s.quantisation_m, 0, 1, "depth is rounded to multiples of this; 0: not rounded"},
       {"hole_fraction", &s.hole_fraction, 0, 1,
-       "of the points, which are lost in round holes, elsewhere in each frame"},
+       "fraction of the points that are lost in round holes, which are elsewhere in each frame"},
       {"hole_radius_m", &s.hole_radius_m, 1e-4, 10,
-       "of a hole, across the view (of an image: at its middle)"},
-      {"dropout_probability", &s.dropout_probability, 0, 1, "of the points, which are lost one by one"},
-      {"late_probability", &s.late_probability, 0, 1, "of the frames, which come late and may be overtaken"},
-      {"late_delay_s", &s.late_delay_s, 0, 100, "how late they are"},
+       "radius of a hole, perpendicular to the viewing direction"},
+      {"dropout_probability", &s.dropout_probability, 0, 1,
+       "probability that a point is lost, independently of others"},
+      {"late_probability", &s.late_probability, 0, 1,
+       "probability that a frame is late; later frames may overtake it"},
+      {"late_delay_s", &s.late_delay_s, 0, 100, "additional delay of a late frame"},
   };
 }
 
 std::string validate(const SensorFaults& s) {
-  return s.view_direction.norm() < 0.001 ? "view_direction: allowed 0.001 or longer" : "";
+  return s.view_direction.norm() < 0.001 ? "view_direction: expected 0.001 or longer" : "";
 }
 
 FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,

@@ -9,12 +9,12 @@ Parameters parameters(ImageMask::Settings& s) {
   Parameters list = parameters(s.values);
   list.push_back(
       {"path", &s.path, 0, 0,
-       "a PNG as large as the frames; pixels that are not black are picked, 16 bits a channel are not read"});
+       "PNG file of the size of the frames; points at pixels that are not black are selected; up to 8 bits a channel"});
   return list;
 }
 
 std::string validate(const ImageMask::Settings& s) {
-  if (s.path.empty()) return "path = \"\": allowed a PNG file";
+  if (s.path.empty()) return "path = \"\": expected a PNG file";
   return validate(s.values);
 }
 
@@ -28,11 +28,12 @@ ImageMask::ImageMask(const Settings& settings)
       mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
 
 std::vector<double> ImageMask::weights(const PointCloud& cloud) const {
-  if (!cloud.image) throw InputError("image-mask", "the frame is no image; allowed with a camera");
+  if (!cloud.image)
+    throw InputError("image-mask", "the frame is not an image: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
   if (camera.width != width_ || camera.height != height_)
     throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +
-                                " pixels; allowed as many as the frames: " + std::to_string(camera.width) +
+                                " pixels: expected as many as the frames: " + std::to_string(camera.width) +
                                 " x " + std::to_string(camera.height));
   std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)

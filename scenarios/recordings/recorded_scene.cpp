@@ -17,22 +17,24 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"path", &s.path, 0, 0, "recording folder, TUM folder, folder of PCD files, or one PCD file"},
       {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
-      {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0, "what follows the last frame"},
+      {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0,
+       "after the last frame: hold it, loop from the first, or ping_pong back and forth"},
       {"frame_rate_hz", &s.frame_rate_hz, 0, 10000, "frames per second; 0: as recorded"},
-      {"max_depth_m", &s.max_depth_m, 0.01, 100, "depth beyond which a measurement is discarded"},
-      {"truth_radius_m", &s.truth_radius_m, 1e-4, 1, "size of the patch that stands for the true surface"},
+      {"max_depth_m", &s.max_depth_m, 0.01, 100, "maximum depth; measurements beyond it are discarded"},
+      {"truth_radius_m", &s.truth_radius_m, 1e-4, 1,
+       "radius of the patch whose plane is used as true surface"},
       {"camera_position_m", &s.camera_position_m, -100, 100,
-       "where the camera is in the base frame: its registration, 6.2.1"},
+       "position of the camera in the base frame (registration, 6.2.1)"},
       {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
-       "rotation vector of the camera in the base frame; zero: x right, y down, z forward"},
+       "rotation vector (axis times angle) of the camera in the base frame; zero: x right, y down, z forward"},
   };
 }
 
 std::string validate(const RecordedScene::Settings& s) {
-  if (s.path.empty()) return "path = \"\": allowed a recording folder or a PCD file";
+  if (s.path.empty()) return "path = \"\": expected a recording folder or a PCD file";
   if (s.last_frame >= 0 && s.last_frame < s.first_frame)
     return "last_frame = " + std::to_string(s.last_frame) +
-           ": allowed first_frame = " + std::to_string(s.first_frame) + " or more, or -1";
+           ": expected first_frame = " + std::to_string(s.first_frame) + " or more, or -1";
   return {};
 }
 

@@ -44,14 +44,14 @@ nlohmann::json parse_camera_file(const fs::path& file) {
   try {
     // The keys hold plain values. Deeper nesting is no camera, and deep enough it would exhaust the stack.
     const auto refuse_deep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-      if (depth > 4) refuse(file, "is nested too deep: allowed an object of plain values");
+      if (depth > 4) refuse(file, "is nested too deep: expected an object of plain values");
       return true;
     };
     nlohmann::json json = nlohmann::json::parse(stream, refuse_deep);
-    if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": allowed object");
+    if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": expected object");
     for (const auto& [key, value] : json.items()) {
       if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
-      refuse(file, "key " + nlohmann::json(key).dump() + ": allowed " + kKeys.dump());
+      refuse(file, "key " + nlohmann::json(key).dump() + ": expected " + kKeys.dump());
     }
     return json;
   } catch (const nlohmann::json::exception& error) {
@@ -65,7 +65,7 @@ double number(const fs::path& file, const nlohmann::json& json, const std::strin
   if (found == json.end()) refuse(file, "has no key '" + key + "'");
   const double value = found->is_number() ? found->get<double>() : std::nan("");
   if (!std::isfinite(value) || (positive && value <= 0)) {
-    refuse(file, key + " = " + found->dump() + ": allowed a number" + (positive ? " above 0" : ""));
+    refuse(file, key + " = " + found->dump() + ": expected a number" + (positive ? " above 0" : ""));
   }
   return value;
 }
@@ -75,7 +75,7 @@ int pixel_count(const fs::path& file, const nlohmann::json& json, const std::str
   constexpr double kMaxCount = 65535;
   const double value = number(file, json, key, true);
   if (value == std::floor(value) && value <= kMaxCount) return static_cast<int>(value);
-  refuse(file, key + " = " + json[key].dump() + ": allowed an integer from 1 to 65535");
+  refuse(file, key + " = " + json[key].dump() + ": expected an integer from 1 to 65535");
 }
 
 // Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
@@ -83,7 +83,7 @@ double frame_rate(const fs::path& file, const nlohmann::json& json) {
   constexpr double kMax_hz = 10000;
   const double value = number(file, json, "frame_rate_hz", true);
   if (value <= kMax_hz) return value;
-  refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": allowed above 0 to 10000");
+  refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": expected above 0 to 10000");
 }
 
 // The intrinsics and the scale, all needed; colour_registered is optional.
@@ -96,7 +96,7 @@ CameraFile read_camera(const fs::path& file, const nlohmann::json& json) {
   result.metres_per_unit = number(file, json, "depth_scale_m", true);
   if (const auto found = json.find("colour_registered"); found != json.end()) {
     if (!found->is_boolean()) {
-      refuse(file, "colour_registered = " + found->dump() + ": allowed true, false");
+      refuse(file, "colour_registered = " + found->dump() + ": expected true, false");
     }
     result.colour_registered = found->get<bool>();
   }
@@ -205,19 +205,19 @@ RecordingIndex index_any(const fs::path& path) {
   if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
-                     ": allowed a recording folder or a .pcd file");
+                     ": expected a recording folder or a .pcd file");
   }
   if (fs::exists(path / "depth.txt")) return index_tum(path);
   if (fs::is_directory(path / "depth")) return index_depth_folder(path);
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
   if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
-  refuse(path, "is no recording: allowed a folder that holds depth.txt (TUM), depth/*.png or *.pcd");
+  refuse(path, "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png or *.pcd");
 }
 
 // Pixel (u, v) must be point v * width + u in depth, colour and camera alike.
 void check_size(const fs::path& file, int width, int height, const CameraIntrinsics& camera) {
   if (width == camera.width && height == camera.height) return;
-  refuse(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: allowed " +
+  refuse(file, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels: expected " +
                    std::to_string(camera.width) + " x " + std::to_string(camera.height) +
                    ", as the camera has");
 }

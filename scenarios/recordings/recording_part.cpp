@@ -15,7 +15,7 @@ std::string find_recording(const std::string& path) {
   throw MissingRecording(
       path,
       std::string(
-          "no such recording, image or mesh; allowed a folder or file here or below REMOTE_TOUCH_DATA") +
+          "no such recording, image or mesh: expected a folder or file here or below $REMOTE_TOUCH_DATA") +
           (data != nullptr ? std::string(" = ") + data : " (not set)"));
 }
 
@@ -24,7 +24,7 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
   const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
   if (part.first_frame >= available || last >= available)
     throw InputError(part.path, "first_frame = " + std::to_string(part.first_frame) +
-                                    ", last_frame = " + std::to_string(part.last_frame) + ": allowed 0 to " +
+                                    ", last_frame = " + std::to_string(part.last_frame) + ": expected 0 to " +
                                     std::to_string(available - 1));
   return {part.first_frame, last};
 }

@@ -17,7 +17,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
   double stamp_s = 0;
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
   if (error == std::errc() && end == stamp.data() + stamp.size() && std::isfinite(stamp_s)) return stamp_s;
-  throw InputError(where, "timestamp '" + stamp.substr(0, 32) + "': allowed a number of seconds");
+  throw InputError(where, "timestamp '" + stamp.substr(0, 32) + "': expected a number of seconds");
 }
 
 }  // namespace
@@ -35,10 +35,10 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
     const std::string where = list.string() + ":" + std::to_string(line_number);
     const double stamp_s = read_stamp(where, stamp);
     if (!(words >> name) || words >> surplus) {
-      throw InputError(where, "'" + line.substr(0, 64) + "': allowed one timestamp and one file name");
+      throw InputError(where, "'" + line.substr(0, 64) + "': expected one timestamp and one file name");
     }
     if (!files.empty() && stamp_s <= files.back().stamp_s) {
-      throw InputError(where, "timestamp " + stamp + ": allowed above that of the line before");
+      throw InputError(where, "timestamp " + stamp + ": expected above that of the line before");
     }
     files.push_back({stamp_s, list.parent_path() / name});
     const std::filesystem::path& file = files.back().file;

@@ -9,8 +9,8 @@ Parameters parameters(FlatGrid::Settings& s) {
   list.push_back({"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"});
   list.push_back(
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"});
-  list.push_back(
-      {"redraw_noise", &s.redraw_noise, 0, 1, "new noise for every frame, or the first frame's for all"});
+  list.push_back({"redraw_noise", &s.redraw_noise, 0, 1,
+                  "true: new noise in every frame; false: the same noise in all"});
   return list;
 }
 

@@ -13,7 +13,7 @@ Parameters parameters(ListedPoints::Settings& s) {
 }
 
 std::string validate(const ListedPoints::Settings& s) {
-  return s.points.empty() ? "points: allowed one or more" : "";
+  return s.points.empty() ? "points: expected one or more" : "";
 }
 
 ListedPoints::ListedPoints(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}

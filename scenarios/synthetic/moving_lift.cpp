@@ -20,7 +20,7 @@ Parameters parameters(MovingLift::Settings& s) {
       {"acceleration_frames", &s.acceleration_frames, 0, 100000,
        "updates with acceleration; the cloud then rests"},
       {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
-       "distances are to the plane of the newest frame captured, or to the plane as it moves between frames"},
+       "true surface: newest_frame: the plane at the last capture; moving: the plane as it moves between frames"},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;

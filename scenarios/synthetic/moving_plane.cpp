@@ -9,11 +9,11 @@ Parameters parameters(MovingPlane::Settings& s) {
   Parameters list = parameters(s.grid);
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
-      {"start_height_m", &s.start_height_m, -100, 100, "height of the plane while it waits"},
-      {"wait_s", &s.wait_s, 0, 1e4, "how long it waits"},
-      {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "of the rise, when it begins"},
+      {"start_height_m", &s.start_height_m, -100, 100, "initial height of the plane"},
+      {"wait_s", &s.wait_s, 0, 1e4, "waiting time before it rises"},
+      {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "initial speed of the rise"},
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, 0, 1000, "of the rise"},
-      {"rise_height_m", &s.rise_height_m, 0, 100, "how far it rises; it then rests"},
+      {"rise_height_m", &s.rise_height_m, 0, 100, "height of the rise; the plane then stops"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
        "standard deviation of the noise on x, y and z, redrawn per frame"},
   };
@@ -25,7 +25,7 @@ std::string validate(const MovingPlane::Settings& s) {
   const bool moves = s.speed_m_per_s > 0 || s.acceleration_m_per_s2 > 0;
   return moves || s.rise_height_m == 0
              ? ""
-             : "rise_height_m: a plane without speed_m_per_s and acceleration_m_per_s2 does not rise: allowed 0";
+             : "rise_height_m: a plane without speed_m_per_s and acceleration_m_per_s2 does not rise: expected 0";
 }
 
 MovingPlane::MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels)

@@ -35,15 +35,14 @@ Parameters parameters(MovingShape::Settings& s) {
   add(parameters(s.shape));
   add(parameters(s.motion));
   add({
-      {"sheets", &s.sheets, 1, 5, "parallel surfaces, the first on top; the truth is about the first"},
+      {"sheets", &s.sheets, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
       {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
-      {"redraw_noise", &s.redraw_noise, 0, 1, "new noise for every frame, or the first frame's for all"},
-      {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000,
-       "from this frame on there are no points; -1: never"},
+      {"redraw_noise", &s.redraw_noise, 0, 1, "true: new noise in every frame; false: the same noise in all"},
+      {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000, "first frame of those without points; -1: never"},
       {"empty_frame", &s.empty_frame, -1, 1000000, "this one frame has no points; -1: none"},
       {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
-       "distances are to the surface as the newest frame shows it, or as it moves between frames"},
+       "true surface: newest_frame: as at the last capture; moving: as it moves between frames"},
   });
   return list;
 }
@@ -52,7 +51,7 @@ std::string validate(const MovingShape::Settings& s) {
   const double steepest = steepest_deg(s.shape) + std::abs(s.motion.tilt_deg) + s.motion.rock_deg;
   if (steepest < 89) return {};
   return "tilt_deg = " + std::to_string(s.motion.tilt_deg) +
-         ": allowed so that slope, tilt and rocking stay below 89 degrees together, not " +
+         ": expected so that slope, tilt and rocking stay below 89 degrees together, not " +
          std::to_string(steepest);
 }
 

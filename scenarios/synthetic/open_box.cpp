@@ -6,7 +6,7 @@ Parameters parameters(OpenBox::Settings& s) {
   return {
       {"size_m", &s.size_m, 0, 10, "inner size along x, y (up) and z; the middle of the box is the origin"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
-      {"floor", &s.floor, 0, 1, "five sides, or the four walls only"},
+      {"floor", &s.floor, 0, 1, "true: four walls and a floor; false: the four walls only"},
   };
 }
 

@@ -29,7 +29,7 @@ class OpenBox final : public PanelScene {
 
 Parameters parameters(OpenBox::Settings& s);
 inline std::string validate(const OpenBox::Settings& s) {
-  return s.size_m.minCoeff() > 0 ? "" : "size_m: allowed above 0 along every axis";
+  return s.size_m.minCoeff() > 0 ? "" : "size_m: expected above 0 along every axis";
 }
 
 }  // namespace remote_touch

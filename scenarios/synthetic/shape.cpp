@@ -17,10 +17,10 @@ constexpr double kFullRotation = 360 * kRadiansPerDegree;
 Parameters parameters(Shape::Settings& s) {
   return {
       {"shape", choice(s.kind, {"flat", "ridge", "valley", "sphere", "ripple"}), 0, 0,
-       "flat, a roof or its mirror along z, the upper half of a ball seen from above, or a sine along x"},
-      {"slope_deg", &s.slope_deg, 0, 80, "of the flanks of a ridge or valley, which meet at x = 0"},
+       "flat; ridge or valley along z; sphere: upper half of a ball; ripple: sine along x"},
+      {"slope_deg", &s.slope_deg, 0, 80, "slope of the flanks of a ridge or valley"},
       {"radius_m", &s.radius_m, 0.001, 10, "of the sphere, whose top is the origin"},
-      {"amplitude_m", &s.amplitude_m, 0, 1, "of the ripple, half its height"},
+      {"amplitude_m", &s.amplitude_m, 0, 1, "amplitude of the ripple"},
       {"period_m", &s.period_m, 0.001, 10, "of the ripple along x"},
   };
 }

@@ -19,7 +19,7 @@ double swing(double turns) {
 
 Parameters parameters(ShapeMotion::Settings& s) {
   return {
-      {"tilt_deg", &s.tilt_deg, -80, 80, "turn about z through the shape's origin, from x to y"},
+      {"tilt_deg", &s.tilt_deg, -80, 80, "rotation about z through the origin of the shape, from x to y"},
       {"start_depth_m", &s.start_depth_m, -10, 10,
        "the first frame lies this far below y = 0; above it where negative"},
       {"start_velocity_m_per_s", &s.start_velocity_m_per_s, -10, 10,
@@ -28,12 +28,12 @@ Parameters parameters(ShapeMotion::Settings& s) {
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, -1000, 1000, "acceleration a after the rise"},
       {"acceleration_frames", &s.acceleration_frames, 0, 100000,
        "updates with acceleration; the lift then rests"},
-      {"slide_velocity_m_per_s", &s.slide_velocity_m_per_s, -10, 10, "along x, on top of the lift"},
-      {"shake_amplitude_m", &s.shake_amplitude_m, 0, 1, "of a vertical sine on top of the lift"},
+      {"slide_velocity_m_per_s", &s.slide_velocity_m_per_s, -10, 10, "velocity along x, added to the lift"},
+      {"shake_amplitude_m", &s.shake_amplitude_m, 0, 1, "amplitude of a vertical sine, added to the lift"},
       {"shake_hz", &s.shake_hz, 0, 1000, "frequency of the shake"},
-      {"rock_deg", &s.rock_deg, 0, 45, "amplitude of a sine about z through the shape's origin, on the tilt"},
+      {"rock_deg", &s.rock_deg, 0, 45, "amplitude of the rocking about z, added to the tilt"},
       {"rock_hz", &s.rock_hz, 0, 1000, "frequency of the rocking"},
-      {"motion_from_s", &s.motion_from_s, 0, 10000, "when slide, shake and rocking begin"},
+      {"motion_from_s", &s.motion_from_s, 0, 10000, "time at which slide, shake and rocking start"},
   };
 }
 

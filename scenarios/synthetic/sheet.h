@@ -30,7 +30,7 @@ class Sheet final : public PanelScene {
 
 Parameters parameters(Sheet::Settings& s);
 inline std::string validate(const Sheet::Settings& s) {
-  return s.normal.norm() > 0 ? "" : "normal = 0, 0, 0: allowed any direction";
+  return s.normal.norm() > 0 ? "" : "normal = 0, 0, 0: expected any direction";
 }
 
 }  // namespace remote_touch

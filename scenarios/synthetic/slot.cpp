@@ -8,9 +8,7 @@ Parameters parameters(Slot::Settings& s) {
       {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
       {"height_m", &s.height_m, 1e-3, 10, "of the walls, along y"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
-      {"phase_m", &s.phase_m, -1, 1,
-       "shift of the columns along x; x = +-0.035 is half way between two at 0.0005 for a spacing of 0.001, "
-       "0 for 0.002, 0.0025 for 0.005"},
+      {"phase_m", &s.phase_m, -1, 1, "offset of the points along x"},
   };
 }
 

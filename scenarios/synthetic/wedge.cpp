@@ -13,14 +13,15 @@ Parameters parameters(Wedge::Settings& s) {
       {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
       {"height_m", &s.height_m, 1e-3, 10, "of the walls, along their slope"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
-      {"open_gap_m", &s.open_gap_m, 0, 10, "between the lower edges, at first and at last"},
-      {"closed_gap_m", &s.closed_gap_m, 0, 10, "between the lower edges, while closed; 0: they meet"},
-      {"close_start_s", &s.close_start_s, 0, 1e4, "the walls begin to close, evenly"},
-      {"close_end_s", &s.close_end_s, 0, 1e4, "the walls are closed"},
-      {"open_start_s", &s.open_start_s, 0, 1e4, "the walls begin to open again"},
-      {"open_end_s", &s.open_end_s, 0, 1e4, "the walls are open, and rest"},
+      {"open_gap_m", &s.open_gap_m, 0, 10, "distance of the lower edges while open"},
+      {"closed_gap_m", &s.closed_gap_m, 0, 10, "distance of the lower edges while closed; 0: they meet"},
+      {"close_start_s", &s.close_start_s, 0, 1e4, "time at which the walls start to close"},
+      {"close_end_s", &s.close_end_s, 0, 1e4, "time at which the walls are closed"},
+      {"open_start_s", &s.open_start_s, 0, 1e4, "time at which the walls start to open again"},
+      {"open_end_s", &s.open_end_s, 0, 1e4, "time at which the walls are open again"},
       {"offset_m", &s.offset_m, -10, 10, "shift of the wedge along z"},
-      {"tilt_deg", &s.tilt_deg, -90, 90, "turn of the wedge about x, through the middle of its lower edges"},
+      {"tilt_deg", &s.tilt_deg, -90, 90,
+       "rotation of the wedge about x, through the middle of its lower edges"},
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
   };
 }
@@ -29,7 +30,7 @@ std::string validate(const Wedge::Settings& s) {
   const double times[] = {s.close_start_s, s.close_end_s, s.open_start_s, s.open_end_s};
   return std::is_sorted(std::begin(times), std::end(times))
              ? ""
-             : "close_start_s, close_end_s, open_start_s, open_end_s: allowed only in this order";
+             : "close_start_s, close_end_s, open_start_s, open_end_s: expected only in this order";
 }
 
 Wedge::Wedge(const Settings& settings, const NoiseKey&, const Kernels&)

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr const char* kUsage =
-    "allowed run|sweep NAME [--set PARAMETER=VALUE]... -o FILE, baseline check --folder FOLDER";
+    "expected run|sweep NAME [--set PARAMETER=VALUE]... -o FILE, baseline check --folder FOLDER";
 
 struct Words {
   std::vector<std::string> plain, overrides;

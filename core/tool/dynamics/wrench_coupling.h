@@ -15,7 +15,7 @@ struct Wrench {
 // A spring between two poses.
 struct WrenchSpring {
   double stiffness_N_per_m = 0;
-  double gyration_radius_m = 0;  // the rotational stiffness is stiffness times its square
+  double gyration_radius_m = 0;  // rotational stiffness = stiffness times this squared
   double max_force_N = 0, max_torque_Nm = 0;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
 };

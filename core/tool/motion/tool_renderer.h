@@ -12,8 +12,8 @@
 
 namespace remote_touch {
 
-// The device holds the tool by its centre of mass. Points without a normal cannot hold the tool under the
-// printed rule, and as points only under the other; their number is in the output.
+// The device holds the tool at its centre of mass. Points without a normal are ignored by the printed rule,
+// and are points instead of disks under look-ahead; the output counts them.
 class ToolRenderer final : public Renderer {
  public:
   // pre: validate(parameters) is empty.

@@ -86,14 +86,14 @@ void drop_unused(TriangleMesh& mesh) {
 void check_and_mend(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& report,
                     const std::string& name) {
   report.check = check_mesh(mesh);
-  if (!report.check.readable()) refuse(name, text(report.check) + "; allowed a closed mesh of triangles");
+  if (!report.check.readable()) refuse(name, text(report.check) + ": expected a closed mesh of triangles");
   drop_unused(mesh);
   if (settings.repair && !report.check.closed()) {
     mesh = repair_mesh(mesh, report.repaired);
     if (mesh.triangles.empty()) refuse(name, "no triangle of it has an area");
     report.by_winding_number = !check_mesh(mesh).closed();
   } else if (!report.check.closed()) {
-    refuse(name, text(report.check) + "; allowed a closed mesh, or renderer.tool_repair=true");
+    refuse(name, text(report.check) + ": expected a closed mesh, or renderer.tool_repair=true");
   }
   if (report.check.inverted()) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
@@ -106,7 +106,7 @@ void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& re
   Vec3 low, high;
   bounding_box(mesh, low, high);
   const double max_length = (high - low).maxCoeff();
-  if (!(max_length > 0) || !std::isfinite(max_length)) refuse(name, "has no size; allowed a closed mesh");
+  if (!(max_length > 0) || !std::isfinite(max_length)) refuse(name, "has no size: expected a closed mesh");
   const double factor = settings.size_m > 0 ? settings.size_m / max_length : 1;
   for (Vec3& v : mesh.vertices) v *= factor;
   report.sides_m = factor * (high - low);
@@ -114,13 +114,13 @@ void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& re
   if (cells > kMaxCells)
     refuse(name, std::to_string(report.sides_m.maxCoeff()) + " m long, needs " +
                      std::to_string(std::llround(std::min(cells / 1e6, 1e15))) + " million voxels of " +
-                     std::to_string(settings.voxel_m) + " m; allowed " +
+                     std::to_string(settings.voxel_m) + " m: expected " +
                      std::to_string(std::llround(kMaxCells / 1e6)) +
                      " million: set renderer.tool_size_m, or a larger renderer.tool_voxel_m");
 }
 
 void take(VoxelTool& tool, const MassProperties& mass, const std::string& name) {
-  if (!(mass.volume_m3 > 0)) refuse(name, "encloses no volume; allowed a closed mesh");
+  if (!(mass.volume_m3 > 0)) refuse(name, "encloses no volume: expected a closed mesh");
   for (Vec3& v : tool.mesh.vertices) v -= mass.centre, tool.reach_m = std::max(tool.reach_m, v.norm());
   tool.volume_m3 = mass.volume_m3;
   tool.inertia_m2 = mass.inertia_m2;
@@ -141,7 +141,7 @@ std::vector<std::uint8_t> place(VoxelTool& tool, const VoxelToolSettings& settin
   take(tool, mass_properties(tool.mesh), name);
   tool.grid = grid_around(tool.mesh, settings.voxel_m);
   InsideNodes nodes = inside_nodes(tool.mesh, tool.grid);
-  if (nodes.negative) refuse(name, "a part of it is inside out; allowed all faces outwards");
+  if (nodes.negative) refuse(name, "a part of it is inside out: expected all faces outwards");
   return std::move(nodes.inside);
 }
 
@@ -190,7 +190,7 @@ VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, 
   count_voxels(tool, report);
   if (report.voxels[2] == 0)
     refuse(name, "no voxel of " + std::to_string(settings.voxel_m) +
-                     " m lies inside; allowed a thicker tool, or a smaller renderer.tool_voxel_m");
+                     " m lies inside: expected a thicker tool, or a smaller renderer.tool_voxel_m");
   return tool;
 }
 

@@ -33,11 +33,11 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
     const std::size_t equals = setting.find('=');
     const std::string key = setting.substr(0, equals);
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw refusal("has no setting \"" + key + "\"; allowed " + list_of(known));
+      throw refusal("has no setting \"" + key + "\": expected " + list_of(known));
     if (equals == std::string::npos || equals + 1 == setting.size())
       throw refusal("the setting " + key + " has no value; write " + key + "=VALUE");
     if (!settings_.emplace(key, setting.substr(equals + 1)).second)
-      throw refusal("the setting " + key + " is there twice; allowed once");
+      throw refusal("the setting " + key + " is there twice: expected once");
   }
 }
 
@@ -49,7 +49,7 @@ std::string DeviceAddress::word(const std::string& key, const std::string& other
 std::string DeviceAddress::choice(const std::string& key, const std::vector<std::string>& allowed) const {
   const std::string chosen = word(key, allowed.front());
   if (std::find(allowed.begin(), allowed.end(), chosen) == allowed.end())
-    throw refusal(key + " is \"" + chosen + "\"; allowed " + list_of(allowed));
+    throw refusal(key + " is \"" + chosen + "\": expected " + list_of(allowed));
   return chosen;
 }
 
@@ -60,7 +60,7 @@ double DeviceAddress::number(const std::string& key, double otherwise, double mi
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   // Written so that what is no number is refused too.
   if (error != std::errc() || end != text.data() + text.size() || !(value >= min && value <= max))
-    throw refusal(key + " is \"" + text + "\"; allowed a number from " + short_text(min) + " to " +
+    throw refusal(key + " is \"" + text + "\": expected a number from " + short_text(min) + " to " +
                   short_text(max));
   return value;
 }

@@ -18,7 +18,8 @@ namespace {
 std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const Experiment& experiment,
                                              const Kernels& kernels) {
   if (!address.empty())
-    throw InputError("--device sim:" + address, "allowed sim:, for the experiment's trajectory and operator");
+    throw InputError("--device sim:" + address,
+                     "expected sim:, for the experiment's trajectory and operator");
   auto script = experiment.build_trajectory(*experiment.build_scenario(kernels));
   return std::make_unique<SimulatedDevice>(std::move(script), experiment.build_hand(),
                                            DevicePlacement(experiment.live()),

@@ -105,7 +105,7 @@ void Entact::connect(std::string address, const std::string& subject) {
   handle_ = handles[0];
   if (!is_found || handle_ == nullptr)
     throw InputError(subject,
-                     "no device answers; allowed one that is powered, in this network and in no other "
+                     "no device answers: expected one that is powered, in this network and in no other "
                      "program's hands");
   eapi_.set_mode(handle_, Eapi::disabled);
 }

@@ -102,12 +102,13 @@ ForceDimension::ForceDimension(int number, const std::string& subject) {
   if (count <= 0)
     throw InputError(
         subject,
-        "no device is connected; allowed one that is powered, and whose USB port this user may open");
-  if (number >= count) throw InputError(subject, "no such device; allowed 0 to " + std::to_string(count - 1));
+        "no device is connected: expected one that is powered, and whose USB port this user may open");
+  if (number >= count)
+    throw InputError(subject, "no such device: expected 0 to " + std::to_string(count - 1));
   const int id = dhd_.open_id(static_cast<char>(number));
   if (id < 0)
     throw InputError(subject, std::string("cannot be opened (") + dhd_.error_get_last_str() +
-                                  "); allowed a device that no other program has");
+                                  "): expected a device that no other program has");
   id_ = static_cast<char>(id);
   learn_traits();
 }
@@ -184,7 +185,7 @@ int device_number(const std::string& address, const std::string& subject) {
   const char* end = address.data() + address.size();
   const auto [stop, error] = std::from_chars(address.data(), end, number);
   if (!address.empty() && (error != std::errc() || stop != end || number < 0 || number > 127))
-    throw InputError(subject, "not the number of a device; allowed 0 for the first, 1, ...");
+    throw InputError(subject, "not the number of a device: expected 0 for the first, 1, ...");
   return number;
 }
 

@@ -63,14 +63,14 @@ class HapticDevice {
 
   // Both within a tick; no allocation, no lock, no wait beyond what the vendor's call takes.
   virtual DeviceFault read(DeviceReading& reading) noexcept = 0;
-  // On the hand. Cut to nothing but what the vendor's units need: the caller has limited it.
+  // Force on the hand; the caller has already limited it.
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
-  // No force from now on, whatever a thread that hangs in a tick does next; read() and write() may answer
-  // kReleased. From any thread, more than once.
+  // Zero force from now on, even if another thread hangs in a tick; read() and write() may return kReleased.
+  // Can be called from any thread, more than once.
   virtual void release() noexcept = 0;
-  // From a tick: undoes that, where the device can take a force again. False: it cannot without being opened
-  // anew.
+  // Called from a tick: undoes release() if the device can exert forces again. False: the device has to be
+  // opened again.
   virtual bool rearm() noexcept { return false; }
 };
 

@@ -1,4 +1,4 @@
-// A loop that hangs cannot let its device go: a thread beside it does.
+// A loop that hangs cannot release its device: a separate thread does.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace remote_touch {
 
 class Heartbeat {
  public:
-  // Looks every fifth of max_s; a device without a beat for that long is let go at the next look.
+  // Checks every fifth of max_s; a device without a beat for that long is released at the next check.
   Heartbeat(HapticDevice& device, double max_s);
   ~Heartbeat();
 

@@ -80,7 +80,7 @@ OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject)
     throw InputError(subject, std::string("cannot be opened (") + (text != nullptr ? text : "unknown error") +
                                   ", " + std::to_string(error.code) + "/" +
                                   std::to_string(error.internal_code) +
-                                  "); allowed the name of a connected device in the vendor's setup");
+                                  "): expected the name of a connected device in the vendor's setup");
   }
   learn_traits();
 }

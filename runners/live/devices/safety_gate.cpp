@@ -22,7 +22,7 @@ Vec3 towards(const Vec3& from, const Vec3& to, double max_length) {
 
 std::string too_slow(const char* slew, const char* max, double value, double min) {
   if (value >= min) return {};
-  return std::string(slew) + " = " + std::to_string(value) + ": allowed " + max +
+  return std::string(slew) + " = " + std::to_string(value) + ": expected " + max +
          " / 0.01 s = " + std::to_string(min) + " or more, so that the device is let go in that time";
 }
 
@@ -30,16 +30,20 @@ std::string too_slow(const char* slew, const char* max, double value, double min
 
 Parameters parameters(SafetyLimits& s) {
   return {
-      {"max_force_N", &s.max_force_N, 0, 100, "longer forces are cut; 0.9 of the device's own counts too"},
-      {"max_torque_Nm", &s.max_torque_Nm, 0, 10, "likewise for torques"},
-      {"force_slew_N_per_s", &s.force_slew_N_per_s, 1, 1e5, "fastest change of the force"},
-      {"torque_slew_Nm_per_s", &s.torque_slew_Nm_per_s, 0.01, 1e4, "fastest change of the torque"},
-      {"max_speed_m_per_s", &s.max_speed_m_per_s, 0.01, 100, "a faster hand latches the gate"},
+      {"max_force_N", &s.max_force_N, 0, 100,
+       "maximum force; also limited to 0.9 of the maximum of the device"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 10,
+       "maximum torque; also limited to 0.9 of the maximum of the device"},
+      {"force_slew_N_per_s", &s.force_slew_N_per_s, 1, 1e5, "maximum rate of change of the force"},
+      {"torque_slew_Nm_per_s", &s.torque_slew_Nm_per_s, 0.01, 1e4, "maximum rate of change of the torque"},
+      {"max_speed_m_per_s", &s.max_speed_m_per_s, 0.01, 100,
+       "maximum speed of the hand; above it the force is latched off"},
       {"max_angular_speed_rad_per_s", &s.max_angular_speed_rad_per_s, 0.1, 1000,
-       "a faster turn latches the gate"},
-      {"engage_force_N", &s.engage_force_N, 1e-3, 10, "force begins while the command is below"},
-      {"ramp_s", &s.ramp_s, 0, 10, "then the share of the command that counts rises to 1"},
-      {"max_command_age_s", &s.max_command_age_s, 0.002, 1, "an older command counts as none"},
+       "maximum angular speed of the handle; above it the force is latched off"},
+      {"engage_force_N", &s.engage_force_N, 1e-3, 10,
+       "force starts only when the commanded force is below this"},
+      {"ramp_s", &s.ramp_s, 0, 10, "then the force is ramped up linearly over this time"},
+      {"max_command_age_s", &s.max_command_age_s, 0.002, 1, "commands older than this are ignored"},
   };
 }
 

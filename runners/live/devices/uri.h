@@ -23,7 +23,7 @@ const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag
     if (uri.scheme == entry.scheme) return entry;
     known += (known.empty() ? "" : ", ") + std::string(entry.example);
   }
-  throw InputError(flag + " " + uri.scheme + ":" + uri.address, "allowed " + known);
+  throw InputError(flag + " " + uri.scheme + ":" + uri.address, "expected " + known);
 }
 
 }  // namespace remote_touch

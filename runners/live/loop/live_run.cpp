@@ -120,7 +120,7 @@ class LiveRun {
     const double device_hz = device_->traits().tick_rate_hz;
     if (std::abs(device_hz - rate_hz_) > 0.01 * rate_hz_)
       throw InputError("haptic_rate_hz = " + std::to_string(rate_hz_),
-                       "allowed " + std::to_string(device_hz) + ", the rate of this device's loop");
+                       "expected " + std::to_string(device_hz) + ", the rate of this device's loop");
   }
 
   LiveCounts counts() const { return {camera_->counts(), servo_->stalls(), servo_->rows_lost()}; }
@@ -156,7 +156,7 @@ class LiveRun {
   void report_force_scale() const {
     char line[160];
     std::snprintf(line, sizeof line,
-                  "the device takes %.4g N/m at most: it gets %.3g of every force and torque",
+                  "the maximum stiffness of the device is %.4g N/m: forces and torques are scaled by %.3g",
                   device_->traits().max_stiffness_N_per_m, force_scale_);
     report_line(line);
   }
@@ -186,7 +186,7 @@ class LiveRun {
     device_->release();
     camera_->stop();
     logger_->finish();  // what was recorded until then is whole
-    std::fputs("remote-touch: the device's loop does not end; it was let go\n", stderr);
+    std::fputs("remote-touch: the loop of the device does not end; the device was released\n", stderr);
     std::_Exit(1);
   }
 

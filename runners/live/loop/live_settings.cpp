@@ -7,13 +7,15 @@ namespace remote_touch {
 Parameters parameters(LiveSettings& s) {
   return {
       {"device_position_m", &s.device_position_m, -100, 100,
-       "where the middle of the device's workspace is in the world"},
+       "position of the centre of the device's workspace, world frame"},
       {"device_rotation_deg", &s.device_rotation_deg, -360, 360,
-       "rotation vector of the device; zero: x right, y up, z towards the user, as in the world of synthetic scenes"},
-      {"device_scale", &s.device_scale, 0.01, 100, "ways in the world per way of the hand"},
+       "rotation vector (axis times angle) of the device, world frame; zero: x right, y up, z towards the user"},
+      {"device_scale", &s.device_scale, 0.01, 100,
+       "motion scale: displacement in the world per displacement of the hand"},
       {"camera_position_m", &s.camera_position_m, -100, 100,
-       "registration of the camera, over where its source says it stands"},
-      {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360, "likewise its rotation vector"},
+       "position of the camera, added to the one that its source reports"},
+      {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
+       "rotation vector (axis times angle) of the camera, added likewise"},
   };
 }
 

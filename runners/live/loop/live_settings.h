@@ -26,8 +26,8 @@ inline std::string validate(const LiveSettings&) {
 // Of the camera over where its source says that it stands.
 RigidTransform camera_registration(const LiveSettings& s);
 
-// The share of all forces that a device can take whose own stiffness is limited; 1 where they fit, or where
-// the limit is 0, not known. device_scale ways in the world per way of the hand make that much stiffer.
+// Factor on all forces so that no spring exceeds the maximum stiffness of the device; 1 if none does, or if
+// the limit is 0 (unknown). A motion scale of device_scale makes springs stiffer by that factor.
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
 // From the device to the world and back: p_W = device_position_m + scale R p_D. Forces and torques are turned

@@ -17,7 +17,7 @@ Parameters path_alone(std::string& path) {
 }
 
 std::string missing_path(const std::string& path) {
-  return path.empty() ? "path = \"\": allowed a file of remote-touch live --record" : std::string();
+  return path.empty() ? "path = \"\": expected a file of remote-touch live --record" : std::string();
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ SessionScene::SessionScene(const Settings& settings, const NoiseKey&, const Kern
     if (session_.taken(i) >= 0)
       arrives_s_[static_cast<std::size_t>(session_.taken(i))] =
           static_cast<double>(session_.tick_number(i)) / session_.haptic_rate_hz();
-  if (arrives_s_.empty()) throw InputError(settings.path, "has no frames; allowed a session with some");
+  if (arrives_s_.empty()) throw InputError(settings.path, "has no frames: expected a session with some");
 }
 
 PointCloud SessionScene::cloud(int frame) const {
@@ -66,7 +66,7 @@ double SessionScene::signed_distance(const Vec3&, double) const {
 SessionHand::SessionHand(const Settings& settings, const Scenario&)
     : session_(find_recording(settings.path)) {
   if (session_.tick_count() == 0)
-    throw InputError(settings.path, "has no ticks; allowed a session with some");
+    throw InputError(settings.path, "has no ticks: expected a session with some");
 }
 
 // The last tick that is not later; before the first that one.
@@ -104,7 +104,7 @@ std::string session_experiment(const std::string& path) try {
     json[setting] = 0;
   return json.dump();
 } catch (const nlohmann::json::exception&) {
-  throw InputError(path, "damaged (its configuration); allowed a file of remote-touch live --record");
+  throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
 }
 
 }  // namespace remote_touch

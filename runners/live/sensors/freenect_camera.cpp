@@ -44,7 +44,7 @@ Context start_library() {
   const int code = freenect_init(&context, nullptr);
   if (code < 0 || context == nullptr)
     throw InputError("freenect", "does not start (libusb says " + std::to_string(code) +
-                                     "); allowed a machine with USB that this user may open (udev rules)");
+                                     "): expected a machine with USB that this user may open (udev rules)");
   freenect_set_log_level(context, FREENECT_LOG_FATAL);  // what fails is told by return values
   // The others need firmware, or belong to other programs.
   freenect_select_subdevices(context, FREENECT_DEVICE_CAMERA);
@@ -57,7 +57,7 @@ int number_of(const std::string& address) {
   const auto [end, error] = std::from_chars(first, last, number);
   if (address.empty()) return 0;
   if (error != std::errc{} || end != last || number < 0)
-    throw InputError("freenect:" + address, "no camera has this number; allowed 0, 1, ...");
+    throw InputError("freenect:" + address, "no camera has this number: expected 0, 1, ...");
   return number;
 }
 
@@ -156,7 +156,7 @@ void FreenectCamera::open_device(const std::string& address) {
   if (number >= count)
     throw InputError(name_, (count <= 0 ? std::string("no Kinect is plugged in")
                                         : std::to_string(count) + " Kinects are plugged in, from 0 on") +
-                                "; allowed one that this user may open (lsusb, udev rules)");
+                                ": expected one that this user may open (lsusb, udev rules)");
   freenect_device* device = nullptr;
   const int code = freenect_open_device(context_.get(), &device, number);
   if (code < 0)

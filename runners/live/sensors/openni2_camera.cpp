@@ -138,7 +138,7 @@ void Openni2Camera::open_device(const std::string& address) {
   if (name_ == "openni2") {
     if (cameras.empty())
       refuse("no camera that a driver in " + driver_folder() +
-             " knows; allowed one that is plugged in and that this user may open (lsusb, udev rules), or an "
+             " knows: expected one that is plugged in and that this user may open (lsusb, udev rules), or an "
              ".oni file");
     uri = cameras.front().getUri();
   } else if (!is_file(address)) {
@@ -146,17 +146,17 @@ void Openni2Camera::open_device(const std::string& address) {
     std::string known;
     for (const openni::DeviceInfo& camera : cameras) known += std::string(", ") + camera.getUri();
     if (known.find(", " + address) == std::string::npos)
-      refuse("neither a file nor a camera that a driver in " + driver_folder() + " knows; allowed any" +
+      refuse("neither a file nor a camera that a driver in " + driver_folder() + " knows: expected any" +
              known);
   }
   if (device_.open(uri.c_str()) != openni::STATUS_OK)
     refuse("cannot be opened (" + error_text() + ")" +
-           (is_file(uri) ? "; allowed a whole .oni recording" : ""));
+           (is_file(uri) ? ": expected a whole .oni recording" : ""));
 }
 
 void Openni2Camera::open_depth() {
   if (depth_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK)
-    refuse("has no depth (" + error_text() + "); allowed a depth camera or a recording of one");
+    refuse("has no depth (" + error_text() + "): expected a depth camera or a recording of one");
   if (!device_.isFile()) {
     const std::optional<openni::VideoMode> mode = best_depth_mode(depth_);
     if (mode && depth_.setVideoMode(*mode) != openni::STATUS_OK)
@@ -164,11 +164,11 @@ void Openni2Camera::open_depth() {
   }
   mode_ = depth_.getVideoMode();
   view_.metres_per_unit = metres_per_unit(mode_.getPixelFormat());
-  if (view_.metres_per_unit == 0) refuse("depth is in no unit of length; allowed 1 mm or 0.1 mm");
+  if (view_.metres_per_unit == 0) refuse("depth is in no unit of length: expected 1 mm or 0.1 mm");
   depth_is_mirrored_ = stays_mirrored(depth_);
   if (!device_.isFile()) return;
   frame_count_ = device_.getPlaybackControl()->getNumberOfFrames(depth_);
-  if (frame_count_ <= 0) refuse("is no whole recording of depth; allowed one whose recorder was closed");
+  if (frame_count_ <= 0) refuse("is no whole recording of depth: expected one whose recorder was closed");
 }
 
 // Colour is of use where its pixels are those of depth.
@@ -218,7 +218,7 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
     if (status == openni::STATUS_OK) return take(frame);
     if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + error_text() + ")");
     if (frame_count_ > 0 && steady_s() - last_sign_s_ > kMaxPause_s)
-      return fail("plays no further; allowed a recording without damage");
+      return fail("plays no further: expected a recording without damage");
     if (remaining_s <= 0) return SensorState::waiting;
   }
 }

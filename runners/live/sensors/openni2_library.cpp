@@ -49,7 +49,7 @@ Library::Library() {
   const std::string reason = error_text();
   openni::OpenNI::shutdown();
   throw InputError("openni2",
-                   "does not start (" + reason + "); allowed drivers (lib*.so.0) in " + driver_folder());
+                   "does not start (" + reason + "): expected drivers (lib*.so.0) in " + driver_folder());
 }
 
 Library::~Library() {

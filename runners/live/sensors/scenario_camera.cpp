@@ -29,7 +29,7 @@ ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario) : scena
   const PointCloud first = scenario_->cloud(0);
   if (!first.image)
     throw InputError("--depth sim:",
-                     "this scenario's frames are no depth images; allowed one of a camera, "
+                     "this scenario's frames are no depth images: expected one of a camera, "
                      "such as valve-tank or recorded");
   view_ = {first.image->camera, kUnit_m, scenario_->frame_rate_hz(), !first.colour.empty(),
            first.image->X_WC};

@@ -20,7 +20,7 @@ Availability always(const char* what) {
 std::unique_ptr<DepthSource> open_simulated(const std::string& address, const Experiment& experiment,
                                             const Kernels& kernels) {
   if (!address.empty())
-    throw InputError("--depth sim:" + address, "allowed sim:, for the experiment's scenario");
+    throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
   return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels));
 }
 

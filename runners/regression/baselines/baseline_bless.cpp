@@ -31,11 +31,11 @@ class Scratch {
   Scratch() {
     std::error_code failure;
     const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
-    if (failure) throw InputError("TMPDIR", failure.message() + "; allowed a writable folder");
+    if (failure) throw InputError("TMPDIR", failure.message() + ": expected a writable folder");
     std::string name = folder / "remote-touch-bless-XXXXXX";
     if (!::mkdtemp(name.data()))
       throw InputError(
-          name, std::string("cannot be made (") + std::strerror(errno) + "); allowed a writable folder");
+          name, std::string("cannot be made (") + std::strerror(errno) + "): expected a writable folder");
     path_ = name;
   }
   ~Scratch() {
@@ -55,29 +55,31 @@ void require_utf8(const std::string& option, const std::string& text) {
   try {
     static_cast<void>(Json(text).dump());
   } catch (const Json::exception&) {
-    throw InputError(option, "allowed UTF-8 text");
+    throw InputError(option, "expected UTF-8 text");
   }
 }
 
 void require_sense(const Blessing& blessing) {
   const bool blank = std::all_of(blessing.reason.begin(), blessing.reason.end(),
                                  [](unsigned char c) { return std::isspace(c) != 0; });
-  if (blank) throw InputError("--reason", "missing; allowed a sentence: why these numbers are right");
+  if (blank)
+    throw InputError("--reason",
+                     "missing: expected a sentence that explains why the new numbers are correct");
   if (blessing.also.empty() && !blessing.one_compiler)
     throw InputError(
         "--other-build",
-        "missing; allowed a build of the same source by another compiler (scripts/bless makes one), "
+        "missing: expected a build of the same source by another compiler (scripts/bless makes one), "
         "or --one-compiler");
   if (!blessing.run.empty() && !blessing.sweep.empty())
-    throw InputError("--run, --sweep", "both are given; allowed one of them");
+    throw InputError("--run, --sweep", "both are given: expected one of them");
   require_utf8("--reason", blessing.reason);
   require_utf8("--run", blessing.run);
   require_utf8("--sweep", blessing.sweep);
   if (blessing.name.empty())
-    throw InputError("baseline", "without a name; allowed letters, digits, . - and _");
+    throw InputError("baseline", "without a name: expected letters, digits, . - and _");
   for (const char c : blessing.name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_')
-      throw InputError("baseline " + blessing.name, "allowed letters, digits, . - and _");
+      throw InputError("baseline " + blessing.name, "expected letters, digits, . - and _");
 }
 
 Manifest manifest_or_new(const std::filesystem::path& folder) {
@@ -103,10 +105,10 @@ Baseline definition(const Blessing& blessing, const Manifest& manifest) {
   const bool is_new = !blessing.run.empty() || !blessing.sweep.empty();
   if (!stored && !is_new)
     throw InputError("baseline " + blessing.name,
-                     "there is none; allowed --run EXPERIMENT or --sweep SWEEP to begin one");
+                     "there is none: expected --run EXPERIMENT or --sweep SWEEP to begin one");
   if (!is_new && !blessing.overrides.empty())
     throw InputError("--set",
-                     "without --run or --sweep; allowed with them, for a baseline of something else");
+                     "without --run or --sweep: expected with them, for a baseline of something else");
   Baseline baseline = stored ? *stored : Baseline{blessing.name, "", ""};
   if (is_new) {
     baseline.command = blessing.run.empty() ? "sweep" : "run";
@@ -163,7 +165,7 @@ void make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, failure);
   if (failure)
     throw InputError(folder.string(),
-                     "cannot be made (" + failure.message() + "); allowed a writable folder");
+                     "cannot be made (" + failure.message() + "): expected a writable folder");
 }
 
 void enter(const Baseline& baseline, Manifest& manifest) {
@@ -203,7 +205,7 @@ std::string bless(const Blessing& blessing) {
       measure_spread(blessing.folder, baseline, programs, scratch.path(), blessing.stop);
   if (measured.compilers.size() < 2 && !blessing.one_compiler)
     throw InputError("--other-build", "by the same compiler, " + *measured.compilers.begin() +
-                                          "; allowed a build by another compiler, or --one-compiler");
+                                          ": expected a build by another compiler, or --one-compiler");
 
   const std::filesystem::path file = file_of(blessing.folder, baseline);
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);

@@ -74,7 +74,7 @@ BaselineCheck concluded(const Baseline& baseline, ResultComparison comparison) {
                                                            : State::not_comparable;
   if (check.state == State::same && !comparison.configuration.empty()) {
     check.state = State::changed;
-    check.text = "the numbers are the same, but not the experiment: " + comparison.configuration.front();
+    check.text = "the numbers are equal, but the experiment differs:  " + comparison.configuration.front();
     comparison.outcome = Outcome::regressed, comparison.verdict = check.text;
   }
   check.comparison = std::move(comparison);
@@ -103,8 +103,7 @@ BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline
   try {
     const std::filesystem::path file = file_of(folder, baseline);
     if (sha256_of_file(file) != baseline.sha256)
-      throw InputError(file.string(),
-                       "is not the file that was stored: its SHA-256 is not that of the manifest");
+      throw InputError(file.string(), "was modified: its SHA-256 differs from the manifest");
     return concluded(baseline, baseline.command == "sweep"
                                    ? compare_sweep_again(folder, baseline, kernels, stop)
                                    : compare_run(folder, baseline, kernels, stop));

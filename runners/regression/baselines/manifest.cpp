@@ -20,14 +20,14 @@ std::filesystem::path manifest_file(const std::filesystem::path& folder) {
 Baseline baseline_of(const Json& json, const std::filesystem::path& file) {
   Baseline baseline{json.at("name"), json.at("command"), json.at("subject")};
   if (baseline.command != "run" && baseline.command != "sweep")
-    throw InputError(file.string(), "baseline " + baseline.name + ": command; allowed run, sweep");
+    throw InputError(file.string(), "baseline " + baseline.name + ": command: expected run, sweep");
   baseline.overrides = json.at("set").get<std::vector<std::string>>();
   baseline.sha256 = json.at("sha256"), baseline.reason = json.at("reason");
   baseline.builds = json.at("measured_over").get<std::vector<std::string>>();
   for (const auto& [name, spread] : json.at("spread").get_ref<const Json::object_t&>()) {
     if (!(spread.get<double>() >= 0))
       throw InputError(file.string(),
-                       "baseline " + baseline.name + ": spread of " + name + "; allowed 0 or more");
+                       "baseline " + baseline.name + ": spread of " + name + ": expected 0 or more");
     baseline.tolerances[name].absolute = spread;
   }
   return baseline;
@@ -56,7 +56,7 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   if (!in || std::filesystem::is_directory(file, unreachable))
     throw InputError(
         file.string(),
-        "cannot be read; allowed a folder of baselines (--folder), or the project's root as working folder");
+        "cannot be read: expected a folder of baselines (--folder), or the project's root as working folder");
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   const Json json = parse_json(text, file.string());
   try {
@@ -66,7 +66,7 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   } catch (const Json::exception& error) {
     std::string what = error.what();  // "[json.exception...] key 'spread' not found"
     if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    throw InputError(file.string(), what + "; allowed what remote-touch baseline bless writes");
+    throw InputError(file.string(), what + ": expected what remote-touch baseline bless writes");
   }
 }
 

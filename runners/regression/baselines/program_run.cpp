@@ -76,11 +76,11 @@ void run_program(const std::string& program, const std::vector<std::string>& arg
   const int status = end_of(child, stop);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   if (WIFEXITED(status) && WEXITSTATUS(status) == kCannotStart)
-    throw InputError(program, "cannot be started; allowed a build of remote-touch");
+    throw InputError(program, "cannot be started: expected a build of remote-touch");
   throw InputError(program, "failed with " +
                                 (WIFEXITED(status) ? "exit code " + std::to_string(WEXITSTATUS(status))
                                                    : "signal " + std::to_string(WTERMSIG(status))) +
-                                last_line(errors) + "; allowed a build that runs what is to be stored");
+                                last_line(errors) + ": expected a build that runs what is to be stored");
 }
 
 }  // namespace remote_touch

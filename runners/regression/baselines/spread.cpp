@@ -37,7 +37,7 @@ Made read_made(const std::string& program, const std::string& command, const std
     return {Hdf5Reader(output).attributes(), judged_columns(output, command)};
   } catch (const InputError& error) {
     throw InputError(program,
-                     "wrote no result (" + std::string(error.what()) + "); allowed a build of remote-touch");
+                     "wrote no result (" + std::string(error.what()) + "): expected a build of remote-touch");
   }
 }
 
@@ -46,7 +46,7 @@ void require_same_source(const std::string& program, const TextAttributes& refer
   for (const char* name : {"version", "git_commit", "source_digest", "config"})
     if (attribute(reference, name) != attribute(other, name))
       throw InputError(program, std::string("is of another ") + name + ", " + attribute(other, name) +
-                                    "; allowed a build of the same source as this program");
+                                    ": expected a build of the same source as this program");
 }
 
 // Adds the deviations of one variant to the spread.

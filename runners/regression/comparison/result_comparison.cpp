@@ -77,7 +77,7 @@ void check_names(const Tolerances& tolerances, const std::vector<std::string>& n
     if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) continue;
     std::string known;
     for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
-    throw InputError("tolerance of " + name, "there is no such column; allowed " + known);
+    throw InputError("tolerance of " + name, "there is no such column: expected " + known);
   }
 }
 
@@ -145,11 +145,11 @@ ResultComparison compare_files(const std::filesystem::path& baseline, const std:
   const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
   const bool hashed = ours == "hashes" || theirs == "hashes";
   if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
-    throw InputError(candidate.string(), "is a " + theirs + "; allowed a " + ours + ", as the baseline is");
+    throw InputError(candidate.string(), "is a " + theirs + ": expected a " + ours + ", as the baseline is");
   if (hashed) {
     if (!rules.tolerances.empty())
       throw InputError("tolerance of " + rules.tolerances.begin()->first,
-                       "hashes are equal or not; allowed with traces, sweeps and figures");
+                       "hashes are equal or not: expected with traces, sweeps and figures");
     return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
   }
   if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
@@ -168,7 +168,7 @@ std::string kind_of(const Hdf5Reader& result) {
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
   throw InputError(result.file(), (schema.empty() ? "names no schema" : "is of schema " + schema) +
-                                      "; allowed a trace, a sweep, a figure or hashes of this program");
+                                      ": expected a trace, a sweep, a figure or hashes of this program");
 }
 
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
@@ -220,7 +220,7 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
   result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule);
   for (const std::string& difference : result.configuration)
     if (difference.starts_with("experiment.seed "))
-      result.sweep->problems.push_back(difference + ": the runs met other noise and are no pairs");
+      result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");
   if (!result.sweep->problems.empty())
     conclude(result, Outcome::not_comparable, result.sweep->problems.front());
   else if (rules.paired)

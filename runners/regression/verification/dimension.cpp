@@ -51,7 +51,7 @@ struct Changer {
     if (!(changed >= p.low && changed <= p.high)) {
       std::ostringstream subject, problem;
       subject << p.name << " = " << value;
-      problem << "a check multiplies it by " << factor << "; allowed " << p.low << " to " << p.high
+      problem << "a check multiplies it by " << factor << ": expected " << p.low << " to " << p.high
               << " after that too";
       throw InputError(subject.str(), problem.str());
     }
@@ -59,7 +59,7 @@ struct Changer {
   }
   void keep_integer() const {
     if (change.factor(known_dimension(p.name).value_or(Dimension{})) == 1) return;
-    throw InputError(p.name, "an integer cannot follow a change of units; allowed a real number");
+    throw InputError(p.name, "an integer cannot follow a change of units: expected a real number");
   }
 
   void operator()(double* value) const { multiply(*value, p.name); }
@@ -87,7 +87,8 @@ Dimension dimension_of(const std::string& name) {
   if (const auto dimension = known_dimension(name)) return *dimension;
   std::string endings;
   for (const Unit& unit : kUnits) endings += std::string(" ") + unit.ending;
-  throw InputError(name, "ends in no known unit; allowed" + endings + ", or no underscore for a pure number");
+  throw InputError(name,
+                   "ends in no known unit: expected" + endings + ", or no underscore for a pure number");
 }
 
 void change_units(const Parameters& parameters, const UnitChange& change) {

@@ -127,7 +127,7 @@ std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
   if (entry.degrees_of_freedom == DegreesOfFreedom::six)
     throw InputError(
         entry.name,
-        "renders six degrees of freedom, and the scenes are for a proxy; allowed a 3-DOF renderer");
+        "renders six degrees of freedom, and the scenes are for a proxy: expected a 3-DOF renderer");
   const Subject subject(entry, assignments, kernels);
   std::vector<CheckResult> results;
   for (const MetamorphicScene& scene : verification_scenes(kernels)) {

@@ -29,7 +29,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   std::error_code no_size;
   const std::uintmax_t size = std::filesystem::file_size(file, no_size);  // fails also for a folder
   if (no_size) {
-    throw InputError(file.string(), "cannot be read (" + no_size.message() + "): allowed a PCD file");
+    throw InputError(file.string(), "cannot be read (" + no_size.message() + "): expected a PCD file");
   }
   std::string bytes(size, '\0');  // the size on disk, not one that the header claims
   std::ifstream stream(file, std::ios::binary);
@@ -58,7 +58,8 @@ double real_number(const std::string& where, std::string_view word) {
   double value = 0;
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
-  if (error != std::errc() || stop != end) throw InputError(where, shown(word) + ": allowed a number or nan");
+  if (error != std::errc() || stop != end)
+    throw InputError(where, shown(word) + ": expected a number or nan");
   return value;
 }
 
@@ -68,7 +69,7 @@ double real_number(const std::string& where, std::string_view word) {
 void read_ascii_point(const std::string& where, const PcdHeader& header,
                       const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
   if (words.size() != header.point_values) {
-    throw InputError(where, std::to_string(words.size()) + " values: allowed " +
+    throw InputError(where, std::to_string(words.size()) + " values: expected " +
                                 std::to_string(header.point_values) + ", as FIELDS and COUNT say");
   }
   const auto read = [&](const PcdField& field) {
@@ -83,7 +84,7 @@ void read_ascii_point(const std::string& where, const PcdHeader& header,
     return;
   }
   if (!(std::abs(colour) < 4294967296.0)) {
-    throw InputError(where, shown(words[header.colour->first_value]) + ": allowed a 32-bit colour");
+    throw InputError(where, shown(words[header.colour->first_value]) + ": expected a 32-bit colour");
   }
   cloud.colour[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(colour)) & kRgb;
 }
@@ -143,7 +144,7 @@ std::vector<char> read_compressed_block(const std::string& file, const PcdHeader
   }
   const std::size_t needed = header.points * header.point_bytes;
   if (sizes[1] != needed) {
-    throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": allowed " + std::to_string(needed) +
+    throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": expected " + std::to_string(needed) +
                                ", as the header says");
   }
   return lzf_expand(file, data.substr(0, sizes[0]), needed);

@@ -28,7 +28,7 @@ std::size_t integer_value(const std::string& file, const std::string& keyword, s
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > max) {
-    throw InputError(file, keyword + " = " + shown(word) + ": allowed 1 to " + std::to_string(max));
+    throw InputError(file, keyword + " = " + shown(word) + ": expected 1 to " + std::to_string(max));
   }
   return value;
 }
@@ -44,7 +44,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
       std::string allowed;
       for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
       throw InputError(file + ":" + std::to_string(rest.line),
-                       shown(words[0]) + " is no PCD header entry: allowed" + allowed);
+                       shown(words[0]) + " is no PCD header entry: expected" + allowed);
     }
     entries[words[0]].assign(words.begin() + 1, words.end());
   }
@@ -62,7 +62,7 @@ const Words& entry(const std::string& file, const Entries& entries, const std::s
   const Words& words = entry(file, entries, keyword);
   if (words.size() == count) return words;
   throw InputError(
-      file, keyword + " has " + std::to_string(words.size()) + " values: allowed " + std::to_string(count));
+      file, keyword + " has " + std::to_string(words.size()) + " values: expected " + std::to_string(count));
 }
 
 // FIELDS, SIZE, TYPE and COUNT, one value each per field; a missing COUNT means 1 everywhere.
@@ -76,10 +76,10 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
     PcdField field{names[f], types[f].front(), integer_value(file, "SIZE", sizes[f], 8)};
     field.count = integer_value(file, "COUNT", counts[f], std::numeric_limits<int>::max());
     if (!std::has_single_bit(field.size)) {
-      throw InputError(file, "SIZE = " + shown(sizes[f]) + ": allowed 1, 2, 4, 8");
+      throw InputError(file, "SIZE = " + shown(sizes[f]) + ": expected 1, 2, 4, 8");
     }
     if (types[f] != "F" && types[f] != "I" && types[f] != "U") {
-      throw InputError(file, "TYPE = " + shown(types[f]) + ": allowed F, I, U");
+      throw InputError(file, "TYPE = " + shown(types[f]) + ": expected F, I, U");
     }
     field.first_byte = header.point_bytes, header.point_bytes += field.size * field.count;
     field.first_value = header.point_values, header.point_values += field.count;
@@ -95,7 +95,7 @@ PcdField coordinate(const std::string& file, const PcdHeader& header, const std:
     throw InputError(file, "FIELDS has no " + name + ": needed are x, y and z");
   }
   if (found->type != 'F' || found->size < 4 || found->count != 1) {
-    throw InputError(file, "field " + name + " = " + found->text() + ": allowed TYPE F SIZE 4 or 8 COUNT 1");
+    throw InputError(file, "field " + name + " = " + found->text() + ": expected TYPE F SIZE 4 or 8 COUNT 1");
   }
   return *found;
 }
@@ -106,7 +106,7 @@ std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& h
     if (field.name != "rgb" && field.name != "rgba") continue;
     if (field.size == 4 && field.count == 1) return field;
     throw InputError(file,
-                     "field " + std::string(field.name) + " = " + field.text() + ": allowed SIZE 4 COUNT 1");
+                     "field " + std::string(field.name) + " = " + field.text() + ": expected SIZE 4 COUNT 1");
   }
   return std::nullopt;
 }
@@ -120,7 +120,7 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
   header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;
   throw InputError(file,
-                   "POINTS = " + shown(points) + ": allowed WIDTH * HEIGHT = " + std::to_string(product));
+                   "POINTS = " + shown(points) + ": expected WIDTH * HEIGHT = " + std::to_string(product));
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   const Entries entries = read_entries(file, rest);
   const std::string_view version = entry(file, entries, "VERSION", 1)[0];
   if (version != "0.7" && version != ".7") {
-    throw InputError(file, "VERSION = " + shown(version) + ": allowed 0.7");
+    throw InputError(file, "VERSION = " + shown(version) + ": expected 0.7");
   }
   PcdHeader header;
   read_fields(file, entries, header);
@@ -158,7 +158,8 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   read_lengths(file, entries, header);
   header.encoding = entry(file, entries, "DATA", 1)[0];
   if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed") {
-    throw InputError(file, "DATA = " + shown(header.encoding) + ": allowed ascii, binary, binary_compressed");
+    throw InputError(file,
+                     "DATA = " + shown(header.encoding) + ": expected ascii, binary, binary_compressed");
   }
   return header;
 }

@@ -77,7 +77,7 @@ class PngFile {
 PngFile::PngFile(const std::filesystem::path& path) : name_(path.string()) {
   std::error_code no_size;
   file_bytes_ = std::filesystem::file_size(path, no_size);  // fails also for a folder
-  if (no_size) throw InputError(name_, "cannot be read (" + no_size.message() + "): allowed a PNG file");
+  if (no_size) throw InputError(name_, "cannot be read (" + no_size.message() + "): expected a PNG file");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw InputError(name_, std::string("cannot be opened: ") + std::strerror(errno));
   check_chunks();
@@ -154,7 +154,7 @@ void PngFile::check_claimed_size() const {
   constexpr std::uintmax_t kMaxExpansion = 1032, kMaxPixels = 1u << 26;  // 8192 x 8192: 0.7 GB as depths
   if (static_cast<std::uintmax_t>(width()) * static_cast<std::uintmax_t>(height()) > kMaxPixels)
     throw InputError(name_, "claims " + std::to_string(width()) + " x " + std::to_string(height()) +
-                                " pixels; allowed up to " + std::to_string(kMaxPixels) + " in all");
+                                " pixels: expected up to " + std::to_string(kMaxPixels) + " in all");
   const std::uintmax_t claimed = static_cast<std::uintmax_t>(height()) * png_get_rowbytes(png_, info_);
   if (claimed / kMaxExpansion > file_bytes_) {
     throw InputError(name_, "claims " + std::to_string(width()) + " x " + std::to_string(height()) +
@@ -186,7 +186,7 @@ DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_u
   PngFile png(file);
   if (png.colour_type() != PNG_COLOR_TYPE_GRAY || png.bit_depth() != 16) {
     throw InputError(file.string(),
-                     "pixels are " + png.pixel_format() + ": allowed 16-bit grey (one channel)");
+                     "pixels are " + png.pixel_format() + ": expected 16-bit grey (one channel)");
   }
   const std::vector<png_byte>& bytes = png.decode_as_stored();
   DepthImage depth{png.width(), png.height(), std::vector<double>(bytes.size() / 2)};
@@ -201,7 +201,7 @@ DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_u
 std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height) {
   PngFile png(file);
   if (png.bit_depth() > 8) {
-    throw InputError(file.string(), "pixels are " + png.pixel_format() + ": allowed up to 8 bits a channel");
+    throw InputError(file.string(), "pixels are " + png.pixel_format() + ": expected up to 8 bits a channel");
   }
   width = png.width(), height = png.height();
   const std::vector<png_byte>& bytes = png.decode_as_rgb();

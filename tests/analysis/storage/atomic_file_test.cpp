@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 void expect_unwritable(const fs::path& file) {
   const std::string message = refusal([&] { write_trace(file, awkward_trace(2000), kProvenance, {}); });
   EXPECT_HAS(message, file.string() + ": cannot be written (");
-  EXPECT_HAS(message, "; allowed a writable place");
+  EXPECT_HAS(message, ": expected a writable place");
 }
 
 TEST(WriteTrace, PlacesThatCannotBeWritten) {

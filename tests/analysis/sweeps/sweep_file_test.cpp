@@ -222,7 +222,7 @@ TEST(SweepFile, DamageIsRefused) {
 
   why(sound.substr(0, sound.size() / 2)), why(sound.substr(0, 100)), why(""), why("text");
   write_trace(folder / "trace.h5", awkward_trace(20), kProvenance, {});
-  EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "allowed remote-touch-sweep/2");
+  EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/2");
 }
 
 }  // namespace

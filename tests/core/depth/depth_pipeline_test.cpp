@@ -234,11 +234,11 @@ TEST(DepthPipeline, AllocatesNothingAfterTheFirstFrame) {
 TEST(DepthPipeline, RefusesWhatDoesNotFit) {
   Settings even;
   even.filter_window = 8;
-  EXPECT_EQ(validate(even), "filter_window = 8: allowed odd numbers, 3 to 15");
+  EXPECT_EQ(validate(even), "filter_window = 8: expected odd numbers, 3 to 15");
   EXPECT_THROW(DepthPipeline(even, best()), std::invalid_argument);
   even = {};
   even.normal_window = 10;
-  EXPECT_EQ(validate(even), "normal_window = 10: allowed odd numbers, 3 to 15");
+  EXPECT_EQ(validate(even), "normal_window = 10: expected odd numbers, 3 to 15");
   EXPECT_EQ(validate(Settings{}), "");
   Settings settings;
   for (const Parameter& parameter : parameters(settings))

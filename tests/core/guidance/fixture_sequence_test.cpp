@@ -183,13 +183,13 @@ TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
   SequenceStep s;
   EXPECT_EQ(validate(s), "");
   s.fixture = "valve";
-  EXPECT_EQ(validate(s), "fixture = \"valve\": allowed none for wait, unless done = reached");
+  EXPECT_EQ(validate(s), "fixture = \"valve\": expected none for wait, unless done = reached");
   s.done = StepEnd::reached;
   EXPECT_EQ(validate(s), "");
   s.fixture = "";
-  EXPECT_EQ(validate(s), "fixture = \"\": allowed the label of a fixture");
+  EXPECT_EQ(validate(s), "fixture = \"\": expected the label of a fixture");
   s.action = FixtureAction::lock, s.fixture = "valve";
-  EXPECT_EQ(validate(s), "done = reached: allowed for activate and wait");
+  EXPECT_EQ(validate(s), "done = reached: expected only with action = activate or wait");
   s.action = FixtureAction::activate;
   EXPECT_EQ(validate(s), "");
 }

@@ -108,7 +108,7 @@ TEST(PenaltyRenderer, TheBallMustBeSmallerThanWhereNormalsComeFrom) {
   PenaltyParameters p;
   EXPECT_EQ(validate(p), "");
   p.contact_radius_m = p.r3_m;
-  EXPECT_EQ(validate(p), "contact_radius_m = 0.01: allowed below r3_m = 0.01");
+  EXPECT_EQ(validate(p), "contact_radius_m = 0.01: expected below r3_m = 0.01");
 }
 
 }  // namespace

@@ -207,12 +207,12 @@ TEST(Schedule, ChangesWithTimeWhereItsStrengthDoes) {
 TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
   EXPECT_EQ(validate(FixtureValues{}), "");
   EXPECT_EQ(validate(FixtureValues{0, 0, {}}), "");
-  EXPECT_EQ(validate(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: allowed 0 or more, or -1");
+  EXPECT_EQ(validate(FixtureValues{0, -0.5, {}}), "stiffness_N_per_m = -0.500000: expected 0 or more, or -1");
   EXPECT_EQ(validate(scheduled({0, 0, 0, 1, 3, 0.5})), "");
-  EXPECT_EQ(validate(scheduled({0, 0, 1, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
-  EXPECT_EQ(validate(scheduled({0, 1.5})), "schedule: strength 1.500000: allowed 0 to 1");
+  EXPECT_EQ(validate(scheduled({0, 0, 1, 1.5})), "schedule: strength 1.500000: expected 0 to 1");
+  EXPECT_EQ(validate(scheduled({0, 1.5})), "schedule: strength 1.500000: expected 0 to 1");
   EXPECT_EQ(validate(scheduled({0, 0, 2, 1, 1, 0})),
-            "schedule: time 1.000000: allowed no earlier than the row before");
+            "schedule: time 1.000000: expected no earlier than the row before");
 }
 
 }  // namespace

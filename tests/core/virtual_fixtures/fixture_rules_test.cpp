@@ -79,7 +79,7 @@ TEST(HalfSpace, ANormalOfNoLengthIsRefused) {
   HalfSpace::Settings s;
   EXPECT_EQ(validate(s), "");
   s.normal = {0, 0, 0};
-  EXPECT_HAS(validate(s), "normal: allowed longer than 0");
+  EXPECT_HAS(validate(s), "normal: expected longer than 0");
 }
 
 // --- near-point ---
@@ -164,8 +164,8 @@ TEST(NearPoint, APixelOutsideTheImageIsRefused) {
   const auto why = [](const PointCloud& cloud, int row, int column) {
     return refusal([&] { picked(cloud, row, column); });
   };
-  EXPECT_EQ(why(wall(), 4, 0), "near-point: row, column: allowed below 4 and 6");
-  EXPECT_EQ(why(wall(), 0, 6), "near-point: row, column: allowed below 4 and 6");
+  EXPECT_EQ(why(wall(), 4, 0), "near-point: row, column: expected below 4 and 6");
+  EXPECT_EQ(why(wall(), 0, 6), "near-point: row, column: expected below 4 and 6");
   EXPECT_EQ(why(wall(), 3, 5), "no InputError");
   EXPECT_HAS(why(cloud_of({{0, 0, 0}}), 0, 0), "the frame is no image");
 }
@@ -174,7 +174,7 @@ TEST(NearPoint, ARowNeedsItsColumn) {
   NearPoint::Settings s;
   EXPECT_EQ(validate(s), "");
   s.row = 0;
-  EXPECT_HAS(validate(s), "row and column: allowed both 0 or more, or both -1");
+  EXPECT_HAS(validate(s), "row and column: expected both 0 or more, or both -1");
   s.column = 0;
   EXPECT_EQ(validate(s), "");
   s.row = -1;

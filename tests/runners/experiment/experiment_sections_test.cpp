@@ -122,71 +122,71 @@ TEST(ExperimentSections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
 // --- refused ---
 
 TEST(ExperimentSections, RefuseValuesThatAreNone) {
-  EXPECT_HAS(why("sequence.0.deadline_s=soon"), "sequence.0.deadline_s = \"soon\": allowed 0 to 86400");
+  EXPECT_HAS(why("sequence.0.deadline_s=soon"), "sequence.0.deadline_s = \"soon\": expected 0 to 86400");
   EXPECT_HAS(why("sequence.1.action=open"),
-             "sequence.1.action = \"open\": allowed lock, unlock, activate, release, wait");
-  EXPECT_HAS(why("sequence.1.button=32"), "sequence.1.button = 32: allowed integers 0 to 31");
-  EXPECT_HAS(why("guidance.orientation=free"), "guidance.orientation = \"free\": allowed fixed, plane");
-  EXPECT_HAS(why("guidance.min_points=0"), "guidance.min_points = 0: allowed integers 1 to");
-  EXPECT_HAS(why("operator.mass_kg=0"), "operator.mass_kg = 0: allowed 0.01 to 100");
-  EXPECT_HAS(why("device.torque_x=1"), "device.torque_x = 1: allowed true, false");
-  EXPECT_HAS(why("fixtures.0.role=both"), "fixtures.0.role = \"both\": allowed forbidden, guidance");
-  EXPECT_HAS(why("device.turn_x=true"), "device.turn_x: unknown; the nearest allowed is device.torque_x");
+             "sequence.1.action = \"open\": expected lock, unlock, activate, release, wait");
+  EXPECT_HAS(why("sequence.1.button=32"), "sequence.1.button = 32: expected integers 0 to 31");
+  EXPECT_HAS(why("guidance.orientation=free"), "guidance.orientation = \"free\": expected fixed, plane");
+  EXPECT_HAS(why("guidance.min_points=0"), "guidance.min_points = 0: expected integers 1 to");
+  EXPECT_HAS(why("operator.mass_kg=0"), "operator.mass_kg = 0: expected 0.01 to 100");
+  EXPECT_HAS(why("device.torque_x=1"), "device.torque_x = 1: expected true, false");
+  EXPECT_HAS(why("fixtures.0.role=both"), "fixtures.0.role = \"both\": expected forbidden, guidance");
+  EXPECT_HAS(why("device.turn_x=true"), "device.turn_x: unknown; did you mean device.torque_x");
 }
 
 TEST(ExperimentSections, RefuseSectionsOfAnotherShape) {
-  EXPECT_HAS(why("sequence=3"), "sequence: allowed a list of {\"action\": ..., parameters}");
-  EXPECT_HAS(why(R"(sequence={"action": "wait"})"), "sequence: allowed a list of");
-  EXPECT_HAS(why("sequence=[3]"), "sequence.0: allowed {parameters}");
+  EXPECT_HAS(why("sequence=3"), "sequence: expected a list of {\"action\": ..., parameters}");
+  EXPECT_HAS(why(R"(sequence={"action": "wait"})"), "sequence: expected a list of");
+  EXPECT_HAS(why("sequence=[3]"), "sequence.0: expected {parameters}");
   for (const std::string section : {"faults", "guidance", "operator", "device"}) {
-    EXPECT_HAS(why(section + "=3"), section + ": allowed {parameters}");
-    EXPECT_HAS(why(section + "=[]"), section + ": allowed {parameters}");
+    EXPECT_HAS(why(section + "=3"), section + ": expected {parameters}");
+    EXPECT_HAS(why(section + "=[]"), section + ": expected {parameters}");
   }
 }
 
 TEST(ExperimentSections, RefuseSettingsThatContradictEachOther) {
-  EXPECT_HAS(why("guidance.approach_axis=[0,0,0]"), "guidance.approach_axis: allowed 0.001 or longer");
+  EXPECT_HAS(why("guidance.approach_axis=[0,0,0]"), "guidance.approach_axis: expected 0.001 or longer");
   EXPECT_HAS(why(R"(operator={"mass_kg": 0.01, "stiffness_N_per_m": 400})"),
-             "operator.stiffness_N_per_m = 400.000000: allowed below 400.000000 for this mass");
+             "operator.stiffness_N_per_m = 400.000000: expected below 400.000000 for this mass");
   EXPECT_HAS(
       why("operator.rotational_stiffness_Nm_per_rad=40"),
-      "operator.rotational_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
-  EXPECT_HAS(why("operator.grip=[[0,2]]"), "operator.grip: share 2.000000: allowed 0 to 1");
-  EXPECT_HAS(why("operator.presses=[[0,32,1]]"), "operator.presses: button 32.000000: allowed integers");
-  EXPECT_HAS(why("sequence.0.fixture="), "sequence.0.fixture = \"\": allowed the label of a fixture");
-  EXPECT_HAS(why("sequence.2.fixture=valve"), "sequence.2.fixture = \"valve\": allowed none for wait");
+      "operator.rotational_stiffness_Nm_per_rad = 40.000000: expected below 40.000000 for this inertia");
+  EXPECT_HAS(why("operator.grip=[[0,2]]"), "operator.grip: share 2.000000: expected 0 to 1");
+  EXPECT_HAS(why("operator.presses=[[0,32,1]]"), "operator.presses: button 32.000000: expected integers");
+  EXPECT_HAS(why("sequence.0.fixture="), "sequence.0.fixture = \"\": expected the label of a fixture");
+  EXPECT_HAS(why("sequence.2.fixture=valve"), "sequence.2.fixture = \"valve\": expected none for wait");
   for (const char* radius : {"0", "-1"})
-    EXPECT_HAS(why(std::string("fixtures.1.radius_m=") + radius), "allowed above 0 for role = guidance");
+    EXPECT_HAS(why(std::string("fixtures.1.radius_m=") + radius), "expected above 0 for role = guidance");
 }
 
 TEST(ExperimentSections, RefuseATaskThatDoesNotFitItsFixtures) {
   EXPECT_EQ(why("sequence.1.fixture=knob"),
-            "sequence.1.fixture = \"knob\": allowed the label of a fixture: \"table\", \"valve\"");
+            "sequence.1.fixture = \"knob\": expected the label of a fixture: \"table\", \"valve\"");
   EXPECT_EQ(why("fixtures.1.label=table"),
-            "fixtures.1.label = \"table\": allowed a label of its own, fixtures.0 has this one");
+            "fixtures.1.label = \"table\": expected a label of its own, fixtures.0 has this one");
   EXPECT_EQ(
       why("sequence.0.fixture=valve"),
-      "sequence.0.action = \"lock\": allowed activate, release, wait for a fixture with role = guidance");
+      "sequence.0.action = \"lock\": expected activate, release, wait for a fixture with role = guidance");
   EXPECT_EQ(why(R"(sequence.1={"action": "release", "fixture": "table"})"),
-            "sequence.1.action = \"release\": allowed lock, unlock for a fixture with role = forbidden");
+            "sequence.1.action = \"release\": expected lock, unlock for a fixture with role = forbidden");
   EXPECT_EQ(why(R"(sequence.2={"action": "wait", "done": "reached", "fixture": "table"})"),
-            "sequence.2.action = \"wait\": allowed lock, unlock for a fixture with role = forbidden");
+            "sequence.2.action = \"wait\": expected lock, unlock for a fixture with role = forbidden");
   EXPECT_EQ(
       why("sequence.2.button=3"),
-      "sequence.2.button = 3: allowed a button that operator.presses presses, or any with a section live");
+      "sequence.2.button = 3: expected a button of operator.presses (any button in experiments with a section live)");
   EXPECT_EQ(
       why("operator=null"),
-      "sequence.1.button = 2: allowed a button that operator.presses presses, or any with a section live");
+      "sequence.1.button = 2: expected a button of operator.presses (any button in experiments with a section live)");
   EXPECT_EQ(resolved({"operator=null", "live={}"})["sequence"].size(), 3u);  // a real device has buttons
   EXPECT_EQ(resolved({R"(sequence=[{"action": "wait"}])"})["sequence"].size(), 1u);  // one needs no step
   EXPECT_EQ(refusal([] {
               task({"sequence=[]", R"(fixtures.0={"name": "everywhere", "role": "guidance"})"});
             }),
-            "fixtures.1.role = guidance: allowed once where no step of a sequence activates or releases it");
+            "fixtures.1.role = guidance: expected once where no step of a sequence activates or releases it");
   EXPECT_EQ(why("sequence.0.offset_m=[0,0,1]"),
-            "sequence.0.offset_m: allowed other than 0 for action = activate only");
+            "sequence.0.offset_m: expected other than 0 for action = activate only");
   EXPECT_EQ(why("sequence.0.deadline_s=1"),
-            "sequence.0.deadline_s = 1.000000: allowed 0 for done = immediately");
+            "sequence.0.deadline_s = 1.000000: expected 0 for done = immediately");
   // Fixtures without a label are not mixed up.
   EXPECT_EQ(resolved({"fixtures.0.label=", "fixtures.1.label=", "sequence=[]"})["fixtures"].size(), 2u);
 }
@@ -196,7 +196,7 @@ TEST(ExperimentSections, RefuseMoreFixturesThanATaskCanSwitch) {
   while (json["fixtures"].size() < 64) json["fixtures"].push_back({{"name", "everywhere"}});
   EXPECT_NO_THROW(Experiment::from_json(json));
   json["fixtures"].push_back({{"name", "everywhere"}});
-  EXPECT_EQ(refusal([&] { Experiment::from_json(json); }), "fixtures: 65 rules: allowed 64 with a sequence");
+  EXPECT_EQ(refusal([&] { Experiment::from_json(json); }), "fixtures: 65 rules: expected 64 with a sequence");
   json.erase("sequence");
   EXPECT_NO_THROW(Experiment::from_json(json));
 }

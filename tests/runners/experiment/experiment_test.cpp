@@ -116,8 +116,8 @@ TEST(Experiments, OverridesAreJsonOrPlainText) {
 
 TEST(Experiments, RefuseOverridesThatAreNone) {
   const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
-  EXPECT_HAS(why("seed"), "--set seed: allowed key=value");
-  EXPECT_HAS(why("=3"), "--set =3: allowed key=value");
+  EXPECT_HAS(why("seed"), "--set seed: expected key=value");
+  EXPECT_HAS(why("=3"), "--set =3: expected key=value");
   EXPECT_HAS(why("seed.x=3"), "--set seed.x=3: the path leads through a value");
   EXPECT_HAS(why("scenario=3"), "scenario");
   EXPECT_HAS(why("renderer.=3"), "renderer");
@@ -128,8 +128,8 @@ TEST(Experiments, RefuseOverridesThatAreNone) {
 
 TEST(Experiments, RefuseSettingsThatContradictEachOther) {
   const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
-  EXPECT_HAS(why("renderer.r1_m=0.006"), "renderer.r1_m = 0.006: allowed below r2_m = 0.00501");
-  EXPECT_HAS(why("renderer.r3_m=0.005"), "renderer.r2_m = 0.00501: allowed below r3_m = 0.005");
+  EXPECT_HAS(why("renderer.r1_m=0.006"), "renderer.r1_m = 0.006: expected below r2_m = 0.00501");
+  EXPECT_HAS(why("renderer.r3_m=0.005"), "renderer.r2_m = 0.00501: expected below r3_m = 0.005");
   EXPECT_HAS(why("trajectory.waypoints=[]"), "trajectory.waypoints = []");
   EXPECT_HAS(why("trajectory.waypoints=[[0,0,0,-1]]"), "trajectory.waypoints");
   EXPECT_HAS(why(R"(scenario={"name":"recording"})"), "scenario.path");
@@ -154,21 +154,21 @@ TEST(Experiments, RefuseFixturesThatAreNone) {
     return refusal([&] { resolved({"fixtures=" + list, change}); });
   };
   for (const char* list : {"3", "{}", "{\"name\": \"everywhere\"}", "everywhere"})
-    EXPECT_HAS(why(list), "fixtures: allowed a list of {") << list;
+    EXPECT_HAS(why(list), "fixtures: expected a list of {") << list;
   for (const char* list : {"[3]", "[{}]", "[[]]", "[{\"radius_m\": 1}]"})
-    EXPECT_HAS(why(list), "fixtures.0: missing; allowed {\"name\"") << list;
+    EXPECT_HAS(why(list), "fixtures.0: missing: expected {\"name\"") << list;
   const std::string one = R"([{"name": "everywhere"}])";
-  EXPECT_HAS(why(one, "fixtures.0.name=moon"),
-             "fixtures.0.name = \"moon\": allowed everywhere, half-space, near-point, hue-range, image-mask");
+  EXPECT_HAS(
+      why(one, "fixtures.0.name=moon"),
+      "fixtures.0.name = \"moon\": expected everywhere, half-space, near-point, hue-range, image-mask");
   EXPECT_HAS(why(one, "fixtures.0.name=3"), "fixtures.0.name = 3");
-  EXPECT_HAS(why(one, "fixtures.0.radius=1"),
-             "fixtures.0.radius: unknown; the nearest allowed is fixtures.0.radius_m");
-  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: allowed -1 to 1");
+  EXPECT_HAS(why(one, "fixtures.0.radius=1"), "fixtures.0.radius: unknown; did you mean fixtures.0.radius_m");
+  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: expected -1 to 1");
   EXPECT_HAS(why(one, "fixtures.0.schedule=[[0,1.5]]"), "fixtures.0.schedule: strength 1.5");
-  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "allowed 0 to 0 for its place in a list");
+  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "expected 0 to 0 for its place in a list");
   EXPECT_HAS(why("[]", "fixtures.0.radius_m=1"), "fixtures");
   EXPECT_HAS(why(R"([{"name": "everywhere"}, {"name": "half-space", "normal": [0, 0, 0]}])"),
-             "fixtures.1.normal: allowed longer than 0");
+             "fixtures.1.normal: expected longer than 0");
 }
 
 TEST(Experiments, DefaultsFitTogether) {
@@ -186,9 +186,9 @@ TEST(Experiments, DefaultsFitTogether) {
 
 TEST(Experiments, TheMessageIsThatOfTheManual) {
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"renderer.stiffness_N_per_m=-3"}); }),
-            "renderer.stiffness_N_per_m = -3: allowed 0 to 10000");
+            "renderer.stiffness_N_per_m = -3: expected 0 to 10000");
   EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"haptic_rate_hz=fast"}); }),
-            "haptic_rate_hz = \"fast\": allowed 100 to 10000");
+            "haptic_rate_hz = \"fast\": expected 100 to 10000");
 }
 
 TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
@@ -196,13 +196,13 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
     return refusal([&] { Experiment::load("fig4.11", {assignment}); });
   };
   EXPECT_EQ(nearest("renderer.stiffnes=3"),
-            "renderer.stiffnes: unknown; the nearest allowed is renderer.stiffness_N_per_m");
+            "renderer.stiffnes: unknown; did you mean renderer.stiffness_N_per_m");
   EXPECT_HAS(nearest("renderer.stifness_N_per_m=3"), "renderer.stiffness_N_per_m");
-  EXPECT_HAS(nearest("renderer.r1=3"), "allowed is renderer.r1_m");
-  EXPECT_HAS(nearest("scenario.colums=3"), "allowed is scenario.columns");
-  EXPECT_HAS(nearest("trajectory.waypoint=3"), "allowed is trajectory.waypoints");
-  EXPECT_HAS(nearest("duration=3"), "duration: unknown; the nearest allowed is duration_s");
-  EXPECT_HAS(nearest("sede=3"), "allowed is seed");
+  EXPECT_HAS(nearest("renderer.r1=3"), "expected is renderer.r1_m");
+  EXPECT_HAS(nearest("scenario.colums=3"), "expected is scenario.columns");
+  EXPECT_HAS(nearest("trajectory.waypoint=3"), "expected is trajectory.waypoints");
+  EXPECT_HAS(nearest("duration=3"), "duration: unknown; did you mean duration_s");
+  EXPECT_HAS(nearest("sede=3"), "expected is seed");
 }
 
 TEST(Experiments, RefuseTextThatIsNoExperiment) {
@@ -216,7 +216,7 @@ TEST(Experiments, RefuseTextThatIsNoExperiment) {
   EXPECT_HAS(why(std::string(100000, '[')), "file.json: nested too deep");
   EXPECT_HAS(why("{}"), "scenario: missing");
   EXPECT_HAS(why(R"({"scenario": {"columns": 3}})"), "scenario: missing");
-  EXPECT_HAS(why(R"({"scenario": {"name": "moon"}})"), "scenario.name = \"moon\": allowed flat-grid, ");
+  EXPECT_HAS(why(R"({"scenario": {"name": "moon"}})"), "scenario.name = \"moon\": expected flat-grid, ");
   EXPECT_HAS(why(R"({"scenario": {"name": "flat-grid"}})"), "renderer: missing");
   EXPECT_HAS(why(R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"}})"),
              "trajectory: missing");

@@ -65,7 +65,7 @@ void expect_taken(const Parameter& parameter, const Json& value) {
 
 void expect_refused(const Parameter& parameter, const Json& value) {
   const std::string message = refused(parameter, value);
-  EXPECT_EQ(message, "part." + parameter.name + " = " + value.dump() + ": allowed " + allowed(parameter));
+  EXPECT_EQ(message, "part." + parameter.name + " = " + value.dump() + ": expected " + allowed(parameter));
 }
 
 bool is_number(const Parameter& p) {
@@ -296,7 +296,7 @@ TEST(Parameters, ALongValueIsShortenedInTheMessage) {
   const std::string message = refused(p, std::string(5000, 'x'));
   EXPECT_LT(message.size(), 300u);
   EXPECT_HAS(message, "part.count = \"xxx");
-  EXPECT_HAS(message, "...: allowed integers 0 to 10");
+  EXPECT_HAS(message, "...: expected integers 0 to 10");
 }
 
 }  // namespace

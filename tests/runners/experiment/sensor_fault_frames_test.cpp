@@ -310,13 +310,12 @@ TEST(SensorFaultFrames, RefusesWhatIsNone) {
   const auto why = [](const std::string& assignment) {
     return refusal([&] { Experiment::load("fig4.12", {assignment}); });
   };
-  EXPECT_EQ(why("faults.dropout_probability=1.5"), "faults.dropout_probability = 1.5: allowed 0 to 1");
-  EXPECT_EQ(why("faults.quantisation_m=-0.001"), "faults.quantisation_m = -0.001: allowed 0 to 1");
-  EXPECT_EQ(why("faults.hole_radius_m=0"), "faults.hole_radius_m = 0: allowed 0.0001 to 10");
-  EXPECT_HAS(why("faults.view_direction=[0,0,0]"), "faults.view_direction: allowed 0.001 or longer");
-  EXPECT_HAS(why("faults.dropout=0.5"),
-             "faults.dropout: unknown; the nearest allowed is faults.dropout_probability");
-  EXPECT_HAS(why("faults=3"), "faults: allowed {parameters}");
+  EXPECT_EQ(why("faults.dropout_probability=1.5"), "faults.dropout_probability = 1.5: expected 0 to 1");
+  EXPECT_EQ(why("faults.quantisation_m=-0.001"), "faults.quantisation_m = -0.001: expected 0 to 1");
+  EXPECT_EQ(why("faults.hole_radius_m=0"), "faults.hole_radius_m = 0: expected 0.0001 to 10");
+  EXPECT_HAS(why("faults.view_direction=[0,0,0]"), "faults.view_direction: expected 0.001 or longer");
+  EXPECT_HAS(why("faults.dropout=0.5"), "faults.dropout: unknown; did you mean faults.dropout_probability");
+  EXPECT_HAS(why("faults=3"), "faults: expected {parameters}");
   SensorFaults blind;
   blind.view_direction.setZero();
   EXPECT_THROW(faulty(blind), std::invalid_argument);

@@ -231,24 +231,24 @@ TEST(OperatorModel, RefusesWhatCannotBe) {
   OperatorSettings s;
   EXPECT_EQ(validate(s), "");
   s.mass_kg = 0.01, s.stiffness_N_per_m = 400;
-  EXPECT_EQ(validate(s), "stiffness_N_per_m = 400.000000: allowed below 400.000000 for this mass");
+  EXPECT_EQ(validate(s), "stiffness_N_per_m = 400.000000: expected below 400.000000 for this mass");
   s.stiffness_N_per_m = 399;
   EXPECT_EQ(validate(s), "");
   s.rotational_stiffness_Nm_per_rad = 40;
   EXPECT_EQ(validate(s),
-            "rotational_stiffness_Nm_per_rad = 40.000000: allowed below 40.000000 for this inertia");
+            "rotational_stiffness_Nm_per_rad = 40.000000: expected below 40.000000 for this inertia");
   s = {};
   s.grip = {0, 1.5};
-  EXPECT_EQ(validate(s), "grip: share 1.500000: allowed 0 to 1");
+  EXPECT_EQ(validate(s), "grip: share 1.500000: expected 0 to 1");
   s.grip = {1, 0, 0.5, 1};
-  EXPECT_EQ(validate(s), "grip: time 0.500000: allowed no earlier than the row before");
+  EXPECT_EQ(validate(s), "grip: time 0.500000: expected no earlier than the row before");
   s = {};
   for (const double button : {32.0, 1.5}) {
     s.presses = {0, 0, 1, 1, button, 1};
-    EXPECT_EQ(validate(s), "presses: button " + std::to_string(button) + ": allowed integers 0 to 31");
+    EXPECT_EQ(validate(s), "presses: button " + std::to_string(button) + ": expected integers 0 to 31");
   }
   s.presses = {0, 0, 0.01, 1, 1, 0.009};
-  EXPECT_EQ(validate(s), "presses: duration 0.009000: allowed 0.01 or more");
+  EXPECT_EQ(validate(s), "presses: duration 0.009000: expected 0.01 or more");
 }
 
 // As stiff as it may be at the slowest rate, without a damper: it rings, and does not run away.

@@ -139,7 +139,7 @@ TEST_F(Inputs, ThatAreNotThereAreRefusedAsByARun) {
   EXPECT_EQ(hashes.text(), "");
   write_depth_folder(false);
   const auto refused = [&](const RecordingPart& of) { return refusal([&] { input_hashes({of}); }); };
-  EXPECT_HAS(refused(part(0, 7)), "last_frame = 7: allowed 0 to 2");
+  EXPECT_HAS(refused(part(0, 7)), "last_frame = 7: expected 0 to 2");
   EXPECT_HAS(refused(part(3)), "first_frame = 3");
   fs::create_directory(folder_ / "depth/0003.png");
   EXPECT_HAS(refused(part()), "0003.png: cannot be read");

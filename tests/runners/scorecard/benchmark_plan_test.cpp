@@ -84,8 +84,8 @@ TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   const auto two = chosen_methods({"tracked-sheet", "proxy"});
   EXPECT_EQ(two[0].name, "tracked-sheet");
   EXPECT_EQ(two[1].name, "proxy");
-  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown; allowed god-object, ");
-  EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown; allowed ");
+  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected god-object, ");
+  EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
   EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");
 }
 
@@ -94,10 +94,10 @@ TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
     return refusal([&] { read_benchmark_scene("x", text); });
   };
   EXPECT_HAS(scene("[]"), "scene x");
-  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"), "colour: unknown; allowed title, experiment, noise");
+  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"), "colour: unknown: expected title, experiment, noise");
   EXPECT_HAS(scene(R"({"title": "t"})"), "experiment: missing");
   const std::string begin = R"({"title": "t", "experiment": {}, )";
-  EXPECT_HAS(scene(begin + R"("measures": {"force_fraction": "bigger"}})"), "allowed larger, smaller");
+  EXPECT_HAS(scene(begin + R"("measures": {"force_fraction": "bigger"}})"), "expected larger, smaller");
   EXPECT_HAS(scene(begin + R"("measures": {}, "success": {"meaning": "m", "bounds": []}})"), "bounds");
   EXPECT_HAS(
       scene(

@@ -58,7 +58,7 @@ TEST(Shards, AreWrittenAsIndexOfCount) {
   for (const char* text : {"", "/", "3", "1/", "/3", "0/3", "4/3", "-1/3", "1/-3", "1/0", "a/b", "1/3/5",
                            " 1/3", "1/3 ", "+1/3", "1.0/3", "1/1000001", "99999999999/99999999999"}) {
     const std::string why = refusal([&] { parse_shard(text); });
-    EXPECT_HAS(why, std::string("--shard ") + text + ": allowed i/N");
+    EXPECT_HAS(why, std::string("--shard ") + text + ": expected i/N");
   }
 }
 
@@ -86,11 +86,12 @@ TEST(Shards, AreThoseOfSlurmOrMpirun) {
   EXPECT_EQ(from_environment({{rank, "3"}, {size, "4"}}), "4/4");
   EXPECT_EQ(from_environment({{id, "1"}, {count, "2"}, {min, "1"}, {rank, "3"}, {size, "4"}}), "1/2");
   EXPECT_EQ(from_environment({{rank, "3"}}), "none");
-  EXPECT_HAS(from_environment({{id, "two"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = two: allowed integers");
-  EXPECT_HAS(from_environment({{id, "-1"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = -1: allowed");
-  EXPECT_HAS(from_environment({{id, "7"}, {count, "3"}, {min, "1"}}), "SLURM_ARRAY_TASK_ID = 7: allowed i/N");
-  EXPECT_HAS(from_environment({{rank, "4"}, {size, "4"}}), "OMPI_COMM_WORLD_RANK = 4: allowed i/N");
-  EXPECT_HAS(from_environment({{rank, "1"}, {size, "1.5"}}), "OMPI_COMM_WORLD_SIZE = 1.5: allowed integers");
+  EXPECT_HAS(from_environment({{id, "two"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = two: expected integers");
+  EXPECT_HAS(from_environment({{id, "-1"}, {count, "3"}}), "SLURM_ARRAY_TASK_ID = -1: expected");
+  EXPECT_HAS(from_environment({{id, "7"}, {count, "3"}, {min, "1"}}),
+             "SLURM_ARRAY_TASK_ID = 7: expected i/N");
+  EXPECT_HAS(from_environment({{rank, "4"}, {size, "4"}}), "OMPI_COMM_WORLD_RANK = 4: expected i/N");
+  EXPECT_HAS(from_environment({{rank, "1"}, {size, "1.5"}}), "OMPI_COMM_WORLD_SIZE = 1.5: expected integers");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST_F(MeshFileTest, Ply) {
 }
 
 TEST_F(MeshFileTest, RefusalsNameTheFile) {
-  EXPECT_HAS(refusal([&] { read_mesh(folder_ / "none.obj"); }), "none.obj: no such file; allowed an OBJ");
+  EXPECT_HAS(refusal([&] { read_mesh(folder_ / "none.obj"); }), "none.obj: no such file: expected an OBJ");
   EXPECT_HAS(refusal([&] { read_mesh(folder_.write("a.txt", "v 0 0 0\n")); }), "a.txt: not a mesh");
   EXPECT_HAS(refusal([&] { read_mesh(folder_.write("empty.obj", "")); }), "empty.obj: cannot be read");
   EXPECT_HAS(refusal([&] { read_mesh(folder_.write("bad.ply", "ply\nformat nothing\n")); }),

@@ -156,16 +156,16 @@ TEST_F(ToolCacheTest, ResultsHoldTheHashOfTheMesh) {
 
 TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
   EXPECT_HAS(refusal([] { load_tool({.mesh = "none.obj"}); }),
-             "renderer.tool_mesh = none.obj: no such tool; allowed ball, bar, fork, husky");
+             "renderer.tool_mesh = none.obj: no such tool: expected ball, bar, fork, husky");
   EXPECT_THROW(load_tool({.mesh = "none.obj"}), MissingRecording);
   folder_.write("open.obj", kCube.substr(0, kCube.size() - 10));
   EXPECT_HAS(refusal([] { load_tool({.mesh = "open.obj", .size_m = 0.02}); }),
              "renderer.tool_mesh = open.obj: not closed: 4 boundary edges");
   EXPECT_TRUE(load_tool({.mesh = "open.obj", .size_m = 0.02, .voxel_m = 1e-3, .repair = true}));
   EXPECT_EQ(validate(bar_), "");
-  EXPECT_HAS(validate({.mesh = "wolf"}), "tool_mesh = wolf: allowed ball, bar");
-  EXPECT_HAS(validate({.mesh = ""}), "allowed ball, bar");
-  EXPECT_HAS(validate({.size_m = 5e-4}), "tool_size_m = 0.000500: allowed two voxels");
+  EXPECT_HAS(validate({.mesh = "wolf"}), "tool_mesh = wolf: expected ball, bar");
+  EXPECT_HAS(validate({.mesh = ""}), "expected ball, bar");
+  EXPECT_HAS(validate({.size_m = 5e-4}), "tool_size_m = 0.000500: expected two voxels");
 }
 
 TEST_F(ToolCacheTest, ParametersReachTheSettings) {

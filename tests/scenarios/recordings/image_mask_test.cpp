@@ -75,8 +75,8 @@ TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
   for (const auto& [width, height] : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
     const std::string why = refusal([&] { weights(file, image(width, height)); });
-    EXPECT_EQ(why, file.string() + ": 3 x 2 pixels; allowed as many as the frames: " + std::to_string(width) +
-                       " x " + std::to_string(height));
+    EXPECT_EQ(why, file.string() + ": 3 x 2 pixels: expected as many as the frames: " +
+                       std::to_string(width) + " x " + std::to_string(height));
   }
   PointCloud no_image = image(3, 2);
   no_image.image.reset();
@@ -101,7 +101,7 @@ TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {
 
 TEST_F(ImageMasks, AreInputs) {
   ImageMask::Settings settings;
-  EXPECT_HAS(validate(settings), "path = \"\": allowed a PNG file");
+  EXPECT_HAS(validate(settings), "path = \"\": expected a PNG file");
   settings.path = grey({1}, 1).string();
   EXPECT_EQ(validate(settings), "");
   EXPECT_EQ(input_files(settings), RecordingPart{settings.path});

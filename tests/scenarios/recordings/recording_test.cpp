@@ -111,9 +111,9 @@ TEST_F(Recording, OrdersNumbersAsNumbersAndOtherNamesAsText) {
 
 TEST_F(Recording, RefusesIncompleteFolders) {
   const auto error = [](const fs::path& path) { return refusal([&] { index_recording(path); }); };
-  EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: allowed");
+  EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: expected");
   EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
-  const std::string allowed = "allowed a folder that holds depth.txt (TUM), depth/*.png or *.pcd";
+  const std::string allowed = "expected a folder that holds depth.txt (TUM), depth/*.png or *.pcd";
   const std::string no_recording = folder_.path().string() + ": is no recording: " + allowed;
   EXPECT_EQ(error(folder_.path()), no_recording);
   folder_.write("camera.json", kCamera);
@@ -128,22 +128,22 @@ TEST_F(Recording, RefusesIncompleteFolders) {
 TEST_F(Recording, RefusesBadCameraFiles) {
   write_recording();
   expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 0)",
-                      "frame_rate_hz = 0: allowed a number above 0");
+                      "frame_rate_hz = 0: expected a number above 0");
   expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": -3.5)", "frame_rate_hz = -3.5");
   expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": null)", "frame_rate_hz = null");
   expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 1e999)", "1e999");
   expect_camera_error(R"("frame_rate_hz": 20, )", "", "has no key 'frame_rate_hz'");
-  expect_camera_error(R"("fx": 10)", R"("fx": -10)", "fx = -10: allowed a number above 0");
-  expect_camera_error(R"("fy": 20.5)", R"("fy": "20")", "fy = \"20\": allowed a number above 0");
-  expect_camera_error(R"("cx": 1)", R"("cx": [])", "cx = []: allowed a number");
-  expect_camera_error(R"("width": 3)", R"("width": 3.5)", "width = 3.5: allowed an integer from 1 to 65535");
-  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: allowed a whole");
-  expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: allowed");
-  expect_camera_error("true", "1", "colour_registered = 1: allowed true, false");
-  expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": allowed");
+  expect_camera_error(R"("fx": 10)", R"("fx": -10)", "fx = -10: expected a number above 0");
+  expect_camera_error(R"("fy": 20.5)", R"("fy": "20")", "fy = \"20\": expected a number above 0");
+  expect_camera_error(R"("cx": 1)", R"("cx": [])", "cx = []: expected a number");
+  expect_camera_error(R"("width": 3)", R"("width": 3.5)", "width = 3.5: expected an integer from 1 to 65535");
+  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: expected a whole");
+  expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: expected");
+  expect_camera_error("true", "1", "colour_registered = 1: expected true, false");
+  expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": expected");
   expect_camera_error("{", "", "is not JSON");
   folder_.write("camera.json", "[1]");
-  expect_error("camera.json", "is of type array: allowed object");
+  expect_error("camera.json", "is of type array: expected object");
   folder_.write("camera.json", "");
   expect_error("camera.json", "is not JSON");
 }
@@ -151,9 +151,9 @@ TEST_F(Recording, RefusesBadCameraFiles) {
 TEST_F(Recording, RefusesImagesOfAnotherSize) {
   write_recording();
   folder_.write_colour("rgb/0001.png", 1, 5);
-  expect_error("rgb/0001.png", "has 5 x 2 pixels: allowed 3 x 2");
+  expect_error("rgb/0001.png", "has 5 x 2 pixels: expected 3 x 2");
   folder_.write_depth("depth/0001.png", 1000, 4);
-  expect_error("depth/0001.png", "has 4 x 2 pixels: allowed 3 x 2");
+  expect_error("depth/0001.png", "has 4 x 2 pixels: expected 3 x 2");
   folder_.write("depth/0000.png", "not an image");
   expect_error("depth/0000.png", "is not a whole PNG file");
 }
@@ -204,7 +204,7 @@ TEST_F(Recording, ReadsTumWithItsOwnCamera) {
   for (int i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(cloud.z.at(i), 1.0 + 0.001 * i) << i;
   EXPECT_EQ(cloud.colour.at(0), 0x333333u);
   fs::remove(folder_ / "camera.json");
-  expect_error("depth/a.png", "has 3 x 2 pixels: allowed 640 x 480");
+  expect_error("depth/a.png", "has 3 x 2 pixels: expected 640 x 480");
 }
 
 TEST_F(Recording, RefusesBadTumLists) {
@@ -212,20 +212,20 @@ TEST_F(Recording, RefusesBadTumLists) {
   folder_.write("depth.txt", "# nothing\n\n");
   expect_error("depth.txt", "lists no file");
   folder_.write("depth.txt", "# header\n1.0 depth/a.png\nnoon depth/a.png\n");
-  expect_error("depth.txt:3", "timestamp 'noon': allowed a number of seconds");
+  expect_error("depth.txt:3", "timestamp 'noon': expected a number of seconds");
   folder_.write("depth.txt", "nan depth/a.png\n");
   expect_error("depth.txt:1", "timestamp 'nan'");
   folder_.write("depth.txt", "1.0\r\n");
-  expect_error("depth.txt:1", "'1.0': allowed one timestamp and one file name");
+  expect_error("depth.txt:1", "'1.0': expected one timestamp and one file name");
   folder_.write("depth.txt", "1.0 depth/a.png rgb/a.png\n");
-  expect_error("depth.txt:1", "'1.0 depth/a.png rgb/a.png': allowed");
+  expect_error("depth.txt:1", "'1.0 depth/a.png rgb/a.png': expected");
   folder_.write("depth.txt", "1.0 depth/a.png\n1.0 depth/a.png\n");
-  expect_error("depth.txt:2", "timestamp 1.0: allowed above");
+  expect_error("depth.txt:2", "timestamp 1.0: expected above");
   folder_.write("depth.txt", "1.0 depth/a.png\n2.0 depth/b.png\n");
   expect_error("depth.txt:2", "no file " + (folder_ / "depth/b.png").string());
   folder_.write("depth.txt", "1.0 depth/a.png\n");
   folder_.write("rgb.txt", "2.0 depth/a.png\n1.5 depth/a.png\n");
-  expect_error("rgb.txt:2", "timestamp 1.5: allowed above");
+  expect_error("rgb.txt:2", "timestamp 1.5: expected above");
 }
 
 TEST_F(Recording, StreamsPcdFiles) {

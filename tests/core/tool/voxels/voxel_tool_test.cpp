@@ -111,7 +111,7 @@ TEST(VoxelTool, RefusesWhatIsNotClosed) {
   ToolReport report;
   EXPECT_EQ(
       refusal([&] { make_voxel_tool(without_last(box), {}, report, "renderer.tool_mesh = x.obj"); }),
-      "renderer.tool_mesh = x.obj: not closed: 3 boundary edges (1 part, 11 triangles); allowed a closed "
+      "renderer.tool_mesh = x.obj: not closed: 3 boundary edges (1 part, 11 triangles): expected a closed "
       "mesh, or renderer.tool_repair=true");
   EXPECT_HAS(refusal([&] {
                make(meshes::together(box, meshes::inside_out(box_mesh({0.01, 0.01, 0.01}, {1e-2, 9e-3, 0}))));
@@ -123,7 +123,7 @@ TEST(VoxelTool, RefusesWhatIsNoBody) {
   TriangleMesh box = box_mesh({0.03, 0.02, 0.01});
   EXPECT_HAS(refusal([] { make({}); }), "no triangles");
   EXPECT_HAS(refusal([&] { make(box, {.size_m = 500}); }),
-             "million voxels of 0.000500 m; allowed 150 million");
+             "million voxels of 0.000500 m: expected 150 million");
   EXPECT_HAS(refusal([&] { make(box, {.size_m = 1e300}); }), "million voxels");
   EXPECT_HAS(refusal([&] { make(box, {.voxel_m = 0.05}); }), "no voxel of 0.050000 m lies inside");
   TriangleMesh bad = box;

@@ -34,7 +34,7 @@ TEST_F(EntactTest, MillimetresAndRowsByHand) {
 TEST_F(EntactTest, DevicesHaveAddresses) {
   EXPECT_NO_THROW(open_entact("192.168.1.144"));
   EXPECT_HAS(refusal([] { open_entact("192.168.1.145"); }),
-             "entact:192.168.1.145: no device answers; allowed ");
+             "entact:192.168.1.145: no device answers: expected ");
   EXPECT_EQ(open_entact("")->traits().name, "Double W5D");
 }
 

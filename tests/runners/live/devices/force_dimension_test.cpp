@@ -33,8 +33,8 @@ TEST_F(ForceDimensionTest, AxesByHand) {
 TEST_F(ForceDimensionTest, DevicesAreNumbered) {
   for (const char* address : {"x", "-1", "0x", "1.5", "128", " 0"})
     EXPECT_HAS(refusal([&] { open_force_dimension(address); }),
-               std::string("fd:") + address + ": not the number of a device; allowed 0 for the first");
-  EXPECT_HAS(refusal([] { open_force_dimension("1"); }), "fd:1: no such device; allowed 0 to 0");
+               std::string("fd:") + address + ": not the number of a device: expected 0 for the first");
+  EXPECT_HAS(refusal([] { open_force_dimension("1"); }), "fd:1: no such device: expected 0 to 0");
   double_->set([](DeviceDouble::State& state) { state.devices = 2; });
   EXPECT_NO_THROW(open_force_dimension("1"));
   EXPECT_EQ(force_dimension_availability().detail, std::string(kForceDimension.double_file) + ": 2 devices");
@@ -42,7 +42,7 @@ TEST_F(ForceDimensionTest, DevicesAreNumbered) {
 
 TEST_F(ForceDimensionTest, NoDevice) {
   double_->set([](DeviceDouble::State& state) { state.devices = 0; });
-  EXPECT_HAS(refusal([] { open_force_dimension(""); }), "fd:0: no device is connected; allowed ");
+  EXPECT_HAS(refusal([] { open_force_dimension(""); }), "fd:0: no device is connected: expected ");
   EXPECT_FALSE(force_dimension_availability().found);
   EXPECT_HAS(force_dimension_availability().detail, "no device is connected");
 }
@@ -50,7 +50,7 @@ TEST_F(ForceDimensionTest, NoDevice) {
 TEST_F(ForceDimensionTest, RefusedByTheLibrary) {
   double_->set([](DeviceDouble::State& state) { state.switching_error = 20; });
   EXPECT_HAS(refusal([] { open_force_dimension("0"); }),
-             "fd:0: cannot be opened (the double's text); allowed ");
+             "fd:0: cannot be opened (the double's text): expected ");
 }
 
 TEST_F(ForceDimensionTest, LimitsThatAreNotSetAreUnknown) {

@@ -126,10 +126,11 @@ TEST(Haply, WhatCannotBeOpened) {
   EXPECT_HAS(refusal([&] { open_haply("http://127.0.0.1"); }), "write ws://HOST:PORT");
   EXPECT_HAS(refusal([&] { open_haply("ws://:1"); }), "write ws://HOST:PORT");
   EXPECT_HAS(refusal([&] { open_haply("ws://127.0.0.1?forse=values"); }),
-             "has no setting \"forse\"; allowed force");
+             "has no setting \"forse\": expected force");
   EXPECT_HAS(refusal([&] { open_haply("?force=x"); }),
-             "haply:?force=x: force is \"x\"; allowed vector, values");
-  EXPECT_HAS(refusal([&] { open_haply("?rate=nan"); }), "rate is \"nan\"; allowed a number from 100 to 8000");
+             "haply:?force=x: force is \"x\": expected vector, values");
+  EXPECT_HAS(refusal([&] { open_haply("?rate=nan"); }),
+             "rate is \"nan\": expected a number from 100 to 8000");
   HaplyWorld world;
   world.devices.clear();
   EXPECT_HAS(refusal([&] { open_haply(HaplyService(world).address()); }), "knows no Inverse3; plug it in");

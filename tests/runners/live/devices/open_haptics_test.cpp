@@ -49,7 +49,7 @@ TEST_F(OpenHapticsTest, DevicesHaveNames) {
   EXPECT_NO_THROW(open_open_haptics("Default Device"));
   EXPECT_NO_THROW(open_open_haptics("Left Device"));
   EXPECT_HAS(refusal([] { open_open_haptics("Right Device"); }),
-             "touch:Right Device: cannot be opened (the double's text, 770/-28); allowed ");
+             "touch:Right Device: cannot be opened (the double's text, 770/-28): expected ");
 }
 
 TEST_F(OpenHapticsTest, TraitsInOurUnits) {

@@ -196,7 +196,7 @@ TEST(SpacenavAddress, WhatCannotBeOpened) {
              "the path is too long for a socket");
   EXPECT_HAS(refusal([] { open_spacenav("/tmp"); }), "no spacenavd at /tmp (");
   EXPECT_HAS(refusal([] { open_spacenav("?box=0"); }),
-             "spnav:?box=0: box is \"0\"; allowed a number from 0.001 to 10");
+             "spnav:?box=0: box is \"0\": expected a number from 0.001 to 10");
   EXPECT_HAS(refusal([] { open_spacenav("?speed"); }), "the setting speed has no value; write speed=VALUE");
   EXPECT_HAS(refusal([] { open_spacenav("?box=1&box=2"); }), "the setting box is there twice");
 }

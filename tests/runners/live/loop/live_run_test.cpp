@@ -86,10 +86,10 @@ TEST(LiveRun, AnUnknownDeviceIsRefusedWithThoseThereAre) {
   LiveOptions wrong = options(0.1);
   wrong.device = "falcon:0";
   EXPECT_HAS(refusal([&] { run_live(Experiment::from_json(kProxy, "test"), wrong); }),
-             "--device falcon:0: allowed sim:");
+             "--device falcon:0: expected sim:");
   wrong.device = "sim";
   EXPECT_HAS(refusal([&] { run_live(Experiment::from_json(kProxy, "test"), wrong); }),
-             "--device sim: allowed SCHEME");
+             "--device sim: expected SCHEME");
 }
 
 TEST(LiveRun, AStopEndsItAtOnce) {

@@ -13,7 +13,7 @@ TEST(FreenectAbsent, IsRefused) {
   const std::string message = refusal([] { open_freenect("0"); });
   if (availability.compiled_in) {
     EXPECT_HAS(message, "freenect");
-    EXPECT_HAS(message, "; allowed ");
+    EXPECT_HAS(message, ": expected ");
     EXPECT_HAS(message, "that this user may open");
   } else {
     EXPECT_EQ(message, "freenect: not compiled in: install libfreenect-dev and build again");

@@ -130,10 +130,10 @@ TEST_F(FreenectCamera, PlaysARecording) {
 
 TEST_F(FreenectCamera, OtherNumbersAreRefused) {
   EXPECT_HAS(refusal([] { open_freenect("1"); }),
-             "freenect:1: 1 Kinects are plugged in, from 0 on; allowed ");
+             "freenect:1: 1 Kinects are plugged in, from 0 on: expected ");
   for (const char* address : {"-1", "x", "0x", " 0", "99999999999"})
     EXPECT_HAS(refusal([&] { open_freenect(address); }),
-               "freenect:" + std::string(address) + ": no camera has this number; allowed 0, 1, ...");
+               "freenect:" + std::string(address) + ": no camera has this number: expected 0, 1, ...");
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
 TEST_F(Openni2Camera, AbsentCameras) {
   const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5"); });
   EXPECT_HAS(unknown, "1d27/0601@1/5: neither a file nor a camera that a driver in ");
-  EXPECT_HAS(unknown, "/OpenNI2/Drivers knows; allowed any, virtual-camera");
+  EXPECT_HAS(unknown, "/OpenNI2/Drivers knows: expected any, virtual-camera");
   EXPECT_HAS(refusal([] { open_openni2("Dummy"); }), "Dummy: neither a file nor a camera");
   EXPECT_HAS(refusal([] { open_openni2("missing.oni"); }), "missing.oni: neither a file nor a camera");
   EXPECT_HAS(refusal([] { open_openni2("/tmp"); }), "/tmp: neither a file nor a camera");
@@ -191,7 +191,7 @@ TEST_F(Openni2Camera, AbsentCameras) {
   EXPECT_HAS(openni2_availability().detail, "no camera that a driver in ");
   const std::string none = refusal([] { open_openni2("any"); });
   EXPECT_HAS(none, "openni2: no camera that a driver in ");
-  EXPECT_HAS(none, "/OpenNI2/Drivers knows; allowed one that is plugged in");
+  EXPECT_HAS(none, "/OpenNI2/Drivers knows: expected one that is plugged in");
 }
 
 class Openni2Recording : public Openni2Camera {
@@ -255,7 +255,7 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
     const std::string file = folder_.write("damaged.oni", bytes).string();
     const std::string message = refusal([&] { open_openni2(file); });
     EXPECT_HAS(message, file + ": ");
-    EXPECT_HAS(message, "allowed ") << bytes.size() << " bytes";
+    EXPECT_HAS(message, "expected ") << bytes.size() << " bytes";
   }
 }
 

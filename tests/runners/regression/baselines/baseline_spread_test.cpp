@@ -237,7 +237,7 @@ TEST_F(MeasureSpread, AnotherSourceIsRefused) {
       if (key == name) value = "another";
     trace("clang/plain.h5", attributes);
     EXPECT_EQ(refused(programs), programs[1] + ": is of another " + name +
-                                     ", another; allowed a build of the same source as this program");
+                                     ", another: expected a build of the same source as this program");
   }
 }
 
@@ -247,13 +247,13 @@ TEST_F(MeasureSpread, ProgramsThatAreNone) {
     programs[1] = second;
     EXPECT_EQ(refused(programs).find(second + ": " + why), 0u) << refused(programs);
   };
-  refused_second(folder_ / "nowhere", "cannot be started; allowed a build of remote-touch");
+  refused_second(folder_ / "nowhere", "cannot be started: expected a build of remote-touch");
   refused_second(folder_.path(), "cannot be started");
   refused_second(folder_.write("plain.txt", "a text"), "cannot be started");
   refused_second(program("failing", "echo first >&2; echo why not >&2; exit 7"),
-                 "failed with exit code 7 (why not); allowed a build that runs");
-  refused_second(program("silent", "exit 2"), "failed with exit code 2; allowed");
-  refused_second(program("killed", "kill -9 $$"), "failed with signal 9; allowed");
+                 "failed with exit code 7 (why not): expected a build that runs");
+  refused_second(program("silent", "exit 2"), "failed with exit code 2: expected");
+  refused_second(program("killed", "kill -9 $$"), "failed with signal 9: expected");
   refused_second(program("idle", "exit 0"), "wrote no result (");
   // A result from before is not taken for its own.
   programs.insert(programs.begin() + 1, program("gcc"));
@@ -313,22 +313,22 @@ TEST(Bless, RefusesWhatMakesNoSense) {
     return refusal([&] { bless(blessing); });
   };
   for (const char* reason : {"", " ", "\n\t "})
-    EXPECT_HAS(refused([&](auto& b) { b.reason = reason; }), "--reason: missing; allowed a sentence");
-  EXPECT_HAS(refused([](auto& b) { b.one_compiler = false; }), "--other-build: missing; allowed");
-  EXPECT_HAS(refused([](auto& b) { b.reason = "\xff"; }), "--reason: allowed UTF-8");
-  EXPECT_HAS(refused([](auto& b) { b.run = "\xff"; }), "--run: allowed UTF-8");
+    EXPECT_HAS(refused([&](auto& b) { b.reason = reason; }), "--reason: missing: expected a sentence");
+  EXPECT_HAS(refused([](auto& b) { b.one_compiler = false; }), "--other-build: missing: expected");
+  EXPECT_HAS(refused([](auto& b) { b.reason = "\xff"; }), "--reason: expected UTF-8");
+  EXPECT_HAS(refused([](auto& b) { b.run = "\xff"; }), "--run: expected UTF-8");
   EXPECT_HAS(refused([](auto& b) { b.sweep = "fig4.13"; }), "--run, --sweep: both are given");
   for (const char* name : {"", "../x", "a/b", "a b", "gr\xc3\xbcn", "*"})
-    EXPECT_HAS(refused([&](auto& b) { b.name = name; }), "allowed letters, digits, . - and _");
-  EXPECT_HAS(refused([](auto& b) { b.run = ""; }), "baseline x: there is none; allowed --run");
+    EXPECT_HAS(refused([&](auto& b) { b.name = name; }), "expected letters, digits, . - and _");
+  EXPECT_HAS(refused([](auto& b) { b.run = ""; }), "baseline x: there is none: expected --run");
   EXPECT_HAS(refused([](auto& b) { b.run = "moon"; }), "moon: cannot be read");
   EXPECT_HAS(refused([](auto& b) { b.run = "moon.json"; }),
              (folder / "moon.json").string() + ": cannot be read");
   EXPECT_HAS(refused([](auto& b) { b.run = "mine.json"; }), "scenario: missing");
   EXPECT_HAS(refused([](auto& b) { b.run = "", b.sweep = "fig4.11"; }),
-             "fig4.11: cannot be read; allowed a sweep's");
+             "fig4.11: cannot be read: expected a sweep's");
   EXPECT_HAS(refused([](auto& b) { b.overrides = {"seeed=1"}; }), "seeed: unknown");
-  EXPECT_HAS(refused([](auto& b) { b.overrides = {"seed"}; }), "--set seed: allowed key=value");
+  EXPECT_HAS(refused([](auto& b) { b.overrides = {"seed"}; }), "--set seed: expected key=value");
   EXPECT_HAS(refused([](auto& b) { b.folder /= "mine.json"; }), "mine.json/manifest.json: cannot be written");
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"mine.json"});
 

@@ -154,7 +154,7 @@ TEST_F(CheckBaseline, WhatHasNoTolerance) {
 TEST_F(CheckBaseline, AnotherExperimentWithTheSameNumbers) {
   const BaselineCheck result = check(stored_run([](Trace&) {}, [](auto& config) { config["seed"] = 2; }));
   EXPECT_EQ(result.state, State::changed);
-  EXPECT_EQ(result.text, "the numbers are the same, but not the experiment: seed 2 against 1");
+  EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 2 against 1");
   ASSERT_TRUE(result.comparison);
   EXPECT_EQ(result.comparison->outcome, Outcome::regressed);
   EXPECT_EQ(result.comparison->verdict, result.text);
@@ -190,7 +190,7 @@ TEST_F(CheckBaseline, WhatTheListDoesNotHave) {
   baseline.subject = "moon";
   expect_uncomparable(baseline, "moon: cannot be read", "remote-touch list");
   baseline.subject = "short.json", baseline.overrides = {"renderer.moon=1"};
-  expect_uncomparable(baseline, "renderer.moon: unknown", "nearest allowed");
+  expect_uncomparable(baseline, "renderer.moon: unknown", "nearest expected");
   baseline.overrides = {}, baseline.tolerances = {{"moon", {1}}};
   expect_uncomparable(baseline, "tolerance of moon", "no such column");
 }
@@ -202,7 +202,7 @@ TEST_F(CheckBaseline, AParameterThatIsNoMore) {
       check(stored_run([](Trace&) {}, [](auto& config) { config["renderer"]["moon_m"] = 3; }));
   EXPECT_EQ(result.state, State::changed);
   EXPECT_EQ(result.text,
-            "the numbers are the same, but not the experiment: renderer.moon_m 3 against absent");
+            "the numbers are equal, but the experiment differs: renderer.moon_m 3 against absent");
 }
 
 TEST_F(CheckBaseline, AParameterThatIsNew) {
@@ -216,7 +216,7 @@ TEST_F(CheckBaseline, AParameterThatIsNew) {
   folder_.write("short.json", json.dump());
   const BaselineCheck result = check(stored_run([](Trace&) {}, [](auto& config) { config.erase("seed"); }));
   EXPECT_EQ(result.state, State::changed);
-  EXPECT_EQ(result.text, "the numbers are the same, but not the experiment: seed 1 against 7");
+  EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 1 against 7");
 }
 
 TEST_F(CheckBaseline, AConfigurationThatCannotBeRead) {
@@ -278,7 +278,7 @@ TEST_F(CheckBaseline, AFileThatWasStoredDamaged) {
     for (const std::string& other : {bytes.substr(0, bytes.size() / 2), bytes.substr(0, bytes.size() - 1),
                                      bytes + "x", std::string(), std::string("a text\n")}) {
       folder_.write(name, other);
-      expect_uncomparable(entered(baseline), place(name), "allowed");
+      expect_uncomparable(entered(baseline), place(name), "expected");
     }
   }
 }

@@ -68,7 +68,7 @@ TEST(Manifest, DamagedOnesAreRefusedByName) {
     const std::string file = folder.write("manifest.json", text).string();
     const std::string message = refusal([&] { read_manifest(folder.path()); });
     EXPECT_EQ(message.find(file + ": "), 0u) << text << "\n" << message;
-    EXPECT_HAS(message, "; allowed ");
+    EXPECT_HAS(message, ": expected ");
     EXPECT_HAS(message, part);
     EXPECT_FALSE(contains(message, "exception")) << message;
   };
@@ -104,7 +104,7 @@ TEST(Manifest, DamagedOnesAreRefusedByName) {
 TEST(Manifest, PlacesThatCannotBeUsed) {
   const TestFolder folder("baseline_test");
   EXPECT_HAS(refusal([&] { read_manifest(folder.path()); }),
-             (folder / "manifest.json").string() + ": cannot be read; allowed a folder of baselines");
+             (folder / "manifest.json").string() + ": cannot be read: expected a folder of baselines");
   EXPECT_HAS(refusal([&] { write_manifest(folder / "nowhere", {}); }), "cannot be written");
   fs::create_directory(folder / "manifest.json");
   EXPECT_HAS(refusal([&] { read_manifest(folder.path()); }), "manifest.json: ");

@@ -38,7 +38,7 @@ TEST_F(CompareFigures, TableByTable) {
   EXPECT_EQ(compare("a.h5", "other.h5", rules).outcome, Outcome::same);
   rules.tolerances = {{"height", {0.5, 0}}};
   EXPECT_HAS(refusal([&] { compare("a.h5", "other.h5", rules); }),
-             "tolerance of height: there is no such column; allowed first/height, first/x, second/x");
+             "tolerance of height: there is no such column: expected first/height, first/x, second/x");
 }
 
 TEST_F(CompareFigures, TablesMayBeAddedButNotMissed) {

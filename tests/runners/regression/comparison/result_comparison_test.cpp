@@ -219,7 +219,7 @@ TEST_F(CompareTraceFiles, AToleranceOfNoColumnIsRefused) {
     ComparisonRules rules;
     rules.tolerances[name] = {1, 0};
     const std::string message = refusal([&] { compare("a.h5", "a.h5", rules); });
-    EXPECT_HAS(message, "tolerance of " + std::string(name) + ": there is no such column; allowed time, ");
+    EXPECT_HAS(message, "tolerance of " + std::string(name) + ": there is no such column: expected time, ");
   }
   ComparisonRules rules;
   rules.tolerances = {{"*", {1, 0}}, {"force", {1, 0}}};
@@ -293,19 +293,19 @@ TEST_F(CompareTraceFiles, DifferentKindsAreRefused) {
       const bool hashed = (ours == "trace" || ours == "hashes") && (theirs == "trace" || theirs == "hashes");
       if (ours == theirs || hashed) continue;
       const std::string message = refusal([&] { compare(ours + ".h5", theirs + ".h5"); });
-      EXPECT_HAS(message, theirs + ".h5: is a " + theirs + "; allowed a " + ours);
+      EXPECT_HAS(message, theirs + ".h5: is a " + theirs + ": expected a " + ours);
     }
 }
 
 TEST_F(CompareTraceFiles, OtherVersionsOfTheLayoutAreRefused) {
   write("a.h5");
   for (const auto& [schema, why] :
-       {std::pair("remote-touch-trace/3", "is of schema remote-touch-trace/3; allowed remote-touch-trace/2"),
-        {"remote-touch-figure/9", "allowed remote-touch-figure/2"},
-        {"remote-touch-hashes/0", "allowed remote-touch-hashes/2"},
-        {"remote-touch-sweep/3", "allowed remote-touch-sweep/2"},
-        {"of-another/1", "is of schema of-another/1; allowed a trace, a sweep, a figure or hashes"},
-        {"", "names no schema; allowed a trace"}}) {
+       {std::pair("remote-touch-trace/3", "is of schema remote-touch-trace/3: expected remote-touch-trace/2"),
+        {"remote-touch-figure/9", "expected remote-touch-figure/2"},
+        {"remote-touch-hashes/0", "expected remote-touch-hashes/2"},
+        {"remote-touch-sweep/3", "expected remote-touch-sweep/2"},
+        {"of-another/1", "is of schema of-another/1: expected a trace, a sweep, a figure or hashes"},
+        {"", "names no schema: expected a trace"}}) {
     Hdf5Writer hdf5;
     hdf5.attribute("/", "schema", schema);
     hdf5.save(folder_ / "b.h5");

@@ -239,7 +239,7 @@ TEST(Dimension, WhatCannotFollowIsRefusedByName) {
   int window = 5;
   const auto changed = [](const Parameter& p) { return refusal([&] { change_units({p}, {2, 1, 1}); }); };
   EXPECT_EQ(changed({"length_m", &length, 0, 1, ""}),
-            "length_m = 0.6: a check multiplies it by 2; allowed 0 to 1 after that too");
+            "length_m = 0.6: a check multiplies it by 2: expected 0 to 1 after that too");
   EXPECT_EQ(changed({"window_m", &window, 0, 100, ""}).find("window_m: an integer"), 0u);
   EXPECT_EQ(changed({"odd_furlong", &odd, 0, 1, ""}).find("odd_furlong: ends in no known unit"), 0u);
 }
@@ -264,7 +264,7 @@ TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
   const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
   EXPECT_EQ(refusal([&] { verify(proxy, {"r3_m=0.7"}); }).find("r3_m = 0.7: a check multiplies it by 2"), 0u);
   EXPECT_EQ(refusal([&] { verify(proxy, {"r4_m=0.7"}); }).find("r4_m: unknown"), 0u);
-  EXPECT_EQ(refusal([&] { verify(proxy, {"r2_m=0.02"}); }).find("r2_m = 0.02: allowed below r3_m"), 0u);
+  EXPECT_EQ(refusal([&] { verify(proxy, {"r2_m=0.02"}); }).find("r2_m = 0.02: expected below r3_m"), 0u);
 }
 
 }  // namespace

@@ -47,14 +47,14 @@ TEST_F(DepthPng, RefusesOtherPixelFormats) {
   const fs::path grey_file = folder_.write_png("grey.png", 1, 1, PNG_FORMAT_GRAY, grey);
   const std::string text = refusal([&] { read_depth_png(grey_file, 0.001, kNoLimit); });
   EXPECT_HAS(text, grey_file.string());
-  EXPECT_HAS(text, "8-bit grey: allowed 16-bit grey (one channel)");
+  EXPECT_HAS(text, "8-bit grey: expected 16-bit grey (one channel)");
   const fs::path rgb_file = folder_.write_png("rgb.png", 1, 1, PNG_FORMAT_RGB, rgb);
   EXPECT_HAS(refusal([&] { read_depth_png(rgb_file, 0.001, kNoLimit); }), "8-bit RGB");
   const fs::path rgb16_file = folder_.write_png("rgb16.png", 1, 1, PNG_FORMAT_LINEAR_RGB, rgb16);
   EXPECT_HAS(refusal([&] { read_depth_png(rgb16_file, 0.001, kNoLimit); }), "16-bit RGB");
   int width = 0, height = 0;
   EXPECT_HAS(refusal([&] { read_colour_png(rgb16_file, width, height); }),
-             "16-bit RGB: allowed up to 8 bits");
+             "16-bit RGB: expected up to 8 bits");
 }
 
 TEST_F(DepthPng, RefusesEveryTruncation) {
@@ -113,7 +113,7 @@ TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
     const fs::path file = folder_.write("d.png", png_header(width, height) + rest);
     const std::string text = refusal([&] { read_depth_png(file, 0.001, kNoLimit); });
     EXPECT_HAS(text, file.string() + ": ");
-    EXPECT_HAS(text, "allowed up to");
+    EXPECT_HAS(text, "expected up to");
   }
 }
 
