@@ -5,7 +5,8 @@ import sys
 
 from plotting.figure_file import PlotError
 
-HEAD = ("claim", "paper", "measured", "criterion", "unit", "verdict")
+COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
+NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty
 SHORT = 24  # a cell of so few characters stays on one line
 
 
@@ -50,9 +51,9 @@ def verdict(claim):
 
 def claim_row(anchor, claim):
     cells = []
-    for name in HEAD[:-1]:
+    for name in COLUMNS:
         value = claim.get(name)
-        shown = "" if name == "unit" and value is None else value_text(value)
+        shown = "" if value in NOTHING.get(name, ()) else value_text(value)
         style = " class=number" if name == "measured" else " class=short" if len(shown) <= SHORT else ""
         cells.append(f"<td{style}>{esc(shown)}</td>")
     style, word = verdict(claim)
@@ -62,7 +63,8 @@ def claim_row(anchor, claim):
 def claim_table(anchored):
     if not anchored:
         return "<p class=none>No claims.</p>"
-    head = "".join(f"<th{' class=number' if name == 'measured' else ''}>{name}</th>" for name in HEAD)
+    head = "".join(f"<th{' class=number' if name == 'measured' else ''}>{words}</th>"
+                   for name, words in [*COLUMNS.items(), ("verdict", "Verdict")])
     rows = "\n".join(claim_row(anchor, claim) for anchor, claim in anchored)
     return f"<div class=table><table><thead><tr>{head}</tr></thead><tbody>\n{rows}\n</tbody></table></div>"
 

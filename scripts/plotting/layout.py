@@ -3,14 +3,14 @@ import math
 import textwrap
 
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import matplotlib.figure
+import PIL.Image
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from plotting.drawing import curve_key, draw_panel, has_cells, is_image, legend_below
 from plotting.scene import draw_scene
 
-WIDTH_IN, HEIGHT_IN, DPI = 9.0, 6.0, 130
+WIDTH_IN, HEIGHT_IN, PAD_IN, DPI = 9.0, 6.0, 0.1, 130
 COLOURS = ["#1f4e79", "#c8501e", "#2f7d4f", "#8a4f9e", "#b08900", "#555555", "#2f93b5", "#a3224a"]
 RC = {
     "font.size": 11, "axes.titlesize": 12, "axes.labelsize": 11, "legend.fontsize": 10,
@@ -73,10 +73,45 @@ def places(panels):
     return given
 
 
-def align(canvas, drawn):
+def guess(canvas, drawn, rows, columns):
+    """Places for the panels before anything is known about their labels."""
+    width, height = canvas.get_size_inches()
+    for (row, column), axes, _ in drawn:
+        across, up = 1 / columns, 1 / rows
+        axes.set_position([column * across + 0.8 / width, 1 - (row + 1) * up + 0.6 / height,
+                           across - 1.0 / width, max(up - 1.0 / height, 0.3 * up)])
+
+
+def margins(canvas, axes):
+    """What labels and legend need left, right, below and above, in inches."""
+    outer = axes.get_tightbbox(canvas.canvas.get_renderer(), for_layout_only=True)
+    inner = axes.get_position().transformed(canvas.transFigure)
+    return [max(0.0, size) / canvas.dpi + PAD_IN
+            for size in (inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1)]
+
+
+def arrange(canvas, drawn, heights, columns, top_in):
+    """Panels of a column are equally wide, rows as high as asked for, and nothing runs into anything. (Constrained
+    layout measures everything twice, which takes half of the time of a figure.)"""
+    width, height = canvas.get_size_inches()
+    guess(canvas, drawn, len(heights), columns)
+    needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
+    left, right = ([max((need[side] for cell, need in needs if cell[1] == column), default=PAD_IN)
+                    for column in range(columns)] for side in (0, 1))
+    below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=PAD_IN)
+                     for row in range(len(heights))] for side in (2, 3))
+    inner_width = (width - sum(left) - sum(right)) / columns
+    scale = (height - top_in - sum(below) - sum(above)) / sum(heights)
+    for (row, column), axes, _ in drawn:
+        x = sum(left[:column + 1]) + sum(right[:column]) + column * inner_width
+        y = height - top_in - sum(above[:row + 1]) - sum(below[:row]) - scale * sum(heights[:row + 1])
+        axes.set_position([x / width, y / height, inner_width / width, scale * heights[row] / height])
+
+
+def align(drawn):
     """Equal aspect may narrow a panel. Those below it with the same x_range follow, so that x stays above x."""
-    canvas.draw_without_rendering()  # lays the panels out
-    canvas.set_layout_engine("none")
+    for _, axes, _ in drawn:
+        axes.apply_aspect()
     for (_, column), narrowed, panel in drawn:
         if not (panel.equal_aspect and has_range(panel)):
             continue
@@ -87,17 +122,25 @@ def align(canvas, drawn):
                 axes.set_position([x, box.y0, width, box.height])
 
 
-def draw_figure(figure, png):
-    plt.rcParams.update(RC)
+def save(canvas, png):
+    """Drawn once, where Figure.savefig() draws twice. Nothing but pixels is saved: equal results are equal files."""
+    surface = canvas.canvas
+    surface.draw()
+    pixels = PIL.Image.frombuffer("RGBA", surface.get_width_height(), surface.buffer_rgba(), "raw", "RGBA", 0, 1)
+    pixels.convert("RGB").save(png, compress_level=4)
+
+
+def draw_figure(figure, png, titled):
+    """titled: with its heading, which a page shows above it."""
+    matplotlib.rcParams.update(RC)
     cells = places(figure.panels)
     rows, columns = (1 + max(cell[i] for cell in cells) for i in (0, 1))
-    canvas = plt.figure(layout="constrained")
-    canvas.get_layout_engine().set(w_pad=0.1, h_pad=0.1)
-    grid = canvas.add_gridspec(rows, columns)
+    canvas = matplotlib.figure.Figure(dpi=DPI)
+    FigureCanvasAgg(canvas)
     of_label = colours(figure.panels)
     drawn = []
-    for panel, cell in zip(figure.panels, cells):
-        axes = canvas.add_subplot(grid[cell])
+    for i, (panel, cell) in enumerate(zip(figure.panels, cells)):
+        axes = canvas.add_axes([0, 0, 1, 1], label=str(i))
         if panel.scene:
             draw_scene(axes, panel, columns)
         else:
@@ -108,9 +151,10 @@ def draw_figure(figure, png):
     for _, axes, panel in drawn:
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
-    grid.set_height_ratios(heights)
-    canvas.set_size_inches(canvas_width(columns), sum(heights) + 0.5)
-    canvas.suptitle(textwrap.fill(figure.heading, 80 if columns == 1 else 120))
-    align(canvas, drawn)
-    canvas.savefig(png, dpi=DPI, metadata={"Software": None})  # equal results are equal files
-    plt.close(canvas)
+    heading = textwrap.fill(figure.heading, 80 if columns == 1 else 120) if titled else ""
+    top_in = PAD_IN + 0.25 * (1 + heading.count("\n")) if heading else 0
+    canvas.set_size_inches(canvas_width(columns), sum(heights) + 0.25 + top_in)
+    canvas.suptitle(heading, y=1 - PAD_IN / canvas.get_figheight(), va="top")
+    arrange(canvas, drawn, heights, columns, top_in)
+    align(drawn)
+    save(canvas, png)

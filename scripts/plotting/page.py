@@ -1,7 +1,9 @@
-"""Writes index.html: every figure with its caption and claims."""
+"""Makes index.html: every figure with its caption and claims, and what is still to come while figures are made."""
 import json
+import os
 
 from plotting.claims import claim_table, esc, figure_of, overview
+from plotting.progress import duration
 
 CSS = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 62rem;
@@ -18,6 +20,8 @@ tr:target { background: #fff3cd; }
 .pass { color: #1d6b37; font-weight: 600; } .fail { color: #b3141c; font-weight: 700; } .none { color: #666; }
 td.verdict, td.short { white-space: nowrap; }
 .count { font-size: 1.15rem; }
+.progress { background: #eef3f8; border-left: 4px solid #1f4e79; padding: .6rem 1rem; }
+ul.contents { columns: 2; padding-left: 1.2rem; } ul.contents li { break-inside: avoid; }
 details { margin-top: .6rem; font-size: .9rem; color: #444; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; font-size: .85rem; color: #555; }
 """
@@ -61,22 +65,60 @@ def provenance(figures):
     return "\n".join(f"<p>{esc(build)}: {esc(', '.join(names))}</p>" for build, names in builds.items())
 
 
-def page(figures, claims):
-    anchored = [(f"{figure_of(claim)}-claim{i}", claim) for i, claim in enumerate(claims)]
+def state_words(entry):
+    if entry["state"] == "running":
+        return f"is being made, {duration(entry['left_s'])} left" if entry["left_s"] else "is being made"
+    return "waits"
+
+
+def progress_box(progress):
+    """What is still to be made. A page without it is complete."""
+    if not progress:
+        return ""
+    done = sum(entry["state"] == "done" for entry in progress.figures)
+    rows = "\n".join(f"<li>Figure {esc(entry['name'])}, {esc(entry['summary'])}: {state_words(entry)}</li>"
+                     for entry in progress.figures if entry["state"] != "done")
+    left = f", {duration(progress.left_s)} left" if progress.left_s else ""
+    return f"""<div class=progress><p>{done} of {len(progress.figures)} figures are made{left}. \
+This page fills while the others are made; it loads itself again every few seconds.</p>
+<ul>
+{rows}
+</ul></div>"""
+
+
+def contents(figures):
+    items = "\n".join(f'<li><a href="#{esc(figure.name)}">{esc(figure.heading)}</a></li>' for figure in figures)
+    return f"<ul class=contents>\n{items}\n</ul>" if figures else ""
+
+
+def page(figures, claims, progress=None):
+    """progress: None when nothing more will come."""
+    to_come = progress.to_come() if progress else set()
+    figures = [figure for figure in figures if figure.name not in to_come]
+    anchored = [(f"{figure_of(claim)}-claim{i}", claim) for i, claim in enumerate(claims)
+                if figure_of(claim) not in to_come]
     of = {figure.name: [one for one in anchored if figure_of(one[1]) == figure.name] for figure in figures}
-    contents = " \u00b7 ".join(f'<a href="#{esc(f.name)}">{esc(f.name.removeprefix("fig"))}</a>' for f in figures)
     sections = [figure_section(figure, of[figure.name]) for figure in figures]
     homeless = [one for one in anchored if figure_of(one[1]) not in of]
-    if homeless:  # a claim is never dropped
+    if homeless and not progress:  # a claim is never dropped
         sections.append(f"<section><h2>Claims without a figure</h2>{claim_table(homeless)}</section>")
     body = "\n".join(sections)
+    again = '<meta http-equiv="refresh" content="5">' if progress else ""
     return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">{again}
 <title>Remote Touch: figures and claims</title><style>{CSS}</style></head><body>
 <h1>Remote Touch: figures and claims</h1>
-{overview(anchored)}
-<p>Figures: {contents}</p>
+{progress_box(progress)}
+{overview(anchored) if anchored else ""}
+{contents(figures)}
 {body}
 <footer>{provenance(figures)}</footer>
 </body></html>
 """
+
+
+def write_page(path, text):
+    """Whoever reads it meanwhile sees the old page or the new one."""
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(path)

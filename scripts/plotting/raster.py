@@ -85,34 +85,41 @@ class Canvas:
         self.colour[there] = (1 - share) * self.colour[there] + share * layer.colour[there]
 
     def surface(self, vertices, triangles, colour):
+        """Of a closed mesh; what is behind its front cannot be seen, and is not drawn."""
         normals = vertex_normals(vertices, triangles) @ self.camera.axes().T
         colours = shade(np.broadcast_to(colour, vertices.shape), normals, 0.45)
-        u, v, z = self.camera.view(vertices, self.size)
-        corner = np.stack([u, v, z], axis=-1)[triangles]
-        first = np.floor(corner[:, :, :2].min(axis=1))
-        span = (np.ceil(corner[:, :, :2].max(axis=1)) - first).max(axis=1)
-        inside = (span > 0) & (span < 4 * max(self.size)) & (corner[:, :, 2] > 0).all(axis=1)
-        level = np.where(inside, np.ceil(np.log2(np.maximum(span, 1))), -1).astype(int)
+        corner = np.stack(self.camera.view(vertices, self.size), axis=-1)[triangles]
+        (u0, v0), (u1, v1), (u2, v2) = (corner[:, i, :2].T for i in range(3))
+        area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0)
+        low, high = (np.minimum, np.maximum)
+        first = np.floor(np.stack([low(low(u0, u1), u2), low(low(v0, v1), v2)], axis=-1))
+        last = np.ceil(np.stack([high(high(u0, u1), u2), high(high(v0, v1), v2)], axis=-1))
+        span = high(*(last - first).T)
+        seen = (area * turning(vertices, triangles) > 0) & (span < 4 * max(self.size))
+        for i in range(3):
+            seen &= corner[:, i, 2] > 0
+        level = np.where(seen, np.ceil(np.log2(high(span, 1))), -1).astype(int)
         for each in np.unique(level[level >= 0]):
             chosen = np.flatnonzero(level == each)
             side = 2**each + 1
             for part in np.array_split(chosen, 1 + chosen.size * side * side // FRAGMENTS):
-                self.fill(corner[part], first[part], colours[triangles[part]], side)
+                self.fill(corner[part], area[part], first[part], colours[triangles[part]], side)
 
-    def fill(self, corner, first, colours, side):
+    def fill(self, corner, area, first, colours, side):
         """Triangles that fit into a square of pixels, side by side."""
         across, down = (grid.ravel() for grid in np.meshgrid(np.arange(side), np.arange(side)))
-        u, v = first[:, :1] + across, first[:, 1:] + down
-        (u0, v0, z0), (u1, v1, z1), (u2, v2, z2) = (corner[:, i, :, None].transpose(1, 0, 2) for i in range(3))
-        area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            b = ((u - u0) * (v2 - v0) - (u2 - u0) * (v - v0)) / area
-            c = ((u1 - u0) * (v - v0) - (u - u0) * (v1 - v0)) / area
-            a = 1 - b - c
-            i, j = np.nonzero((a >= -1e-6) & (b >= -1e-6) & (c >= -1e-6))
-            weights = np.stack([a[i, j] / z0[i, 0], b[i, j] / z1[i, 0], c[i, j] / z2[i, 0]], axis=-1)
-        depth = 1 / weights.sum(axis=1)
-        self.put(u[i, j], v[i, j], depth, ((weights * depth[:, None])[:, :, None] * colours[i]).sum(axis=1))
+        (u0, v0, z0), (u1, v1, z1), (u2, v2, z2) = (corner[:, i].T for i in range(3))
+        u, v = (first - corner[:, 0, :2]).T  # of the first pixel from the first corner
+        # Weights of the second and third corner: they grow evenly across and down.
+        b = [((v2 - v0) * u - (u2 - u0) * v) / area, (v2 - v0) / area, (u0 - u2) / area]
+        c = [((u1 - u0) * v - (v1 - v0) * u) / area, (v0 - v1) / area, (u1 - u0) / area]
+        b, c = (at[:, None] + right[:, None] * across + below[:, None] * down for at, right, below in (b, c))
+        i, j = np.nonzero((b >= -1e-6) & (c >= -1e-6) & (b + c <= 1 + 1e-6))
+        b, c = b[i, j], c[i, j]
+        weights = [(1 - b - c) / z0[i], b / z1[i], c / z2[i]]
+        depth = 1 / (weights[0] + weights[1] + weights[2])
+        shades = sum((weight * depth)[:, None] * colours[i, k] for k, weight in enumerate(weights))
+        self.put(first[i, 0] + across[j], first[i, 1] + down[j], depth, shades)
 
     def put(self, u, v, depth, colours):
         """Fragments: at each pixel the nearest wins."""
@@ -129,9 +136,10 @@ class Canvas:
 
     def image(self, coarser):
         """The picture, with as many pixels averaged along each side."""
-        width, height = (n // coarser for n in self.size)
-        blocks = self.colour.reshape(self.size[1], self.size[0], 3)[:height * coarser, :width * coarser]
-        return np.clip(blocks.reshape(height, coarser, width, coarser, 3).mean(axis=(1, 3)), 0, 1)
+        width, height = (n // coarser * coarser for n in self.size)
+        pixels = self.colour.reshape(self.size[1], self.size[0], 3)
+        mean = sum(pixels[down:height:coarser, right:width:coarser] for down in range(coarser) for right in range(coarser))
+        return np.clip(mean / coarser**2, 0, 1)
 
 
 def unit(vector):
@@ -161,6 +169,12 @@ def vertex_normals(vertices, triangles):
     sums = np.stack([np.bincount(triangles.ravel(), np.repeat(faces[:, i], 3), len(vertices)) for i in range(3)],
                     axis=-1)
     return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-30)
+
+
+def turning(vertices, triangles):
+    """The sign that the area of a closed mesh's triangle has in a picture, y down, where its front is seen."""
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return -np.sign((np.cross(a, b) * c).sum())
 
 
 def shade(colours, normals, ambient):
