@@ -24,7 +24,7 @@ class DeviceDouble {
   // All in the vendor's units and axes.
   struct State {
     std::array<double, 3> position{}, velocity{}, turning{};
-    std::array<double, 9> turn{1, 0, 0, 0, 1, 0, 0, 0, 1};  // by rows
+    std::array<double, 9> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};  // by rows
     unsigned buttons = 0;
 
     int devices = 1;

@@ -85,7 +85,7 @@ unsigned dhdGetButtonMask(char) {
 
 int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double frame[3][3], char id) {
   const DeviceDouble::State state = device.state();
-  std::copy(state.turn.begin(), state.turn.end(), &frame[0][0]);
+  std::copy(state.rotation.begin(), state.rotation.end(), &frame[0][0]);
   return give(state.position, x, y, z, id);
 }
 

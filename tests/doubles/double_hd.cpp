@@ -52,7 +52,7 @@ void give_transform(const DeviceDouble::State& state, double* values) {
   std::fill(values, values + 16, 0.0);
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 3; ++column)
-      values[4 * column + row] = state.turn[3 * row + column];
+      values[4 * column + row] = state.rotation[3 * row + column];
     values[12 + row] = state.position[row];
   }
   values[15] = 1;

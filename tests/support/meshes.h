@@ -32,7 +32,7 @@ inline TriangleMesh tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, con
 }
 
 // A rotation about no axis in particular.
-inline Eigen::Matrix3d turned() {
+inline Eigen::Matrix3d rotated() {
   Eigen::Matrix3d about_x, about_y;
   about_x << 1, 0, 0, 0, 0.8, -0.6, 0, 0.6, 0.8;
   about_y << 0.28, 0, 0.96, 0, 1, 0, -0.96, 0, 0.28;
@@ -93,7 +93,7 @@ inline bool clipped_away(std::vector<Vec3> polygon, const Vec3& low, const Vec3&
 
 // A dented, slanted body of many small triangles: a built-in tool, turned and moved.
 inline TriangleMesh any_body(const char* name = "ball") {
-  return moved(find_generated_tool(name)->make(), turned(), {0.01, -0.02, 0.03});
+  return moved(find_generated_tool(name)->make(), rotated(), {0.01, -0.02, 0.03});
 }
 
 }  // namespace remote_touch::meshes

@@ -9,7 +9,7 @@
 #include "runners/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::hash64_test {
 namespace {
 
 TEST(Fingerprint, OfACloudDependsOnEveryBitButNotOnTheOrder) {
@@ -79,4 +79,4 @@ TEST(Fingerprint, OfTheFramesIsInTheTraceWhereItIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::hash64_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remote_touch {
+namespace remote_touch::column_comparison_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -148,4 +148,4 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::column_comparison_test

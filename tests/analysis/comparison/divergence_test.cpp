@@ -7,7 +7,7 @@
 #include "tests/analysis/comparison/changed_traces.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::divergence_test {
 namespace {
 
 using namespace changed_traces;
@@ -258,4 +258,4 @@ TEST(FrameText, TellsTheFrameAndTheNextOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::divergence_test

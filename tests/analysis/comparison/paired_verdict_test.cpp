@@ -7,7 +7,7 @@
 
 #include "tests/analysis/comparison/example_sweeps.h"
 
-namespace remote_touch {
+namespace remote_touch::paired_verdict_test {
 namespace {
 
 using namespace made_sweeps;
@@ -140,4 +140,4 @@ TEST(PairedVerdictOf, IsRarelyAFalseAlarm) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::paired_verdict_test

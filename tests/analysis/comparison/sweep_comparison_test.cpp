@@ -8,7 +8,7 @@
 
 #include "tests/analysis/comparison/example_sweeps.h"
 
-namespace remote_touch {
+namespace remote_touch::sweep_comparison_test {
 namespace {
 
 using namespace made_sweeps;
@@ -280,4 +280,4 @@ TEST(RegionComparison, MeasuresOtherNumbers) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sweep_comparison_test

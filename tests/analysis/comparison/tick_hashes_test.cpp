@@ -13,7 +13,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::tick_hashes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ TEST(Bisection, TakesALogarithmOfLooksAndFindsTheSameTick) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tick_hashes_test

@@ -9,7 +9,7 @@
 #include "tests/analysis/comparison/changed_traces.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::trace_comparison_test {
 namespace {
 
 using namespace changed_traces;
@@ -219,8 +219,8 @@ TEST(CompareTraces, NoRowsAreNotTheSame) {
     EXPECT_FALSE(comparison.divergence);
     for (const ColumnComparison& column : comparison.columns) EXPECT_FALSE(column.problem.empty());
   }
-  EXPECT_FALSE(compare({}, {}).is_same());
-  EXPECT_FALSE(compare({}, lift()).is_same());
+  EXPECT_FALSE(compare(Columns{}, Columns{}).is_same());
+  EXPECT_FALSE(compare(Columns{}, lift()).is_same());
 }
 
 // --- files ---
@@ -257,4 +257,4 @@ TEST(CompareTraces, FilesAreAsGoodAsMemory) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::trace_comparison_test

@@ -12,7 +12,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::figure_file_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -125,4 +125,4 @@ TEST(FigureFile, EqualContentIsEqualBytes) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::figure_file_test

@@ -9,7 +9,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::hdf5_reading_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,4 +55,4 @@ TEST(ReadHdf5, DamagedChunk) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::hdf5_reading_test

@@ -16,7 +16,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::trace_file_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -146,4 +146,4 @@ TEST(Digest, ToldApart) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::trace_file_test

@@ -10,7 +10,7 @@
 
 #include "analysis/measures/measures.h"
 
-namespace remote_touch {
+namespace remote_touch::contact_measures_test {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -130,4 +130,4 @@ TEST(ContactMeasures, AreInTheTable) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::contact_measures_test

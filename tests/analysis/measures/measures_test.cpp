@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remote_touch {
+namespace remote_touch::measures_test {
 namespace {
 
 struct Tick {
@@ -73,4 +73,4 @@ TEST(Measures, StepsAndConvergence) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::measures_test

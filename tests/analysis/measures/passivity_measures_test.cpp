@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace remote_touch {
+namespace remote_touch::passivity_measures_test {
 namespace {
 
 struct Tick {
@@ -64,4 +64,4 @@ TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::passivity_measures_test

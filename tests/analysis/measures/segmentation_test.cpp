@@ -7,7 +7,7 @@
 
 #include "analysis/statistics/proportion.h"
 
-namespace remote_touch {
+namespace remote_touch::segmentation_test {
 namespace {
 
 // Every combination once, and some twice.
@@ -52,4 +52,4 @@ TEST(Segmentation, ColumnsOfOtherLengthsAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::segmentation_test

@@ -7,7 +7,7 @@
 
 #include "core/random/noise.h"
 
-namespace remote_touch {
+namespace remote_touch::ranking_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -131,4 +131,4 @@ TEST(Standings, WhoHasNoNumberHasNoPlace) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::ranking_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace remote_touch {
+namespace remote_touch::success_rule_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -58,4 +58,4 @@ TEST(SuccessRule, ErrorsAreFailuresBehindAllOthers) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::success_rule_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::isotonic_regression_test {
 namespace {
 
 TEST(FallingCurve, LeavesAFallingOneAsItIs) {
@@ -52,4 +52,4 @@ TEST(FallingCurve, Crossing) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::isotonic_regression_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remote_touch {
+namespace remote_touch::paired_bootstrap_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -68,4 +68,4 @@ TEST(PairedBootstrap, SkipsWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::paired_bootstrap_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::paired_test_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -211,4 +211,4 @@ TEST(HolmAdjusted, StaysAProbability) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::paired_test_test

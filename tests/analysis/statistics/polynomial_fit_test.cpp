@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::polynomial_fit_test {
 namespace {
 
 TEST(PolynomialFit, FindsTheCoefficientsOfAnExactPolynomial) {
@@ -55,4 +55,4 @@ TEST(PolynomialFit, BandHoldsTheTruthAsOftenAsItSays) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::polynomial_fit_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace remote_touch {
+namespace remote_touch::proportion_test {
 namespace {
 
 double binomial(int events, int runs, double p) {
@@ -82,4 +82,4 @@ TEST(WilsonInterval, CoversAsOftenAsItSays) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::proportion_test

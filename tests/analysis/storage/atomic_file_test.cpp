@@ -14,7 +14,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ TEST(WriteWholeFile, DevicesAreWrittenThrough) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::atomic_file_test

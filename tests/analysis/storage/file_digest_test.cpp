@@ -11,7 +11,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::file_digest_test {
 namespace {
 
 TEST(FileDigest, IsTheSha256OfWhatFollows) {
@@ -67,4 +67,4 @@ TEST(Sha256, KnownValues) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::file_digest_test

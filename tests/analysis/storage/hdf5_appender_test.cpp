@@ -6,7 +6,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::hdf5_appender_test {
 namespace {
 
 using Number = Hdf5Appender::Number;
@@ -80,4 +80,4 @@ TEST(Hdf5Appender, TellsWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::hdf5_appender_test

@@ -12,7 +12,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::hdf5_foreign_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::hdf5_foreign_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace remote_touch {
+namespace remote_touch::refinement_test {
 namespace {
 
 // Nothing sampled yet: a grid of so many cells along each axis, with room for so many replicates.
@@ -231,4 +231,4 @@ TEST(Refinement, IsAFunctionOfWhatIsDone) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::refinement_test

@@ -7,7 +7,7 @@
 #include <functional>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::ball_closing_test {
 namespace {
 
 constexpr double kRadius = 0.005, kSpacing = 1e-4;
@@ -144,4 +144,4 @@ TEST(BallClosing, MirroredAndShiftedWithTheProfile) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::ball_closing_test

@@ -7,10 +7,11 @@
 #include "analysis/measures/measures.h"
 #include "analysis/theory/lift_noise.h"
 #include "runners/experiment/experiment.h"
+#include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::lift_updates_test {
 namespace {
 
 std::vector<LiftUpdate> lift(const std::vector<std::string>& overrides) {
@@ -109,4 +110,4 @@ TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::lift_updates_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::pop_through_bound_test {
 namespace {
 
 constexpr Lift kLift{0.00499, 30, 0.1, 10};
@@ -84,4 +84,4 @@ TEST(ScatterBound, HalfSurviveAtIt) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::pop_through_bound_test

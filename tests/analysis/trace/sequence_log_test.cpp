@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace remote_touch {
+namespace remote_touch::sequence_log_test {
 namespace {
 
 struct Tick {
@@ -61,4 +61,4 @@ TEST(SequenceLog, OfSeveralInATickOnlyTheOneThatRanIsMissed) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sequence_log_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace remote_touch {
+namespace remote_touch::colour_test {
 namespace {
 
 // Of the values in [0, 1]; a hue that is undefined is 0.
@@ -89,4 +89,4 @@ TEST(Colour, HueIsNearlyTheAngleAroundTheGreyAxis) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::colour_test

@@ -13,7 +13,7 @@
 #include "tests/core/depth/depth_cases.h"
 #include "tests/core/depth/reference_depth_pipeline.h"
 
-namespace remote_touch {
+namespace remote_touch::depth_agreement_test {
 namespace {
 
 using namespace depth_cases;
@@ -119,4 +119,4 @@ TEST(DepthPipeline, AgreesWithTheEquationsOnRecordedFrames) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::depth_agreement_test

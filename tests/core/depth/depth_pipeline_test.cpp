@@ -10,7 +10,7 @@
 #include "tests/core/depth/depth_cases.h"
 #include "tests/support/allocation_counter.h"
 
-namespace remote_touch {
+namespace remote_touch::depth_pipeline_test {
 namespace {
 
 using namespace depth_cases;
@@ -255,4 +255,4 @@ TEST(DepthPipeline, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::depth_pipeline_test

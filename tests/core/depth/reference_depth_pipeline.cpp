@@ -7,7 +7,7 @@
 namespace remote_touch {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 // Points in the camera frame, pixel by pixel; NaN where there is none.
 struct Points {
@@ -38,7 +38,7 @@ Points unprojected(const CameraIntrinsics& camera, const Depth& depth) {
 Points filtered(const DepthPipelineSettings& settings, const Points& raw) {
   return unprojected(raw.camera, [&](int u, int v) {
     const Vec3& p0 = raw.p[static_cast<std::size_t>(v * raw.camera.width + u)];
-    if (!p0.allFinite()) return kNaN;
+    if (!p0.allFinite()) return kNoValue;
     double sum = 0, total = 0;
     raw.window(u, v, settings.filter_window, [&](const Vec3& p) {
       const double phi = std::exp(-(p - p0).squaredNorm() / (2 * settings.sigma_f_m * settings.sigma_f_m));
@@ -53,7 +53,7 @@ double wendland(double q) {
 }
 
 struct Plane {
-  Vec3 normal{kNaN, kNaN, kNaN};
+  Vec3 normal{kNoValue, kNoValue, kNoValue};
   double gap = 0, middle = 0;
 };
 
@@ -75,7 +75,7 @@ Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, 
   Plane found{solved.eigenvectors().col(0), values[1] - values[0], values[1]};
   if (found.normal.dot(p0) > 0) found.normal = -found.normal;
   const double minors = values[1] * values[2] + values[0] * (values[1] + values[2]);
-  if (!(minors > kThinnest)) found.normal = Vec3(kNaN, kNaN, kNaN);
+  if (!(minors > kThinnest)) found.normal = Vec3(kNoValue, kNoValue, kNoValue);
   return found;
 }
 
@@ -85,7 +85,7 @@ ReferenceDepth reference_depth_pipeline(const DepthPipelineSettings& settings, c
                                         const CameraIntrinsics& camera, const RigidTransform& X_WC) {
   const Points raw = unprojected(camera, [&](int u, int v) {
     const double z = depth.z_m[static_cast<std::size_t>(v * depth.width + u)];
-    return z > 0 && z < kMaxDepth_m ? z : kNaN;
+    return z > 0 && z < kMaxDepth_m ? z : kNoValue;
   });
   const Points points = settings.filter ? filtered(settings, raw) : raw;
   ReferenceDepth reference;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::rotation_test {
 namespace {
 
 const double kPi = std::acos(-1.0);
@@ -51,4 +51,4 @@ TEST(Rotation, VectorIsTheShortestOfTheRotation) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::rotation_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace remote_touch {
+namespace remote_touch::fixture_sequence_test {
 namespace {
 
 SequenceStep step(StepStart start, StepEnd done, int button = 0) {
@@ -195,4 +195,4 @@ TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::fixture_sequence_test

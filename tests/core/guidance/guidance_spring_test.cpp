@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::guidance_spring_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -186,4 +186,4 @@ TEST(GuidanceWrench, IsCutToItsLargestLengths) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::guidance_spring_test

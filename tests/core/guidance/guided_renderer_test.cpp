@@ -16,7 +16,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::guided_renderer_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -331,4 +331,4 @@ TEST_P(EveryRenderer, AStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::guided_renderer_test

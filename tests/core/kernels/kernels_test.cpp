@@ -12,7 +12,7 @@
 #include "tests/support/every_level.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::kernels_test {
 namespace {
 
 using Real = long double;
@@ -313,4 +313,4 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::kernels_test

@@ -11,7 +11,7 @@
 #include "tests/support/every_level.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::region_leaves_test {
 namespace {
 
 // A patch of regions of different sizes, numbered from 500 on, in an order in which neighbours are near each
@@ -187,4 +187,4 @@ TEST(NearRegions, OfEquallyDeepOnesTheFirstIsNext) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::region_leaves_test

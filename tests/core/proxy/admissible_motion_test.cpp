@@ -11,7 +11,7 @@
 #include "tests/core/proxy/union_of_spheres.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::admissible_motion_test {
 namespace {
 
 constexpr double kRegion = 0.02, kDistance = 0.025, kR2 = 0.00501;
@@ -116,4 +116,4 @@ TEST(TouchingRegions, TheOrderOfThePointsDoesNotMatterInAGroove) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::admissible_motion_test

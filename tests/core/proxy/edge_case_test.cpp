@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::edge_case_test {
 namespace {
 
 constexpr double kContactRadius = 0.005, kShell = 1.0001e-5;
@@ -249,4 +249,4 @@ TEST(EdgeCase, AFixtureRadiusKeepsTheProxyOut) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::edge_case_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::proxy_step_test {
 namespace {
 
 using Real = long double;
@@ -293,4 +293,4 @@ TEST(HasConverged, WithinThetaOfTheNormal) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::proxy_step_test

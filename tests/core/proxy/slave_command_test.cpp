@@ -5,7 +5,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::slave_command_test {
 namespace {
 
 PointCloud region(const Vec3& centre, double radius) {
@@ -128,4 +128,4 @@ TEST(SlaveCommand, IsNoneUntilTheProxyWasOutside) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::slave_command_test

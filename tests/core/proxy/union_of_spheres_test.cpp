@@ -10,7 +10,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::union_of_spheres_test {
 namespace {
 
 using spheres::nearest_region;
@@ -323,4 +323,4 @@ TEST(UnionOfSpheres, SeveralStiffnessesGiveTheirWeightedMean) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::union_of_spheres_test

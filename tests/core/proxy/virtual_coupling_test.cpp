@@ -7,7 +7,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::virtual_coupling_test {
 namespace {
 
 constexpr double kRate = 1000, kStiffness = 600;
@@ -148,4 +148,4 @@ TEST(VirtualCoupling, FirstForceAndTheFirstAfterReleaseHaveNoDifference) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::virtual_coupling_test

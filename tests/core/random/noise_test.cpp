@@ -11,7 +11,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::noise_test {
 namespace {
 
 using Real = long double;
@@ -289,4 +289,4 @@ TEST(Noise, IsStandardNormal) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::noise_test

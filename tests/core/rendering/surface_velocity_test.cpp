@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace remote_touch {
+namespace remote_touch::surface_velocity_test {
 namespace {
 
 const Vec3 kUp = Vec3::UnitY();
@@ -148,4 +148,4 @@ TEST(SurfaceVelocity, FramesWithoutAStepBetweenThemCountAsOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::surface_velocity_test

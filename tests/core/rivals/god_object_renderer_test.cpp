@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::god_object_renderer_test {
 namespace {
 
 constexpr double kOffset_m = 1e-5, kStiffness_N_per_m = 600;
@@ -187,4 +187,4 @@ TEST(GodObject, TheOffsetMustBeSmallBesideTheEdges) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::god_object_renderer_test

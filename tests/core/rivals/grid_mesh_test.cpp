@@ -11,7 +11,7 @@
 #include "core/search/neighbour_search.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::grid_mesh_test {
 namespace {
 
 constexpr double kLimit_m = 0.004;
@@ -173,4 +173,4 @@ TEST(PlaneConstraints, PlanesThatLeaveNoRoom) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::grid_mesh_test

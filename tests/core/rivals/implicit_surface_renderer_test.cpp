@@ -9,7 +9,7 @@
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::implicit_surface_renderer_test {
 namespace {
 
 using Settings = ImplicitSurfaceParameters;
@@ -198,4 +198,4 @@ TEST(ImplicitSurfaceRenderer, AnEmptyFrameLetsGo) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::implicit_surface_renderer_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::penalty_renderer_test {
 namespace {
 
 constexpr double kRadius_m = 0.005, kStiffness_N_per_m = 600;
@@ -112,4 +112,4 @@ TEST(PenaltyRenderer, TheBallMustBeSmallerThanWhereNormalsComeFrom) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::penalty_renderer_test

@@ -11,7 +11,7 @@
 #include "core/search/neighbourhood.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::point_surface_test {
 namespace {
 
 constexpr double kR = 0.01;
@@ -140,4 +140,4 @@ TEST(ThinnestAxis, OfADiagonalMatrixAndOfOneWithEqualAxes) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::point_surface_test

@@ -8,7 +8,7 @@
 #include "core/cloud/camera.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::neighbour_search_test {
 namespace {
 
 std::vector<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball, const Kernels& kernels) {
@@ -177,4 +177,4 @@ TEST(NeighbourSearch, ChosenByTheCloud) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::neighbour_search_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::neighbourhood_test {
 namespace {
 
 constexpr double kReach = 0.01, kContactRadius = 0.005;
@@ -77,4 +77,4 @@ TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::neighbourhood_test

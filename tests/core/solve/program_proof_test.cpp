@@ -10,7 +10,7 @@
 #include "tests/core/solve/nlopt_program.h"
 #endif
 
-namespace remote_touch {
+namespace remote_touch::program_proof_test {
 namespace {
 
 using namespace programs;
@@ -195,4 +195,4 @@ TEST(QuadraticProgram, TheFirstRowLeavesAndComesBack) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::program_proof_test

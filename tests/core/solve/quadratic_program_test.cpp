@@ -12,7 +12,7 @@
 #include "tests/core/solve/program_problems.h"
 #include "tests/support/allocation_counter.h"
 
-namespace remote_touch {
+namespace remote_touch::quadratic_program_test {
 namespace {
 
 using namespace programs;
@@ -253,4 +253,4 @@ TEST(QuadraticProgram, TheSlackIsZeroWhereItIsNotNeeded) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::quadratic_program_test

@@ -15,7 +15,7 @@
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::region_contacts_test {
 namespace {
 
 constexpr double kRadius_m = 0.04;   // of the regions, as in 7.5.1
@@ -325,4 +325,4 @@ TEST(RegionTouch, IsThatOfAllPairs) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::region_contacts_test

@@ -12,7 +12,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sphere_tree_renderer_test {
 namespace {
 
 constexpr double kRegion_m = 0.04, kBall_m = 0.01;
@@ -150,4 +150,4 @@ TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sphere_tree_renderer_test

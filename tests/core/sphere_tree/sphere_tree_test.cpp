@@ -12,7 +12,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sphere_tree_test {
 namespace {
 
 // random_cloud() as spheres of different sizes.
@@ -229,4 +229,4 @@ TEST(TreeCollision, NothingIsNearWhatIsEmptyOrNoNumber) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sphere_tree_test

@@ -10,7 +10,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::tool_spheres_test {
 namespace {
 
 VoxelTool tool_of(const std::string& name) {
@@ -119,4 +119,4 @@ TEST(ToolSpheres, AToolWithoutInsideIsRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tool_spheres_test

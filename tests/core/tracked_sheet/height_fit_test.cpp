@@ -11,7 +11,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::height_fit_test {
 namespace {
 
 using Surface = double (*)(double u, double v);
@@ -173,4 +173,4 @@ TEST(Trend, FewPointsHaveNone) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::height_fit_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace remote_touch {
+namespace remote_touch::height_profile_test {
 namespace {
 
 // So many points of sheets at these heights, with noise.
@@ -73,4 +73,4 @@ TEST(HeightProfile, NoiseMakesNoValleys) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::height_profile_test

@@ -11,7 +11,7 @@
 #include "tests/support/every_level.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::patch_points_test {
 namespace {
 
 constexpr double kUnit = 0.005;
@@ -130,4 +130,4 @@ TEST(PatchPoints, SumsAreThoseAddedOneByOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::patch_points_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sheet_acquisition_test {
 namespace {
 
 constexpr double kUnit = 0.005;
@@ -81,4 +81,4 @@ TEST(SheetAcquisition, WhereThereIsNoSurfaceThereIsNoSheet) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sheet_acquisition_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sheet_registration_test {
 namespace {
 
 constexpr double kHalfRange = 8;
@@ -73,4 +73,4 @@ TEST(SheetRegistration, WithoutPointsNothingMoved) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sheet_registration_test

@@ -9,7 +9,7 @@
 #include "core/tracked_sheet/stray_points.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sheet_search_test {
 namespace {
 
 constexpr double kUnit = 0.005;
@@ -102,4 +102,4 @@ TEST(StrayPoints, ASecondSheetIsASurfaceAndScatteredPointsAreNot) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sheet_search_test

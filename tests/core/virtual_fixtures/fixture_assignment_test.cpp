@@ -10,7 +10,7 @@
 #include "core/virtual_fixtures/everywhere.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::fixture_assignment_test {
 namespace {
 
 using Column = std::vector<double>;
@@ -216,4 +216,4 @@ TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::fixture_assignment_test

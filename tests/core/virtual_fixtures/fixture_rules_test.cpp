@@ -12,7 +12,7 @@
 #include "core/virtual_fixtures/near_point.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::fixture_rules_test {
 namespace {
 
 using Shares = std::vector<double>;
@@ -244,4 +244,4 @@ TEST(HueRange, AFrameWithoutColoursIsRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::fixture_rules_test

@@ -16,7 +16,7 @@
 #include "core/virtual_fixtures/near_point.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::guidance_target_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -241,4 +241,4 @@ TEST(GuidanceTarget, EveryGuidanceRuleTellsOneInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::guidance_target_test

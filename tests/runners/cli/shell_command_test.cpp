@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace remote_touch {
+namespace remote_touch::shell_command_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -79,4 +79,4 @@ TEST(ShellCommand, OtherTextsAreReadWithoutHarm) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::shell_command_test

@@ -17,7 +17,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::contract_test {
 namespace {
 
 // A live session of two frames and some ticks, as entries called live-session need one.
@@ -326,4 +326,4 @@ TEST(Catalog, NamesAreUniqueAndDescribed) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::contract_test

@@ -10,7 +10,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::experiment_sections_test {
 namespace {
 
 constexpr const char* kTask = R"({"scenario": {"name": "flat-grid"},
@@ -202,4 +202,4 @@ TEST(ExperimentSections, RefuseMoreFixturesThanATaskCanSwitch) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::experiment_sections_test

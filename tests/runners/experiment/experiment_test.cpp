@@ -12,7 +12,7 @@
 #include "runners/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::experiment_test {
 namespace {
 
 TEST(Experiments, AllFilesAreStored) {
@@ -234,4 +234,4 @@ TEST(Experiments, AreLoadedByNameOrFile) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::experiment_test

@@ -15,7 +15,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::frame_stream_test {
 namespace {
 
 // Notes what it is given.
@@ -335,4 +335,4 @@ TEST(FrameStream, ARecordingIsRegisteredToTheBaseFrame) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::frame_stream_test

@@ -13,7 +13,7 @@
 #include "runners/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::parameter_ranges_test {
 namespace {
 
 // What a program writes for NaN is null, but a value made in memory can be NaN.
@@ -300,4 +300,4 @@ TEST(Parameters, ALongValueIsShortenedInTheMessage) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::parameter_ranges_test

@@ -11,7 +11,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::renderer_contract_test {
 namespace {
 
 std::unique_ptr<Renderer> build(const RendererEntry& entry) {
@@ -178,4 +178,4 @@ TEST(RendererContract, ADeviceThatIsNotFiniteGetsNoForceAndDoesNoHarm) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::renderer_contract_test

@@ -19,7 +19,7 @@
 #include "tests/support/sensor_fault_scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::sensor_fault_frames_test {
 namespace {
 
 // --- frames ---
@@ -322,4 +322,4 @@ TEST(SensorFaultFrames, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sensor_fault_frames_test

@@ -7,7 +7,7 @@
 
 #include "core/geometry/rotation.h"
 
-namespace remote_touch {
+namespace remote_touch::device_motors_test {
 namespace {
 
 Vec3 direction(std::mt19937& random) {
@@ -87,4 +87,4 @@ TEST(DeviceMotors, AZeroIsNoLimit) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::device_motors_test

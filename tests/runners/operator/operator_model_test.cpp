@@ -10,7 +10,7 @@
 
 #include "core/geometry/rotation.h"
 
-namespace remote_touch {
+namespace remote_touch::operator_model_test {
 namespace {
 
 constexpr double kTick_s = 0.001;
@@ -280,4 +280,4 @@ TEST(OperatorModel, EveryAllowedDamperIsStable) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::operator_model_test

@@ -5,7 +5,7 @@
 
 #include "core/geometry/rotation.h"
 
-namespace remote_touch {
+namespace remote_touch::simulated_hand_test {
 namespace {
 
 constexpr double kTick_s = 0.001;
@@ -65,4 +65,4 @@ TEST(SimulatedHand, FeelsNoTorqueWithoutATool) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::simulated_hand_test

@@ -12,7 +12,7 @@
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::input_hashes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -207,4 +207,4 @@ TEST(NamedInputs, OfAnUnfinishedSweepStayWhereRunsAreDone) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::input_hashes_test

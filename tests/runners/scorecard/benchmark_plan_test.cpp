@@ -19,7 +19,7 @@
 #include "scenarios/recordings/recording_part.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::benchmark_plan_test {
 
 // What a test says of its scene.
 void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
@@ -159,4 +159,4 @@ TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::benchmark_plan_test

@@ -8,7 +8,7 @@
 #include "runners/scorecard/page_tables.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::scorecard_page_test {
 namespace {
 
 // Replicates of two noise levels that are successes, and a measure.
@@ -157,4 +157,4 @@ TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::scorecard_page_test

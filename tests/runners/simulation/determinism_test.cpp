@@ -11,7 +11,7 @@
 #include "runners/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::determinism_test {
 namespace {
 
 std::string digest_of(const std::string& name, const std::vector<std::string>& overrides, Isa isa) {
@@ -127,4 +127,4 @@ TEST(Determinism, HistoryOfTheNeighbourListDoesNotShow) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::determinism_test

@@ -4,7 +4,7 @@
 #include "runners/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::force_over_time_test {
 namespace {
 
 constexpr double kContactRadius = 0.005, kStiffness = 600;
@@ -113,4 +113,4 @@ TEST(ForceOverTime, LatencyDelaysTheFrames) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::force_over_time_test

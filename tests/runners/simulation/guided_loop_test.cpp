@@ -11,7 +11,7 @@
 #include "runners/experiment/experiment.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::guided_loop_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -173,4 +173,4 @@ TEST(GuidedLoop, SameTaskSameBits) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::guided_loop_test

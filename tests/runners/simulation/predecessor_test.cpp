@@ -4,7 +4,7 @@
 #include "analysis/measures/measures.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::predecessor_test {
 namespace {
 
 double popped_at(double velocity, const std::vector<std::string>& more) {
@@ -41,4 +41,4 @@ TEST(ForceGate, LatestContactHasNoDropouts) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::predecessor_test

@@ -8,7 +8,7 @@
 #include "analysis/measures/measures.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::rivals_lift_test {
 namespace {
 
 constexpr double kPressed_m = 0.01;
@@ -55,4 +55,4 @@ TEST(RivalsUnderALift, AGodObjectHoldsWhatRestsOnly) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::rivals_lift_test

@@ -9,7 +9,7 @@
 #include "core/geometry/rotation.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::tool_contact_test {
 namespace {
 
 std::string number(double value) {
@@ -233,4 +233,4 @@ TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tool_contact_test

@@ -13,7 +13,7 @@
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/simulation/simulation.h"
 
-namespace remote_touch {
+namespace remote_touch::tracked_sheet_test {
 namespace {
 
 constexpr double kRc = 0.005;
@@ -182,4 +182,4 @@ TEST(TrackedSheet, WhereTheWorldHasItsOriginDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tracked_sheet_test

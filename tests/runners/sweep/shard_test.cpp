@@ -12,7 +12,7 @@
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::shard_test {
 namespace {
 
 // 12 cells of 2 replicates.
@@ -95,4 +95,4 @@ TEST(Shards, AreThoseOfSlurmOrMpirun) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::shard_test

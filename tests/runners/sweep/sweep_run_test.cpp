@@ -12,7 +12,7 @@
 #include "runners/simulation/simulation.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::sweep_run_test {
 namespace {
 
 // A run takes a millisecond.
@@ -178,4 +178,4 @@ TEST(Refinement, EndedAndGoneOnWithIsTheSame) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sweep_run_test

@@ -13,7 +13,7 @@
 #include "runners/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::sweep_test {
 namespace {
 
 constexpr const char* kSmall = R"({"title": "small", "experiment": "fig4.12",
@@ -260,4 +260,4 @@ TEST(Refinement, ItsRuleAndFirstRound) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sweep_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace remote_touch {
+namespace remote_touch::child_process_test {
 namespace {
 
 constexpr ChildLimits kLimits{256u << 20, 1};
@@ -62,4 +62,4 @@ TEST(ChildProcess, ThatCrashesIsTold) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::child_process_test

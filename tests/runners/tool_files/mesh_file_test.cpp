@@ -10,7 +10,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::mesh_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ INSTANTIATE_TEST_SUITE_P(Meshes, RealMeshTest,
                          });
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::mesh_file_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::ply_header_test {
 namespace {
 
 std::string header(const std::string& format, const std::string& vertices, const std::string& faces) {
@@ -58,4 +58,4 @@ TEST_F(PlyHeader, CountsThatAreNoneAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::ply_header_test

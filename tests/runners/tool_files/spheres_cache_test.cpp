@@ -8,7 +8,7 @@
 #include "runners/tool_files/tool_loading.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::spheres_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST_F(SpheresCacheTest, CountsThatDoNotFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::spheres_cache_test

@@ -10,7 +10,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::tool_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -176,4 +176,4 @@ TEST_F(ToolCacheTest, ParametersReachTheSettings) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tool_cache_test

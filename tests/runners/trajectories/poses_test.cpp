@@ -7,7 +7,7 @@
 #include "scenarios/synthetic/flat_grid.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::poses_test {
 namespace {
 
 const double kDegree = std::acos(-1.0) / 180;
@@ -77,4 +77,4 @@ TEST(Poses, RefuseWhatIsNotUnique) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::poses_test

@@ -8,7 +8,7 @@
 #include "scenarios/synthetic/flat_grid.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::random_walk_test {
 namespace {
 
 RandomWalk walk(const RandomWalk::Settings& settings) {
@@ -64,4 +64,4 @@ TEST(RandomWalk, RefusesAPlaceWithoutRoom) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::random_walk_test

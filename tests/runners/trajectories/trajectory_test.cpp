@@ -18,7 +18,7 @@
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::trajectory_test {
 namespace {
 
 template <class Made>
@@ -265,4 +265,4 @@ TEST(ImageScan, RefusesWhatItCannotScan) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::trajectory_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::beating_heart_test {
 namespace {
 
 constexpr double kBeat_s = 0.8;  // at 75 beats a minute
@@ -197,4 +197,4 @@ TEST(BeatingHeart, WithoutAmplitudeItRests) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::beating_heart_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::depth_camera_test {
 namespace {
 
 constexpr std::uint32_t kTable = 0x204060, kBlock = 0xC03020;
@@ -165,4 +165,4 @@ TEST(DepthCamera, NoiseHasTheDeviationAskedForAndBelongsToItsFrame) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::depth_camera_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::ellipsoid_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -212,4 +212,4 @@ TEST(Ellipsoid, BallByHand) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::ellipsoid_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::extrusion_test {
 namespace {
 
 using Profile = std::vector<std::array<double, 2>>;
@@ -171,4 +171,4 @@ TEST(Extrusion, BoxByHand) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::extrusion_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::handwheel_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -196,4 +196,4 @@ TEST(Handwheel, ALargerRingIsStillOnItsSpokes) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::handwheel_test

@@ -11,7 +11,7 @@
 #include "core/virtual_fixtures/hue_range.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::valve_tank_test {
 namespace {
 
 using Settings = ValveTank::Settings;
@@ -185,4 +185,4 @@ TEST(ValveTank, RefusesAValveInTheWallAndACameraBehindIt) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::valve_tank_test

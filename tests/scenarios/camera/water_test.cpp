@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remote_touch {
+namespace remote_touch::water_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -59,4 +59,4 @@ TEST(Water, DepthGetsWorseWithTurbidityAndDistance) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::water_test

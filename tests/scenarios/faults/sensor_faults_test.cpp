@@ -16,7 +16,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/sensor_fault_scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::sensor_faults_test {
 namespace {
 
 // --- none ---
@@ -261,4 +261,4 @@ TEST(SensorFaults, LostPointsLoseTheirNormals) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sensor_faults_test

@@ -14,7 +14,7 @@
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::scenario_test {
 namespace {
 
 const NoiseKey kKey{1, 2, 3};
@@ -304,4 +304,4 @@ TEST(CameraScene, HolesAlongDepthEdgesOnly) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::scenario_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::image_mask_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ TEST_F(ImageMasks, AreInputs) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::image_mask_test

@@ -9,7 +9,7 @@
 
 #include "scenarios/recordings/recording.h"
 
-namespace remote_touch {
+namespace remote_touch::recorded_data_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST(RecordedData, TumOfficeFrame) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::recorded_data_test

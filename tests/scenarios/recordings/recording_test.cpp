@@ -10,7 +10,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::recording_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -256,4 +256,4 @@ TEST_F(Recording, StreamsPcdFiles) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::recording_test

@@ -16,7 +16,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::moving_shape_test {
 namespace {
 
 using Kind = Shape::Kind;
@@ -316,4 +316,4 @@ TEST(MovingShape, RefusesSlopesThatStandUpright) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::moving_shape_test

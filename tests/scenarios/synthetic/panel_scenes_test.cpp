@@ -13,7 +13,7 @@
 #include "scenarios/synthetic/wedge.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::panel_scenes_test {
 namespace {
 
 const double kPi = std::acos(-1.0);
@@ -208,4 +208,4 @@ TEST(PanelScenes, FramesArePure) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::panel_scenes_test

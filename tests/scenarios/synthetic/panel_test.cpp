@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace remote_touch {
+namespace remote_touch::panel_test {
 namespace {
 
 // A panel that lies askew.
@@ -65,4 +65,4 @@ TEST(FlatPanel, CornersHaveOneInside) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::panel_test

@@ -11,7 +11,7 @@
 
 #include "scenarios/synthetic/grid.h"
 
-namespace remote_touch {
+namespace remote_touch::shape_test {
 namespace {
 
 using Kind = Shape::Kind;
@@ -187,4 +187,4 @@ TEST(Shape, AGridOfOnePointOrBesideTheRidgeIsAPatchToo) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::shape_test

@@ -11,7 +11,7 @@
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::contact_list_test {
 namespace {
 
 const auto kTool = scenes::box_tool({0.005, 0.003, 0.004});
@@ -106,4 +106,4 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::contact_list_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/box_tool.h"
 
-namespace remote_touch {
+namespace remote_touch::disk_contact_test {
 namespace {
 
 constexpr double kMissed_m = 5e-5;  // by a search along two lines, at a corner
@@ -96,4 +96,4 @@ TEST(DiskContact, FarAwayItIsTheMiddleWithTheBoundAsDistance) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::disk_contact_test

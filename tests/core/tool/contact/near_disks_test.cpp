@@ -10,7 +10,7 @@
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::near_disks_test {
 namespace {
 
 const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
@@ -125,4 +125,4 @@ TEST(NearDisks, WhatIsTouchedIsTheSameAfterADetection) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::near_disks_test

@@ -12,7 +12,7 @@
 #include "core/kernels/kernels.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::tiled_cloud_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -107,4 +107,4 @@ TEST(TiledCloud, KnowsTheSpacing) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tiled_cloud_test

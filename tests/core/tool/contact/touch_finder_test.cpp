@@ -9,7 +9,7 @@
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::touch_finder_test {
 namespace {
 
 const Vec3 kHalf_m(0.02, 0.005, 0.01);
@@ -110,4 +110,4 @@ TEST(TouchFinder, NothingIsFoundInAnEmptyCloudOrFarAway) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::touch_finder_test

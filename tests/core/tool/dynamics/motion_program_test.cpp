@@ -6,7 +6,7 @@
 
 #include "tests/support/box_tool.h"
 
-namespace remote_touch {
+namespace remote_touch::motion_program_test {
 namespace {
 
 const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
@@ -89,4 +89,4 @@ TEST(MotionProgram, ContactsThatAreNoNumbersAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::motion_program_test

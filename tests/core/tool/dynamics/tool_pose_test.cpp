@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace remote_touch {
+namespace remote_touch::tool_pose_test {
 namespace {
 
 Vec3 draw(std::mt19937& random, double half_width) {
@@ -68,4 +68,4 @@ TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tool_pose_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace remote_touch {
+namespace remote_touch::wrench_coupling_test {
 namespace {
 
 Eigen::Matrix3d uneven_inertia() {
@@ -116,4 +116,4 @@ TEST(WrenchCoupling, IsCutToItsLimits) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::wrench_coupling_test

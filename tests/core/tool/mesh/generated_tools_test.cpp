@@ -10,7 +10,7 @@
 #include "core/tool/mesh/mesh_check.h"
 #include "tests/support/meshes.h"
 
-namespace remote_touch {
+namespace remote_touch::generated_tools_test {
 namespace {
 
 Vec3 sides(const TriangleMesh& mesh) {
@@ -115,4 +115,4 @@ TEST(MarchingTetrahedra, StaysClosedWhereTheFunctionVanishesAtNodes) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::generated_tools_test

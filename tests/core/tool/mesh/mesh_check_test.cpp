@@ -8,7 +8,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::mesh_check_test {
 namespace {
 
 const TriangleMesh kBox = box_mesh({2, 3, 4}, {1, 1, 1});
@@ -123,4 +123,4 @@ TEST(MeshRepair, LeavesAClosedMeshAlone) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::mesh_check_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace remote_touch {
+namespace remote_touch::progress_test {
 namespace {
 
 TEST(Progress, GoesOnWhileTheToolComesNearer) {
@@ -34,4 +34,4 @@ TEST(Progress, CountsAgainFromTheNearestWay) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::progress_test

@@ -11,7 +11,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::tool_renderer_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -214,4 +214,4 @@ TEST_P(EveryRule, AWalkThroughClutterStaysOutside) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::tool_renderer_test

@@ -6,7 +6,7 @@
 #include "core/tool/voxels/voxelisation.h"
 #include "tests/support/meshes.h"
 
-namespace remote_touch {
+namespace remote_touch::distance_field_test {
 namespace {
 
 struct Field {
@@ -129,4 +129,4 @@ TEST(DistanceField, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::distance_field_test

@@ -5,7 +5,7 @@
 #include "core/tool/voxels/voxelisation.h"
 #include "tests/support/meshes.h"
 
-namespace remote_touch {
+namespace remote_touch::mass_properties_test {
 namespace {
 
 Eigen::Matrix3d diagonal(double x, double y, double z) {
@@ -67,4 +67,4 @@ TEST(MassProperties, OfNodesAreThoseOfTheMesh) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::mass_properties_test

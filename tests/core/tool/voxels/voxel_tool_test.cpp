@@ -8,7 +8,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::voxel_tool_test {
 namespace {
 
 VoxelTool make(const TriangleMesh& mesh, const VoxelToolSettings& settings = {}) {
@@ -180,4 +180,4 @@ TEST(VoxelTool, VerticesThatNoTriangleUsesDoNotCount) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::voxel_tool_test

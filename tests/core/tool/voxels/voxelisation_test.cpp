@@ -6,7 +6,7 @@
 #include "core/tool/voxels/distance_field.h"
 #include "tests/support/meshes.h"
 
-namespace remote_touch {
+namespace remote_touch::voxelisation_test {
 namespace {
 
 Vec3 node(const VoxelGrid& grid, int i, int j, int k) {
@@ -212,4 +212,4 @@ TEST(Voxelisation, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::voxelisation_test

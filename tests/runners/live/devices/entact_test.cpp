@@ -7,7 +7,7 @@
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::entact_test {
 namespace {
 
 class EntactTest : public testing::Test {
@@ -59,4 +59,4 @@ TEST_F(EntactTest, AReadingIsOneTickOld) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::entact_test

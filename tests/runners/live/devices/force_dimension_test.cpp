@@ -5,7 +5,7 @@
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::force_dimension_test {
 namespace {
 
 class ForceDimensionTest : public testing::Test {
@@ -79,4 +79,4 @@ TEST_F(ForceDimensionTest, WithoutAWristItDoesNotTurn) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::force_dimension_test

@@ -13,7 +13,7 @@
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::haply_fault_test {
 namespace {
 
 // What a tick may take when the service is at fault.
@@ -307,4 +307,4 @@ TEST(HaplyLetGo, WhileTheServiceHangs) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::haply_fault_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/allocation_counter.h"
 
-namespace remote_touch {
+namespace remote_touch::haply_messages_test {
 namespace {
 
 using nlohmann::json;
@@ -137,4 +137,4 @@ TEST(HaplyMessage, NothingIsAllocated) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::haply_messages_test

@@ -14,7 +14,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::haply_test {
 namespace {
 
 TEST(Haply, AxesAndUnits) {
@@ -212,4 +212,4 @@ TEST(Haply, Availability) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::haply_test

@@ -8,7 +8,7 @@
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::haptic_device_contract_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -40,7 +40,7 @@ TEST_P(HapticDeviceContract, StateIsInOurAxesAndUnits) {
   const Vec3 position(0.01, -0.02, 0.03), velocity(0.4, 0.5, -0.6), turning(1, -2, 3);
   double_->set([&](DeviceDouble::State& state) {
     state.position = in_vendor_lengths(position), state.velocity = in_vendor_lengths(velocity);
-    state.turning = in_vendor_axes(turning), state.turn = turn_in_vendor_axes(kRotation);
+    state.turning = in_vendor_axes(turning), state.rotation = turn_in_vendor_axes(kRotation);
     state.buttons = 5;
   });
   const auto device = open();
@@ -64,7 +64,7 @@ TEST_P(HapticDeviceContract, TurnsAreRotationsThatFitThePositions) {
     double_->set([&](DeviceDouble::State& state) {
       const Vec3 p = centre * vendor().length_per_m;
       state.position = {p.x(), p.y(), p.z()};
-      std::copy(turn.data(), turn.data() + 9, state.turn.begin());
+      std::copy(turn.data(), turn.data() + 9, state.rotation.begin());
     });
     const auto [reading, fault] = read_once(*device);
     ASSERT_FALSE(fault) << fault.what;
@@ -200,7 +200,7 @@ TEST_P(HapticDeviceContract, WhatIsNoNumberIsAFault) {
   EXPECT_TRUE(fault_with([](DeviceDouble::State& state) { state.position[0] = INFINITY; }));
   EXPECT_TRUE(fault_with([](DeviceDouble::State& state) { state.velocity[2] = kNaN; }));
   EXPECT_TRUE(fault_with([](DeviceDouble::State& state) { state.turning[0] = kNaN; }));
-  EXPECT_TRUE(fault_with([](DeviceDouble::State& state) { state.turn[4] = kNaN; }));
+  EXPECT_TRUE(fault_with([](DeviceDouble::State& state) { state.rotation[4] = kNaN; }));
   EXPECT_FALSE(fault_with([](DeviceDouble::State&) {}));
 }
 
@@ -209,7 +209,7 @@ TEST_P(HapticDeviceContract, ATurnThatIsNoRotationIsAFault) {
   for (const std::array<double, 9>& turn :
        {std::array<double, 9>{}, std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, -1},
         std::array<double, 9>{1, 0.1, 0, 0, 1, 0, 0, 0, 1}}) {
-    double_->set([&](DeviceDouble::State& state) { state.turn = turn; });
+    double_->set([&](DeviceDouble::State& state) { state.rotation = turn; });
     const DeviceFault fault = read_once(*device).fault;
     ASSERT_TRUE(fault);
     EXPECT_HAS(fault.what, "no rotation");
@@ -257,4 +257,4 @@ INSTANTIATE_TEST_SUITE_P(Vendors, TellsOfMotors, testing::Values(&kForceDimensio
 INSTANTIATE_TEST_SUITE_P(Vendors, RunsByTheClock, testing::Values(&kForceDimension, &kEntact), name_of);
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::haptic_device_contract_test

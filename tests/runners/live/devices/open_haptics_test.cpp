@@ -5,7 +5,7 @@
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::open_haptics_test {
 namespace {
 
 class OpenHapticsTest : public testing::Test {
@@ -94,4 +94,4 @@ TEST_F(OpenHapticsTest, ASchedulerThatStopsCallingIsAFault) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::open_haptics_test

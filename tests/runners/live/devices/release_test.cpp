@@ -6,7 +6,7 @@
 
 #include "tests/doubles/vendor_devices.h"
 
-namespace remote_touch {
+namespace remote_touch::release_test {
 namespace {
 
 void nap() {
@@ -198,4 +198,4 @@ INSTANTIATE_TEST_SUITE_P(Vendors, LettingGo, testing::Values(&kForceDimension, &
                          [](const auto& tested) { return tested.param->name; });
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::release_test

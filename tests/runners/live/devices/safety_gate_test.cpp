@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace remote_touch {
+namespace remote_touch::safety_gate_test {
 namespace {
 
 constexpr double kTick_s = 0.001;
@@ -165,4 +165,4 @@ TEST(SafetyLimits, ASlewRateThatCannotLetGoIsRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::safety_gate_test

@@ -18,7 +18,7 @@
 #include "tests/support/allocation_counter.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::spacenav_test {
 namespace {
 
 constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
@@ -267,4 +267,4 @@ TEST(SpacenavDaemon, SerialMouseThroughTheStockDaemon) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::spacenav_test

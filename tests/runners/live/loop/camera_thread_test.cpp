@@ -11,7 +11,7 @@
 #include "runners/live/timing/steady_clock.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::camera_thread_test {
 namespace {
 
 constexpr int kWidth = 8, kHeight = 4;
@@ -147,4 +147,4 @@ TEST(CameraThread, AFrameThatCannotBeProcessedEndsIt) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::camera_thread_test

@@ -14,7 +14,7 @@
 #include "tests/support/test_files.h"
 #include "tests/support/timed_tests.h"
 
-namespace remote_touch {
+namespace remote_touch::live_camera_test {
 namespace {
 
 constexpr double kWall_m = 0.5;
@@ -91,7 +91,7 @@ TEST_F(LiveCamera, ThatIsUnpluggedLeavesItsLastCloudAndAFailure) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::live_camera_test
 
 int main(int argc, char** argv) {
 #ifdef REMOTE_TOUCH_VIRTUAL_OPENNI2

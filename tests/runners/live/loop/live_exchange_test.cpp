@@ -7,7 +7,7 @@
 #include "runners/live/loop/ring.h"
 #include "runners/live/loop/triple_buffer.h"
 
-namespace remote_touch {
+namespace remote_touch::live_exchange_test {
 namespace {
 
 constexpr int kValues = 200'000;
@@ -91,4 +91,4 @@ TEST(Ring, HasNoRoomWhenFull) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::live_exchange_test

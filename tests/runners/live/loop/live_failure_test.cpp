@@ -11,7 +11,7 @@
 #include "tests/runners/live/loop/background_run.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::live_failure_test {
 namespace {
 
 // A live run whose device is pressed into the table.
@@ -185,4 +185,4 @@ TEST(ServoTick, AnExceptionLetsTheDeviceGo) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::live_failure_test

@@ -13,7 +13,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::live_run_test {
 namespace {
 
 LiveOptions options(double duration_s) {
@@ -100,4 +100,4 @@ TEST(LiveRun, AStopEndsItAtOnce) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::live_run_test

@@ -9,7 +9,7 @@
 #include "tests/runners/live/loop/background_run.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::live_service_test {
 namespace {
 
 class PressedInverse3 : public testing::Test {
@@ -82,4 +82,4 @@ TEST(LiveSpaceMouse, AKilledDaemonEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::live_service_test

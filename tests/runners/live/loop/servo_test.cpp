@@ -14,7 +14,7 @@
 
 #include "runners/live/timing/steady_clock.h"
 
-namespace remote_touch {
+namespace remote_touch::servo_test {
 namespace {
 
 constexpr double kRate_hz = 1000, kStall_s = 0.01;
@@ -157,4 +157,4 @@ TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::servo_test

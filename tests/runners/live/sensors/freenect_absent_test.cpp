@@ -4,7 +4,7 @@
 #include "runners/live/sensors/freenect_camera.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::freenect_absent_test {
 namespace {
 
 TEST(FreenectAbsent, IsRefused) {
@@ -22,4 +22,4 @@ TEST(FreenectAbsent, IsRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::freenect_absent_test

@@ -10,7 +10,7 @@
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::freenect_camera_test {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
@@ -137,7 +137,7 @@ TEST_F(FreenectCamera, OtherNumbersAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::freenect_camera_test
 
 int main(int argc, char** argv) {
 #ifdef REMOTE_TOUCH_FAKENECT

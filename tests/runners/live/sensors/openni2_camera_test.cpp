@@ -17,7 +17,7 @@
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::openni2_camera_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,7 +273,7 @@ TEST_F(Openni2Recording, FramesThatAreZeroed) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::openni2_camera_test
 
 #ifdef __SANITIZE_ADDRESS__
 // The library and its player leak. Drivers are unloaded before leaks are looked for: kept, they can be told

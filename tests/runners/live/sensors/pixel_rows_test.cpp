@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace remote_touch {
+namespace remote_touch::pixel_rows_test {
 namespace {
 
 using Depth = std::vector<std::uint16_t>;
@@ -50,4 +50,4 @@ TEST(PixelRows, OtherSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::pixel_rows_test

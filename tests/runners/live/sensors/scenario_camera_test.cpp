@@ -7,7 +7,7 @@
 #include "runners/live/timing/steady_clock.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::scenario_camera_test {
 namespace {
 
 // Recorded by a host that was slow to start and got fewer frames than the sensor's rate.
@@ -54,4 +54,4 @@ TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::scenario_camera_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace remote_touch {
+namespace remote_touch::sensor_clock_test {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 30;
@@ -69,4 +69,4 @@ TEST(SensorClock, PauseOfTheSensor) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sensor_clock_test

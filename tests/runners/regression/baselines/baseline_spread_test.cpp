@@ -15,7 +15,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::baseline_spread_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -342,4 +342,4 @@ TEST(Bless, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::baseline_spread_test

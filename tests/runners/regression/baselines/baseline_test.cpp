@@ -19,7 +19,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::baseline_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -351,4 +351,4 @@ TEST_F(CheckBaseline, AnInterruptionIsNoVerdict) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::baseline_test

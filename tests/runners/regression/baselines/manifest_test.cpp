@@ -10,7 +10,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::manifest_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ TEST(MissingBaselines, WhatCountsAsOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::manifest_test

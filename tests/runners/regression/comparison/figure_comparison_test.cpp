@@ -4,7 +4,7 @@
 #include "analysis/figures/result_file.h"
 #include "tests/runners/regression/comparison/compared_files.h"
 
-namespace remote_touch {
+namespace remote_touch::figure_comparison_test {
 namespace {
 
 using namespace compared_files;
@@ -52,4 +52,4 @@ TEST_F(CompareFigures, TablesMayBeAddedButNotMissed) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::figure_comparison_test

@@ -14,7 +14,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::result_comparison_test {
 namespace {
 
 using namespace compared_files;
@@ -360,4 +360,4 @@ TEST(Reports, OfABadNameAreStillReports) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::result_comparison_test

@@ -12,7 +12,7 @@
 #include "tests/runners/regression/comparison/compared_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::sweep_files_test {
 namespace {
 
 using namespace compared_files;
@@ -185,4 +185,4 @@ TEST_F(CompareSweepFiles, AToleranceIsOfAMeasure) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::sweep_files_test

@@ -12,7 +12,7 @@
 #include "tests/runners/regression/verification/wrong_renderers.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch {
+namespace remote_touch::verification_test {
 namespace {
 
 using Names = std::set<std::string>;
@@ -268,4 +268,4 @@ TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::verification_test

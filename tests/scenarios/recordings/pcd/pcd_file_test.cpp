@@ -12,7 +12,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::pcd_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ TEST_F(PcdFile, RefusesMissingFilesAndFolders) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::pcd_file_test

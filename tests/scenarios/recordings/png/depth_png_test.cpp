@@ -10,7 +10,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::depth_png_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
 }
 
 }  // namespace
-}  // namespace remote_touch
+}  // namespace remote_touch::depth_png_test
