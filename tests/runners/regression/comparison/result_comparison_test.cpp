@@ -90,7 +90,7 @@ TEST_F(CompareTraceFiles, AnotherSeedIsAnotherConfigurationAndOtherFrames) {
   EXPECT_EQ(found.cause, Cause::configuration);
   EXPECT_EQ(found.explanation, "seed 1 against 2");
   EXPECT_EQ(found.situation, Cause::input);
-  EXPECT_HAS(found.seen, "frame_hash");
+  EXPECT_HAS(found.observation, "frame_hash");
   EXPECT_HAS(other.verdict, "from tick " + std::to_string(found.tick) + " on (configuration differs)");
   const json divergence = json_of(other)["divergence"];
   EXPECT_EQ(divergence["cause"], "configuration differs");
