@@ -216,8 +216,8 @@ void DepthPipeline::write_points(const Frame& frame, int row, int reach, double 
   clear_beside(to, frame, row, reach, first, last);
   if (!inside) return;
   const std::ptrdiff_t at = row * stride_ + first;
-  kernels_.depth_to_points(pixels(frame, row, first, last, changed), scale,
-                           {to.x + at, to.y + at, to.z + at, stride_});
+  kernels_.depth.depth_to_points(pixels(frame, row, first, last, changed), scale,
+                                 {to.x + at, to.y + at, to.z + at, stride_});
 }
 
 PixelRow DepthPipeline::pixels(const Frame& frame, int row, int first, int last, bool changed) const {
@@ -233,7 +233,7 @@ PixelRow DepthPipeline::pixels(const Frame& frame, int row, int first, int last,
 void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* scratch) {
   const int wider = frame.normal_half, width = frame.at.width + 2 * wider;
   float* const change = change_.data() + kBorder * stride_ + kBorder - wider;
-  kernels_.filter_depth({first, last, width, frame.filter_half, scratch}, planes(raw_, -wider), change);
+  kernels_.depth.filter_depth({first, last, width, frame.filter_half, scratch}, planes(raw_, -wider), change);
   const PointPlanes smooth = planes(smooth_, 0);
   for (int row = first; row < last; ++row) write_points(frame, row, wider, frame.normal_scale, true, smooth);
 }
@@ -243,16 +243,16 @@ void DepthPipeline::normals_band(const Frame& frame, int first, int last, float*
   const PixelRays rays{rays_x_.data() + kBorder, rays_y_.data() + kBorder};
   const float step[2] = {static_cast<float>(1 / frame.camera.fx), static_cast<float>(1 / frame.camera.fy)};
   const PointPlanes points = planes(smooth_, 0), normals = planes(normals_, 0);
-  kernels_.plane_normals({first, last, width, frame.normal_half, scratch}, points, rays, step, normals);
+  kernels_.depth.plane_normals({first, last, width, frame.normal_half, scratch}, points, rays, step, normals);
   for (int row = first; row < last; ++row) {
     const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     const std::ptrdiff_t at = row * stride_;
     const CloudRow out{cloud.x.data() + to,  cloud.y.data() + to,  cloud.z.data() + to, cloud.nx.data() + to,
                        cloud.ny.data() + to, cloud.nz.data() + to, valid_.data() + to};
     if (!frame.keep_points)
-      kernels_.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
-    kernels_.normals_to_cloud(width, points.z + at, {normals.x + at, normals.y + at, normals.z + at, stride_},
-                              frame.X_WC, out);
+      kernels_.depth.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
+    kernels_.depth.normals_to_cloud(
+        width, points.z + at, {normals.x + at, normals.y + at, normals.z + at, stride_}, frame.X_WC, out);
   }
 }
 

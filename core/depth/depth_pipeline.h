@@ -17,6 +17,7 @@
 
 #include "core/cloud/camera.h"
 #include "core/cloud/point_cloud.h"
+#include "core/kernels/depth_kernels.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 

@@ -2,7 +2,10 @@
 // vectors, for compilers make poor ones of minima and of 64-bit integers.
 #include <immintrin.h>
 
+#include <cstdint>
+
 #include "core/kernels/level.h"
+#include "core/kernels/proxy_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

@@ -1,5 +1,6 @@
 // The spatial bilateral filter (7.1), (7.2) of 16, 8 or 4 pixels of a row at a time. Depths are summed as
 // differences to the pixel's own, which single precision holds to 1e-7 of themselves.
+#include "core/kernels/depth_kernels.h"
 #include "core/kernels/float_lanes.h"
 #include "core/kernels/level.h"
 

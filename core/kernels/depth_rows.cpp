@@ -1,4 +1,5 @@
 // Rows of pixels into planes and out of them into a cloud. Plain loops: every pixel by itself.
+#include "core/kernels/depth_kernels.h"
 #include "core/kernels/level.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {

@@ -87,7 +87,7 @@ __attribute__((always_inline)) inline void for_each_step(int half, const Work& w
     for (int i = 1; i <= half; ++i) work(i);
 }
 
-// Weights of the pairs of one row, as image_rows.h tells. A row of them holds those of pairs whose lower
+// Weights of the pairs of one row, as depth_kernels.h tells. A row of them holds those of pairs whose lower
 // point is `below` rows under the upper one and `across` columns to its right, at the column of the upper
 // one.
 class PairWeights {

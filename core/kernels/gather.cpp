@@ -5,6 +5,7 @@
 // not.
 #include <immintrin.h>
 
+#include "core/kernels/gather_kernels.h"
 #include "core/kernels/level.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
@@ -205,5 +206,7 @@ std::size_t append_within(const PointRun& run, const double centre[3], double re
   return extra ? append_columns<false, true>(run, centre, reach, sink, n)
                : append_columns<false, false>(run, centre, reach, sink, n);
 }
+
+const GatherKernels kGatherKernels = {.append_within = append_within};
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
+#include "core/kernels/noise_kernels.h"
 #include "core/kernels/philox.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
@@ -225,5 +226,7 @@ std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size
   }
   return found;
 }
+
+const NoiseKernels kNoiseKernels = {.normals = normals, .candidates = candidates};
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -1,6 +1,7 @@
 // The points of a tracked patch. Places are rounded to a grid on which the sums are exact, so that neither
 // the order of the points nor the number of lanes matters.
 #include "core/kernels/level.h"
+#include "core/kernels/patch_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
@@ -132,5 +133,11 @@ QuadraticSums sums_of_quadratic(const PatchColumns& places, const std::uint8_t* 
   }
   return {{n, u1, v1, u2, uv, v2, u3, u2v, uv2, v3, u4, u3v, u2v2, uv3, v4}, {h1, uh, vh, u2h, uvh, v2h}};
 }
+
+const PatchKernels kPatchKernels = {.points_of_patch = points_of_patch,
+                                    .heights_above = heights_above,
+                                    .sums_near_plane = sums_near_plane,
+                                    .height_bins = height_bins,
+                                    .sums_of_quadratic = sums_of_quadratic};
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

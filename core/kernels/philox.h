@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/kernels/kernels.h"
+#include "core/kernels/noise_kernels.h"
 
 // A copy for every file: code that is compiled for a newer machine must not be linked in for an older one.
 namespace remote_touch {

@@ -1,5 +1,6 @@
 // Normals, 6.2.1: the plane of weighted total least squares through the neighbours of a pixel, for 16, 8 or 4
 // pixels of a row at a time.
+#include "core/kernels/depth_kernels.h"
 #include "core/kernels/float_lanes.h"
 #include "core/kernels/level.h"
 

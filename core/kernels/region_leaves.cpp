@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "core/kernels/level.h"
+#include "core/kernels/region_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
@@ -321,5 +322,9 @@ RemainingRegions next_deepest_region(const NearRegions& near, std::size_t count,
   }
   return {left.count > 0 ? deepest(near.gap, left.min) : count, count};
 }
+
+const RegionKernels kRegionKernels = {.append_near_regions = append_near_regions,
+                                      .deepest_region = deepest_region,
+                                      .next_deepest_region = next_deepest_region};
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -1,5 +1,6 @@
 // Step sizes along a direction: how far to the first point, and how far out of all points.
 #include "core/kernels/level.h"
+#include "core/kernels/proxy_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

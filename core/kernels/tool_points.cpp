@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/vector.h"
-#include "core/kernels/kernels.h"
+#include "core/kernels/points_view.h"
 
 namespace remote_touch {
 

@@ -21,19 +21,10 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
       velocity_(parameters.max_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
 
-bool ProxyRenderer::is_newer(const Frame& frame) const {
-  return frame_index_ < 0 || frame.captured_s > frame_captured_s_;
-}
-
 // Whether the frame is newer than all before.
 bool ProxyRenderer::take(const Frame& frame) {
-  if (!is_newer(frame)) {
-    stale_frame_ = true;
-    return false;
-  }
+  if (!order_.take(frame)) return false;
   replace_points(frame.points);
-  frame_index_ = frame.index;
-  frame_captured_s_ = frame.captured_s;
   frame_arrived_s_ = frame.arrives_s;
   return true;
 }
@@ -66,7 +57,7 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out;
   out.proxy_W = proxy_W_, out.normal_W = normal_W_;
   out.slave_W = slave_W_;
-  out.frame_index = frame_index_;
+  out.frame_index = order_.newest();
   out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
   if (!hip_W.allFinite() || hip_W.cwiseAbs().maxCoeff() > kMaxHipDistance_m) {
     // Hold still and let go: a force from a lost position would be a guess.
@@ -75,12 +66,12 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
     return out;
   }
   if (!placed_) proxy_W_ = hip_W, placed_ = true;
-  if (frame_index_ >= 0) {
+  if (order_.newest() >= 0) {
     out.steps = move(hip_W);
     if (near_.has_regions()) out.steps += close(hip_W);
     report(hip_W, out);
     out.force_N = render_force(hip_W, time_s, out);
-    if (stale_frame_ && out.status == RenderStatus::ok) out.status = RenderStatus::stale_frame_dropped;
+    out.status = order_.status(out.status);
   } else {
     out.proxy_W = proxy_W_ = hip_W;
     out.nearest_distance_m = std::numeric_limits<double>::infinity();
@@ -89,7 +80,6 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
     clear_W_ = hip_W;
   }
   out.slave_W = slave_W_ = slave_command(hip_W, time_s);
-  stale_frame_ = false;
   return out;
 }
 
@@ -107,7 +97,7 @@ const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
 // pre: the points are those of the present list of neighbours.
 ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) const {
   const ProxyRegions regions{p_.r1_m, p_.r2_m, p_.r3_m, near_.sum_grid(), p_.stiffness_N_per_m};
-  return kernels_.contact_query(points, p_W.data(), regions);
+  return kernels_.proxy.contact_query(points, p_W.data(), regions);
 }
 
 // The proxy movement algorithm, 4.2.3. It ends before its budget when a step leaves the proxy where it is,
@@ -199,7 +189,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
 Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
   if (p_.slave_command == SlaveCommand::hip) return hip_W;
   if (!p_.slave_prediction || !in_contact_) return clear_W_;
-  const double age_s = std::clamp(time_s - frame_captured_s_, 0.0, velocity_.horizon_s());
+  const double age_s = std::clamp(time_s - order_.captured_s(), 0.0, velocity_.horizon_s());
   const Vec3 ahead_W = clear_W_ + age_s * velocity_.vector();
   const ContactQuery there = query(near_.around(ahead_W).view(), ahead_W);
   has_local_query_ = false;  // what the proxy saw may have made room

@@ -2,8 +2,11 @@
 // cloud chapter 5. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
 #pragma once
 
+#include "core/kernels/kernels.h"
+#include "core/kernels/proxy_kernels.h"
 #include "core/proxy/proxy_parameters.h"
 #include "core/proxy/virtual_coupling.h"
+#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"
 #include "core/search/neighbourhood.h"
@@ -32,7 +35,7 @@ class ProxyRenderer final : public Renderer {
   void displace(const Vec3& displacement_m);
   // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
-  bool is_newer(const Frame& frame) const;
+  bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
   const Vec3& proxy_W() const { return proxy_W_; }
   bool in_contact() const { return in_contact_; }
   RenderOutput step(const DeviceState& device, double time_s) override;
@@ -73,10 +76,9 @@ class ProxyRenderer final : public Renderer {
   bool in_contact_ = false;                // until the proxy is free and unhindered again
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
-  double frame_captured_s_ = 0, frame_arrived_s_ = 0;
-  int frame_index_ = -1;
+  FrameOrder order_;
+  double frame_arrived_s_ = 0;
   Vec3 frame_correction_m_ = Vec3::Zero();  // by (4.3) since the last tick
-  bool stale_frame_ = false;
   bool stops_at_convergence_ = false;
 };
 

@@ -86,7 +86,7 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
   if (out.isZero(0)) out = along(-u, 1, u.norm());
   if (out.isZero(0)) return Vec3::Zero();
   if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
-  return kernels.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
+  return kernels.proxy.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
 }
 
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {

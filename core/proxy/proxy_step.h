@@ -3,6 +3,7 @@
 
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/kernels/proxy_kernels.h"
 #include "core/proxy/proxy_parameters.h"
 #include "core/rendering/renderer.h"
 #include "core/search/neighbourhood.h"

@@ -10,16 +10,12 @@ namespace remote_touch {
 
 class FrameOrder {
  public:
-  // Whether the frame is newer than all before; it is then the newest.
-  bool take(const Frame& frame) {
-    if (index_ >= 0 && !(frame.captured_s > captured_s_)) {
-      dropped_ = true;
-      return false;
-    }
-    index_ = frame.index, captured_s_ = frame.captured_s;
-    return true;
-  }
+  // Whether the frame is newer than all before.
+  bool is_newer(const Frame& frame) const;
+  // The same; it is then the newest.
+  bool take(const Frame& frame);
   int newest() const { return index_; }  // -1 before the first
+  double captured_s() const { return captured_s_; }
 
   // The status of a tick, where nothing more serious is to be said: whether a frame was dropped since the
   // last one.

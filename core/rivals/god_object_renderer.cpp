@@ -111,8 +111,8 @@ void GodObjectRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   PointsView points = near_.around(proxy_W_).view();
   points.radius = nullptr;
   const double reach = p_.max_edge_length_m;
-  const ContactQuery query = kernels_.contact_query(points, proxy_W_.data(),
-                                                    {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
+  const ContactQuery query = kernels_.proxy.contact_query(
+      points, proxy_W_.data(), {0, reach, reach, near_.sum_grid(), stiffness_N_per_m_});
   out.nearest_distance_m = query.nearest <= reach ? query.nearest : std::numeric_limits<double>::infinity();
   out.steps = rounds_;
   if (active_planes_ == 0) return;

@@ -23,6 +23,7 @@
 
 #include <string>
 
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/grid_mesh.h"
 #include "core/rivals/plane_constraints.h"

@@ -147,8 +147,8 @@ void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, Rende
   PointsView points = near_.around(proxy_W_).view();
   points.radius = nullptr;
   const double R = p_.support_radius_m;
-  const ContactQuery query =
-      kernels_.contact_query(points, proxy_W_.data(), {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
+  const ContactQuery query = kernels_.proxy.contact_query(points, proxy_W_.data(),
+                                                          {0, R, R, near_.sum_grid(), p_.stiffness_N_per_m});
   out.nearest_distance_m = query.nearest <= R ? query.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(query.touching);
   out.steps = steps_;

@@ -19,6 +19,7 @@
 
 #include <string>
 
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/point_surface.h"
 #include "core/rivals/rival_renderer.h"

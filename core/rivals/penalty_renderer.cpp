@@ -42,7 +42,7 @@ void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   const PointsView points = near_.around(hip_W).view();
   const ProxyRegions regions{p_.contact_radius_m, p_.contact_radius_m, p_.r3_m, near_.sum_grid(),
                              p_.stiffness_N_per_m};
-  const ContactQuery query = kernels_.contact_query(points, hip_W.data(), regions);
+  const ContactQuery query = kernels_.proxy.contact_query(points, hip_W.data(), regions);
   normal_W_ = unit_normal(query, normal_W_);
   out.nearest_distance_m = query.nearest <= p_.r3_m ? query.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(query.touching);

@@ -16,6 +16,7 @@
 
 #include <string>
 
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/rival_renderer.h"
 

@@ -3,6 +3,8 @@
 // method: frames in their order, a device that is lost, and what is answered before the first frame.
 #pragma once
 
+#include "core/kernels/kernels.h"
+#include "core/kernels/proxy_kernels.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/search/neighbourhood.h"

@@ -12,7 +12,7 @@ void GatheredPoints::reserve(std::size_t cloud_size, bool with_radius, bool with
 
 void GatheredPoints::add(const PointRun& run, const Ball& ball, const Kernels& kernels) {
   const PointSink sink{x_.data(), y_.data(), z_.data(), radius_.data(), stiffness_.data(), index_.data()};
-  count_ = kernels.append_within(run, ball.centre.data(), ball.radius, sink, count_);
+  count_ = kernels.gather.append_within(run, ball.centre.data(), ball.radius, sink, count_);
 }
 
 void GatheredPoints::finish() {

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "core/geometry/vector.h"
+#include "core/kernels/gather_kernels.h"
 #include "core/kernels/kernels.h"
+#include "core/kernels/points_view.h"
 
 namespace remote_touch {
 

@@ -1,8 +1,9 @@
 #include "core/search/morton_order.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "core/geometry/bounding_box.h"
 
 namespace remote_touch {
 
@@ -21,15 +22,15 @@ std::uint64_t spread(std::uint64_t bits) {
 }  // namespace
 
 std::vector<std::uint32_t> morton_order(const PointCloud& cloud) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  BoundingBox box;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.is_measured(i)) low = low.cwiseMin(cloud.point(i)), high = high.cwiseMax(cloud.point(i));
-  const double max = std::max((high - low).maxCoeff(), 1e-9);
+    if (cloud.is_measured(i)) box.extend(cloud.point(i));
+  const double max = std::max(box.sizes().maxCoeff(), 1e-9);
   const double per_m = 0x1ffffe / max;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.is_measured(i)) continue;
-    const Vec3 u = (cloud.point(i) - low) * per_m;
+    const Vec3 u = (cloud.point(i) - box.min()) * per_m;
     const auto part = [&](int axis) { return spread(static_cast<std::uint64_t>(u[axis])) << axis; };
     codes.emplace_back(part(0) | part(1) | part(2), static_cast<std::uint32_t>(i));
   }

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/geometry/bounding_box.h"
+#include "core/numeric/counting_sort.h"
+
 namespace remote_touch {
 
 const PointCloud& NeighbourSearch::every_point(const Kernels& kernels, PointCloud& buffer) const {
@@ -110,14 +113,10 @@ UniformGridSearch::UniformGridSearch(PointCloud cloud, double cell_m)
 }
 
 void UniformGridSearch::choose_cells(double cell_m) {
-  low_.setConstant(std::numeric_limits<double>::infinity());
-  high_ = -low_;
-  for (std::size_t i = 0; i < cloud_.size(); ++i) {
-    const Vec3 p = cloud_.point(i);
-    if (!p.allFinite()) continue;
-    low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
-  }
-  if (!low_.allFinite()) low_.setZero(), high_.setZero();
+  BoundingBox box;
+  for (std::size_t i = 0; i < cloud_.size(); ++i)
+    if (const Vec3 p = cloud_.point(i); p.allFinite()) box.extend(p);
+  if (!box.isEmpty()) low_ = box.min(), high_ = box.max();
   const double allowed = 4.0 * static_cast<double>(cloud_.size()) + 64.0;
   const auto cells_along = [&](int axis) { return std::floor((high_[axis] - low_[axis]) / cell_m) + 1; };
   while (cells_along(0) * cells_along(1) * cells_along(2) > allowed) cell_m *= 1.25;
@@ -136,7 +135,6 @@ int UniformGridSearch::cell_along(int axis, double coordinate) const {
 void UniformGridSearch::sort_points_by_cell() {
   const std::size_t cell_count = static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2];
   std::vector<std::uint32_t> cell_of(cloud_.size());
-  cell_start_.assign(cell_count + 2, 0);
   for (std::size_t i = 0; i < cloud_.size(); ++i) {
     const Vec3 p = cloud_.point(i);
     std::size_t cell = cell_count;
@@ -144,13 +142,13 @@ void UniformGridSearch::sort_points_by_cell() {
       cell = (static_cast<std::size_t>(cell_along(0, p.x())) * cells_[1] + cell_along(1, p.y())) * cells_[2] +
              cell_along(2, p.z());
     cell_of[i] = static_cast<std::uint32_t>(cell);
-    ++cell_start_[cell + 1];
   }
-  for (std::size_t cell = 0; cell <= cell_count; ++cell) cell_start_[cell + 1] += cell_start_[cell];
-  std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
+  cell_start_.resize(cell_count + 2);
+  std::vector<std::uint32_t> next(cell_start_.size());
   original_index_.resize(cloud_.size());
-  for (std::size_t i = 0; i < cloud_.size(); ++i)
-    original_index_[next[cell_of[i]]++] = static_cast<std::uint32_t>(i);
+  sort_by_cell(
+      cloud_.size(), cell_start_, next, [&](std::size_t i) { return cell_of[i]; },
+      [&](std::size_t i, std::uint32_t to) { original_index_[to] = static_cast<std::uint32_t>(i); });
 
   const auto reorder = [this](auto& column) {
     if (column.empty()) return;

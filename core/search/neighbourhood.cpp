@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/kernels/proxy_kernels.h"
+
 namespace remote_touch {
 
 namespace {
@@ -62,7 +64,8 @@ const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {
 double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, double limit) {
   const CachedList& here = cache_[current_];
   const bool covered = here.valid && (p - here.centre).norm() + limit + radius <= list_radius_;
-  if (covered) return std::min(limit, kernels_.first_hit(here.points.view(), p.data(), u.data(), radius));
+  if (covered)
+    return std::min(limit, kernels_.proxy.first_hit(here.points.view(), p.data(), u.data(), radius));
 
   // The region of a point first met between two hops comes within radius of that part of the axis, so it
   // meets that hop's ball; the root is taken from p itself, whatever the hop, so the result does not depend
@@ -74,7 +77,7 @@ double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, dou
     tube_.clear();
     points_->gather({p + 0.5 * (start + end) * u, 0.5 * (end - start) + radius + rounding}, kernels_, tube_);
     tube_.finish();
-    const double hit = kernels_.first_hit(tube_.view(), p.data(), u.data(), radius);
+    const double hit = kernels_.proxy.first_hit(tube_.view(), p.data(), u.data(), radius);
     if (hit <= end) return hit;
   }
   return limit;

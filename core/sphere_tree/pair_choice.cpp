@@ -26,7 +26,7 @@ double PairChoice::within_m(double gap_m) const {
 std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {
   if (chosen_.size() + kMaxPairsOfLeaf > kCapacity) keep_shortest_motions(kCapacity / 2);
   const NearRegions& near = found.regions;
-  RemainingRegions left{kernels_.deepest_region(near, found.count), found.count};
+  RemainingRegions left{kernels_.regions.deepest_region(near, found.count), found.count};
   const std::uint32_t deepest = near.number[left.deepest];
   const double min_m = near.gap[left.deepest], max_m = within_m(min_m);
   const bool deep = is_deep(min_m);
@@ -35,7 +35,7 @@ std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Fou
   for (std::size_t kept = 0; kept < kMaxPairsOfLeaf && left.deepest < left.count; ++kept) {
     const std::size_t at = left.deepest;
     chosen_.push_back({leaf.number, near.gap[at], {near.nx[at], near.ny[at], near.nz[at]}, near.gap[at]});
-    left = kernels_.next_deepest_region(near, left.count, at, motion_m, alike, max_m);
+    left = kernels_.regions.next_deepest_region(near, left.count, at, motion_m, alike, max_m);
   }
   return deepest;
 }

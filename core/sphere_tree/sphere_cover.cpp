@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 #include <utility>
+
+#include "core/geometry/bounding_box.h"
+#include "core/numeric/counting_sort.h"
 
 namespace remote_touch {
 
@@ -16,10 +18,9 @@ constexpr double kMaxCellsOfBox = 1e7;  // a slim body across its box would have
 
 SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m)
     : choice_(std::move(choice)), cell_m_(cell_m) {
-  Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
-  low_ = -high;
-  for (const Vec3& p : points) low_ = low_.cwiseMin(p), high = high.cwiseMax(p);
-  if (points.empty()) low_ = high = Vec3::Zero();
+  const BoundingBox box = points.empty() ? BoundingBox(Vec3(Vec3::Zero())) : bounding_box(points);
+  low_ = box.min();
+  const Vec3 high = box.max();
   while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMaxCellsOfBox) cell_m_ *= 2;
   for (int axis = 0; axis < 3; ++axis)
     cells_[axis] = static_cast<std::int64_t>((high[axis] - low_[axis]) / cell_m_) + 1;
@@ -27,12 +28,12 @@ SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, d
     return static_cast<std::size_t>((cell_along(2, p.z()) * cells_[1] + cell_along(1, p.y())) * cells_[0] +
                                     cell_along(0, p.x()));
   };
-  starts_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
-  for (const Vec3& p : points) ++starts_[cell_of(p) + 1];
-  for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
+  starts_.resize(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1);
   points_.resize(points.size());
-  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-  for (const Vec3& p : points) points_[next[cell_of(p)]++] = p;
+  std::vector<std::uint32_t> next(starts_.size());
+  sort_by_cell(
+      points.size(), starts_, next, [&](std::size_t i) { return cell_of(points[i]); },
+      [&](std::size_t i, std::uint32_t to) { points_[to] = points[i]; });
 }
 
 // Clamped into the grid.

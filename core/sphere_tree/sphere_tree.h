@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/vector.h"
-#include "core/kernels/kernels.h"
+#include "core/kernels/region_kernels.h"
 
 namespace remote_touch {
 

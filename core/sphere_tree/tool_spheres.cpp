@@ -6,6 +6,7 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "core/geometry/bounding_box.h"
 #include "core/parameters/input_error.h"
 #include "core/sphere_tree/sphere_cover.h"
 #include "core/tool/contact/contact_thinning.h"
@@ -122,10 +123,10 @@ SphereCover::Result tightest(const SphereCover& cover, const VoxelTool& tool, st
 // Leaves that are near each other follow each other: halves along the longest side, and halves of these.
 void sort_by_place(std::span<Sphere> leaves) {
   if (leaves.size() <= 2) return;
-  Vec3 low = leaves[0].centre, high = low;
-  for (const Sphere& leaf : leaves) low = low.cwiseMin(leaf.centre), high = high.cwiseMax(leaf.centre);
+  BoundingBox box;
+  for (const Sphere& leaf : leaves) box.extend(leaf.centre);
   int axis = 0;
-  (high - low).maxCoeff(&axis);
+  box.sizes().maxCoeff(&axis);
   std::stable_sort(leaves.begin(), leaves.end(),
                    [axis](const Sphere& a, const Sphere& b) { return a.centre[axis] < b.centre[axis]; });
   // Whole nodes in the first half.

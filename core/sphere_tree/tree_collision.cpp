@@ -103,8 +103,8 @@ TreeCollision::Found TreeCollision::regions_near(const CloseLeaf& leaf, double m
   const double columns[4] = {middle.x(), middle.y(), middle.z(), leaf.sphere_W.radius_m};
   for (std::uint32_t i = leaf.first_patch; i < leaf.first_patch + leaf.patch_count; ++i)
     if (is_near(leaf.sphere_W, regions_->level(0)[patches_[i]], margin_m))
-      found.count = kernels_.append_near_regions(regions_->run(patches_[i]), columns, margin_m, found.regions,
-                                                 found.count);
+      found.count = kernels_.regions.append_near_regions(regions_->run(patches_[i]), columns, margin_m,
+                                                         found.regions, found.count);
   return found;
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+
+#include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
 
@@ -104,9 +107,7 @@ double HeightFit::noise() const {
       if (fit.valid) variances[blocks++] = fit.residual / (fit.count - 3);
     }
   if (blocks == 0) return 0;
-  const auto place = variances.begin() + static_cast<std::ptrdiff_t>(kLow * static_cast<double>(blocks));
-  std::nth_element(variances.begin(), place, variances.begin() + static_cast<std::ptrdiff_t>(blocks));
-  return std::sqrt(*place / kOfMean);
+  return std::sqrt(quantile_in_place(std::span(variances).first(blocks), kLow) / kOfMean);
 }
 
 double HeightFit::median_density() const {
@@ -116,9 +117,7 @@ double HeightFit::median_density() const {
     for (int i = 0; i <= kCells; i += 2)
       if (const double c = count(i, j, 2); c > 0) counts[some++] = c;
   if (some == 0) return 0;
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(some / 2);
-  std::nth_element(counts.begin(), middle, counts.begin() + static_cast<std::ptrdiff_t>(some));
-  return *middle / 4;
+  return median_in_place(std::span(counts).first(some)) / 4;
 }
 
 void HeightFit::choose(int i, int j, double sigma, HeightMap::Node& node) const {

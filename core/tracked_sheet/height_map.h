@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/kernels/kernels.h"
+#include "core/kernels/patch_kernels.h"
 #include "core/tracked_sheet/patch_frame.h"
 
 namespace remote_touch {

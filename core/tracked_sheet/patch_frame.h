@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/geometry/vector.h"
-#include "core/kernels/kernels.h"
+#include "core/kernels/patch_kernels.h"
 
 namespace remote_touch {
 

@@ -18,7 +18,7 @@ void PatchPoints::take(const GatheredPoints& gathered, const PatchRegion& region
     axes.u[k] = frame.u_W()[k], axes.v[k] = frame.v_W()[k], axes.n[k] = frame.normal_W()[k];
   }
   axes.unit_m = frame.unit_m(), axes.radius = region.radius, axes.half_height = region.half_height;
-  count_ = kernels_.points_of_patch(gathered.view(), axes, columns());
+  count_ = kernels_.patch.points_of_patch(gathered.view(), axes, columns());
   std::fill_n(member_.data(), count_, std::uint8_t{0});
 }
 
@@ -28,23 +28,23 @@ void PatchPoints::add(const PatchPlace& place, bool is_member) {
 }
 
 void PatchPoints::set_residuals(const HeightMap& map) {
-  kernels_.heights_above(columns(), count_, map.grid(), residual_.data());
+  kernels_.patch.heights_above(columns(), count_, map.grid(), residual_.data());
 }
 
 HeightProfile PatchPoints::profile_near(const PatchPlace& place, double reach, double half_range) const {
   HeightProfile profile(half_range);
   const HeightBins bins{profile.half_range(), HeightProfile::kBin, profile.bins()};
-  kernels_.height_bins(columns(), count_, residual_.data(), place.u, place.v, reach, bins, bin_.data());
+  kernels_.patch.height_bins(columns(), count_, residual_.data(), place.u, place.v, reach, bins, bin_.data());
   profile.add_bins(bin_.data(), count_);
   return profile;
 }
 
 PlaneSums PatchPoints::sums_near(const NearPlane& plane) const {
-  return kernels_.sums_near_plane(columns(), count_, residual_.data(), plane);
+  return kernels_.patch.sums_near_plane(columns(), count_, residual_.data(), plane);
 }
 
 QuadraticSums PatchPoints::sums_of_quadratic(double radius) const {
-  return kernels_.sums_of_quadratic(columns(), member_.data(), count_, radius);
+  return kernels_.patch.sums_of_quadratic(columns(), member_.data(), count_, radius);
 }
 
 }  // namespace remote_touch

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/numeric/counting_sort.h"
+
 namespace remote_touch {
 
 void SheetSearch::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
@@ -20,7 +22,6 @@ void SheetSearch::start(const PatchRegion& region, std::shared_ptr<const Neighbo
   region_ = region;
   frame_ = std::move(frame), buffer_ = std::move(buffer);
   count_ = 0;
-  start_.fill(0);
 }
 
 int SheetSearch::cell_along(double coordinate) const {
@@ -35,21 +36,19 @@ void SheetSearch::add(const PatchPlace& place, const GatheredPoints& gathered, s
   added_.index[count_] = gathered.index()[row];
   if (all.radius) added_.radius[count_] = all.radius[row];
   if (all.stiffness) added_.stiffness[count_] = all.stiffness[row];
-  cell_of_[count_] = static_cast<std::uint32_t>(cell_along(place.v) * kCells + cell_along(place.u));
-  ++start_[cell_of_[count_++] + 1];
+  cell_of_[count_++] = static_cast<std::uint32_t>(cell_along(place.v) * kCells + cell_along(place.u));
 }
 
-// Counting sort.
 void SheetSearch::finish() {
-  for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) start_[cell + 1] += start_[cell];
-  auto next = start_;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const std::uint32_t to = next[cell_of_[i]]++;
+  decltype(start_) next;
+  const auto place = [this](std::size_t i, std::uint32_t to) {
     sorted_.x[to] = added_.x[i], sorted_.y[to] = added_.y[i], sorted_.z[to] = added_.z[i];
     sorted_.index[to] = added_.index[i];
     if (has_fixture_radius()) sorted_.radius[to] = added_.radius[i];
     if (has_stiffness()) sorted_.stiffness[to] = added_.stiffness[i];
-  }
+  };
+  sort_by_cell(
+      count_, start_, next, [this](std::size_t i) { return cell_of_[i]; }, place);
 }
 
 void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {

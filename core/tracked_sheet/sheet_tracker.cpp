@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/kernels/depth_kernels.h"
 #include "core/tracked_sheet/sheet_acquisition.h"
 #include "core/tracked_sheet/sheet_registration.h"
 

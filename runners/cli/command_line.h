@@ -1,6 +1,7 @@
 // What can be typed: options, help, and which command they lead to.
 #pragma once
 
+#include "core/kernels/kernels.h"
 #include "runners/cli/commands.h"
 
 namespace remote_touch {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/command_line.h"
 #include "runners/simulation/simulation.h"
@@ -32,12 +33,12 @@ void request_rearm(int) {
 // REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
 const Kernels& chosen_kernels() {
   const char* requested = std::getenv("REMOTE_TOUCH_ISA");
-  const Isa best = best_isa();
-  if (requested == nullptr) return kernels_for(best);
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
-    if (isa <= best && kernels_for(isa).isa == std::string(requested)) return kernels_for(isa);
+  const Kernels& best = *supported_kernels().back();
+  if (requested == nullptr) return best;
+  for (const Kernels* kernels : supported_kernels())
+    if (kernels->isa == std::string(requested)) return *kernels;
   throw InputError(std::string("REMOTE_TOUCH_ISA = ") + requested,
-                   std::string("expected x86-64 up to ") + kernels_for(best).isa + " on this machine");
+                   std::string("expected x86-64 up to ") + best.isa + " on this machine");
 }
 
 // One line, whatever the user's names contain.

@@ -4,6 +4,7 @@
 
 #include "analysis/measures/contact_point.h"
 #include "analysis/theory/ball_closing.h"
+#include "core/kernels/isa.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -5,6 +5,7 @@
 
 #include "analysis/measures/contact_point.h"
 #include "analysis/measures/measures.h"
+#include "core/kernels/isa.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -91,8 +91,8 @@ DepthImage with_noise(DepthImage depth, const Kernels& kernels) {
   std::vector<std::uint32_t> pixels(count);
   std::iota(pixels.begin(), pixels.end(), 0u);
   std::vector<double> normal(count), unused(count), unused_too(count);
-  kernels.normals(noise_stream({}, NoiseUse::depth, 0), pixels.data(), count, normal.data(), unused.data(),
-                  unused_too.data());
+  kernels.noise.normals(noise_stream({}, NoiseUse::depth, 0), pixels.data(), count, normal.data(),
+                        unused.data(), unused_too.data());
   for (std::size_t i = 0; i < count; ++i) depth.z_m[i] += kNoise_m * normal[i];
   return depth;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
+#include "core/kernels/isa.h"
 
 namespace remote_touch {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/order_statistic.h"
+
 namespace remote_touch {
 
 namespace {
@@ -17,11 +19,8 @@ int place_of(int frame, int count) {
   return place < count ? place : cycle - place;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return kUnknown;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_or_unknown(std::vector<double> values) {
+  return values.empty() ? kUnknown : median_in_place(values);
 }
 
 struct Pixel {
@@ -68,7 +67,7 @@ Motion motion(const PointCloud& before, const PointCloud& after, Pixel pressed) 
         here.push_back(-displacement.z());
     }
   }
-  return {median(std::move(everywhere)), median(std::move(here))};
+  return {median_or_unknown(std::move(everywhere)), median_or_unknown(std::move(here))};
 }
 
 std::vector<FrameOutcome> last_ticks(const Trace& trace) {

@@ -1,5 +1,7 @@
 #include "runners/operator/device_motors.h"
 
+#include "core/geometry/limited_length.h"
+
 namespace remote_touch {
 
 namespace {
@@ -9,8 +11,7 @@ Vec3 with_motors(const Vec3& v, bool x, bool y, bool z) {
 }
 
 Vec3 cut(const Vec3& v, double max_length) {
-  const double length = v.norm();
-  return max_length > 0 && length > max_length ? Vec3(v * (max_length / length)) : v;
+  return max_length > 0 ? limited_length(v, max_length) : v;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/frame_stream.h"
 

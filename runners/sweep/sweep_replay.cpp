@@ -1,6 +1,7 @@
 #include "runners/sweep/sweep_replay.h"
 
 #include "analysis/figures/result_file.h"
+#include "core/kernels/isa.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
 

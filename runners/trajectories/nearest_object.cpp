@@ -1,9 +1,10 @@
 #include "runners/trajectories/nearest_object.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
+
+#include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
 
@@ -74,22 +75,14 @@ std::vector<int> take_patch(const DepthImage& image, int seed, std::vector<char>
   return patch;
 }
 
-template <class Value>
-Value quantile(std::vector<Value> values, double fraction) {
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
-  std::vector<double> depth;
-  std::vector<int> rows, columns;
+  std::vector<double> depth, rows, columns;
   for (const int i : patch) {
     depth.push_back(image.z_m[static_cast<std::size_t>(i)]);
     rows.push_back(i / image.width), columns.push_back(i % image.width);
   }
-  return {quantile(depth, 0.05), quantile(rows, 0.5), quantile(columns, 0.5)};
+  return {quantile_in_place(depth, 0.05), static_cast<int>(median_in_place(rows)),
+          static_cast<int>(median_in_place(columns))};
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
 
@@ -29,8 +32,7 @@ double supported_depth(const DepthImage& image, int u, int v, double focal_px, c
       seen.push_back(image.z_m[i]);
     }
   }
-  std::nth_element(seen.begin(), seen.begin() + seen.size() / 2, seen.end());
-  return seen[seen.size() / 2];
+  return median_in_place(seen);
 }
 
 }  // namespace remote_touch

@@ -124,7 +124,7 @@ void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, 
   std::vector<std::uint32_t> pixel(width);
   std::iota(pixel.begin(), pixel.end(), static_cast<std::uint32_t>(first));
   std::vector<double> normal(width), unused(width), unused_too(width);
-  kernels_.normals(stream, pixel.data(), width, normal.data(), unused.data(), unused_too.data());
+  kernels_.noise.normals(stream, pixel.data(), width, normal.data(), unused.data(), unused_too.data());
   for (std::size_t u = 0; u < width; ++u) {
     double& z = depth.z_m[first + u];
     const double factor = view.depth_noise_factor.empty() ? 1 : view.depth_noise_factor[first + u];

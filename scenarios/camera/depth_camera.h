@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/cloud/camera.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/random/noise.h"
 

@@ -133,7 +133,7 @@ void ValveTank::see_row(int frame, int row, PointCloud& cloud) const {
   std::vector<std::uint32_t> pixel(width);
   std::iota(pixel.begin(), pixel.end(), static_cast<std::uint32_t>(first));
   std::vector<double> red(width), green(width), blue(width);
-  kernels_.normals(colours, pixel.data(), width, red.data(), green.data(), blue.data());
+  kernels_.noise.normals(colours, pixel.data(), width, red.data(), green.data(), blue.data());
   for (std::size_t u = 0; u < width; ++u) {
     const std::size_t i = first + u;
     const double sd = settings_.colour_noise;

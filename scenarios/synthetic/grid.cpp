@@ -20,7 +20,7 @@ void add_noise(PointCloud& cloud, double sigma_m, const NoiseStream& stream, con
   std::vector<std::uint32_t> index(cloud.size());
   std::iota(index.begin(), index.end(), 0u);
   std::vector<double> nx(cloud.size()), ny(cloud.size()), nz(cloud.size());
-  kernels.normals(stream, index.data(), index.size(), nx.data(), ny.data(), nz.data());
+  kernels.noise.normals(stream, index.data(), index.size(), nx.data(), ny.data(), nz.data());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     cloud.x[i] += sigma_m * nx[i], cloud.y[i] += sigma_m * ny[i], cloud.z[i] += sigma_m * nz[i];
 }

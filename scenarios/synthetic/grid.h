@@ -5,6 +5,7 @@
 
 #include "core/cloud/point_cloud.h"
 #include "core/geometry/vector.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/random/noise.h"
 

@@ -48,9 +48,9 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
     x_bounds_[i] = bounds(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x);
   std::size_t candidates = 0;
   for (int row = rows.first; row <= rows.last; ++row)
-    candidates +=
-        kernels.candidates(stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width,
-                           x_bounds_.data(), bounds(grid_.z(row) - cylinder.z), index_.data() + candidates);
+    candidates += kernels.noise.candidates(
+        stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width, x_bounds_.data(),
+        bounds(grid_.z(row) - cylinder.z), index_.data() + candidates);
   make_points(candidates, cylinder, kernels);
   cached_cylinder_ = cylinder;
 }
@@ -67,7 +67,7 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
   count_ = 0;
   for (std::size_t done = 0; done < candidates; done += kChunk) {
     const std::size_t chunk = std::min(kChunk, candidates - done);
-    if (sigma_m_ > 0) kernels.normals(stream_, index_.data() + done, chunk, nx, ny, nz);
+    if (sigma_m_ > 0) kernels.noise.normals(stream_, index_.data() + done, chunk, nx, ny, nz);
     for (std::size_t i = 0; i < chunk; ++i) {
       const std::uint32_t point = index_[done + i];
       if (point - row_start >= columns || (done == 0 && i == 0)) {

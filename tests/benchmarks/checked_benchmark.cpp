@@ -11,13 +11,6 @@ bool mismatch = false;
 
 }  // namespace
 
-std::vector<const Kernels*> levels() {
-  std::vector<const Kernels*> all;
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
-    if (isa <= best_isa()) all.push_back(&kernels_for(isa));
-  return all;
-}
-
 // Checked once a process: repetitions and calibration run the same code on the same data.
 void add(const std::string& name, const std::function<bool()>& is_right,
          const std::function<void(benchmark::State&)>& time) {

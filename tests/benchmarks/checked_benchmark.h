@@ -5,14 +5,8 @@
 
 #include <functional>
 #include <string>
-#include <vector>
-
-#include "core/kernels/kernels.h"
 
 namespace remote_touch::benchmarks {
-
-// The kernels of every instruction set level that this machine has.
-std::vector<const Kernels*> levels();
 
 // time() runs only if is_right(); otherwise the benchmark is skipped with an error. Both are called after the
 // call of add().

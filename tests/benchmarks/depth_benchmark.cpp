@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/core/depth/reference_depth_pipeline.h"
 #include "tests/support/depth_scenes.h"
@@ -93,7 +94,7 @@ int main(int argc, char** argv) {
   using namespace remote_touch::benchmarks;
   const Expected of = expected();
   const PixelRectangle whole{0, 0, of.scene.camera.width, of.scene.camera.height};
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     for (const int threads : {1, 2}) {
       add_depth(of, "depth_frame", true, whole, threads, *kernels);
       add_depth(of, "depth_normals", false, whole, threads, *kernels);

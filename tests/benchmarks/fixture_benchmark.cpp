@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
 #include "core/proxy/proxy_step.h"
 #include "core/search/neighbourhood.h"
@@ -42,7 +43,7 @@ class Stepper {
     listed_ = list.size();
     const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, near_.sum_grid(),
                                kSettings.stiffness_N_per_m};
-    const ContactQuery query = kernels_.contact_query(list.view(), proxy_W.data(), regions);
+    const ContactQuery query = kernels_.proxy.contact_query(list.view(), proxy_W.data(), regions);
     naive::Step out{classify(query.nearest, kSettings), query.nearest, unit_normal(query, Vec3::Zero())};
     const Vec3 u = hip_W - proxy_W;
     if (out.state == ContactState::contact)
@@ -158,7 +159,7 @@ void time_ticks(benchmark::State& state, const FixtureScene& scene, const Kernel
 }  // namespace
 
 void add_fixtures(const FixtureScene& scene) {
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const std::string of = "/" + scene.name + "/" + kernels->isa;
     for (const FixtureSteps& steps : scene.steps)
       add(

@@ -54,7 +54,7 @@ FixtureSteps lifted(const FixtureScene& scene, const FixtureSteps& contact, Fixt
   for (std::size_t i = 0; i < contact.proxies.size(); ++i) {
     const Vec3& p_W = contact.proxies[i];
     const PointsView points = near.around(p_W).view();
-    const ContactQuery query = scenes::kernels().contact_query(
+    const ContactQuery query = scenes::kernels().proxy.contact_query(
         points, p_W.data(), {kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, near.sum_grid(), 0});
     const Vec3 normal = Vec3(query.normal_sum[0], query.normal_sum[1], query.normal_sum[2]).normalized();
     out.proxies.push_back(p_W + height_m * normal);

@@ -44,7 +44,7 @@ class AllNoiseSearch final : public NeighbourSearch {
     for (std::size_t start = 0; start < size_; start += columns) {
       std::iota(index.begin(), index.end(), static_cast<std::uint32_t>(start));
       double *x = x_.data() + start, *y = y_.data() + start, *z = z_.data() + start;
-      kernels.normals(stream, index.data(), columns, x, y, z);
+      kernels.noise.normals(stream, index.data(), columns, x, y, z);
       const double row_z = grid.z(static_cast<int>(start / columns));
       for (std::size_t i = 0; i < columns; ++i) {
         x[i] = grid.x(static_cast<int>(i)) + sigma_m * x[i];

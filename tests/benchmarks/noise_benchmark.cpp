@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/kernels/kernels.h"
+#include "core/kernels/noise_kernels.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 
@@ -42,7 +44,7 @@ struct Noise {
     for (std::size_t i = 0; i < kNoisyPoints; ++i) index[i] = static_cast<std::uint32_t>(7 * i);
   }
   void make(const Kernels& kernels) {
-    kernels.normals(kStream, index.data(), kNoisyPoints, x.data(), y.data(), z.data());
+    kernels.noise.normals(kStream, index.data(), kNoisyPoints, x.data(), y.data(), z.data());
   }
 };
 
@@ -79,7 +81,7 @@ void time_standard_normals(benchmark::State& state) {
 void add_normals() {
   add(
       "normals_standard_library", [] { return true; }, time_standard_normals);
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         std::string("normals/") + kernels->isa, [kernels] { return normals_agree(*kernels); },
         [kernels](benchmark::State& state) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/depth/depth_pipeline.h"
+#include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_depth.h"
 #include "tests/support/depth_scenes.h"
@@ -44,7 +45,7 @@ Vec3 vector(const std::vector<float>& numbers, std::size_t i) {
 
 void add_ours(const scenes::DepthScene& truth, const DepthImage& depth, const std::string& name,
               bool filter) {
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     DepthPipelineSettings settings;
     settings.filter = filter;
     const auto pipeline = std::make_shared<DepthPipeline>(settings, *kernels);
@@ -92,7 +93,8 @@ int main(int argc, char** argv) {
   DepthImage depth = truth.depth;
   scenes::add_noise(depth, 0.0015, 1);
   const PointCloud measured = cloud_from_depth(depth, truth.camera, kIdentity);
-  const PointCloud filtered = DepthPipeline({}, *levels().back()).process(depth, truth.camera, kIdentity);
+  const PointCloud filtered =
+      DepthPipeline({}, *supported_kernels().back()).process(depth, truth.camera, kIdentity);
   const peers::OrganisedPoints raw_points = organised(measured), filtered_points = organised(filtered);
   add_ours(truth, depth, "both", true);
   add_ours(truth, depth, "raw", false);

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/tool/contact/touch_finder.h"
 #include "core/tool/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
@@ -133,7 +134,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
 // --- time ---
 
 void add_ours(const Surface& surface, const std::string& where, const ToolPose& pose) {
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const auto finder = std::make_shared<TouchFinder>(surface.scene().tool, *kernels);
     finder->on_frame(formatted<TiledCloud>(surface.scene().cloud));
     add(

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/search/neighbour_search.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/benchmarks/checked_benchmark.h"
@@ -51,7 +52,7 @@ void time_queries(benchmark::State& state, const NeighbourSearch& search, const 
 
 void add_query(const std::string& name, const std::shared_ptr<const NeighbourSearch>& search,
                const naive::Queries& queries) {
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         name + "/" + queries.name + "/" + kernels->isa,
         [=, &queries] { return finds_expected(*search, queries, *kernels); },

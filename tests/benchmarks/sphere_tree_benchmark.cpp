@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/sphere_tree/region_contacts.h"
 #include "core/tool/motion/look_ahead_motion.h"
 #include "tests/benchmarks/checked_benchmark.h"
@@ -105,7 +106,7 @@ bool detection_right(const SphereTool& tool, const PointCloud& cloud, const Tool
 
 void add_detection(const std::string& name, const PointCloud& cloud, const Place& place) {
   const ToolPose pose = place.pose;
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         "region_contacts/" + place.name + "/" + kernels->isa,
         [=, &cloud] { return detection_right(tool_of(name, kLeaves), cloud, pose, *kernels); },
@@ -250,7 +251,7 @@ void time_ride(benchmark::State& state, const SphereTool& tool, const Course& co
 }
 
 void add_ride(const std::string& name, int leaves, const std::string& kind, const Course& course) {
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         "region_tick/" + name + "_" + std::to_string(leaves) + "_" + kind + "/" + kernels->isa,
         [=, &course] { return ride_right(tool_of(name, leaves), course, *kernels); },

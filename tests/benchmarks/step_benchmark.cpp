@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/proxy/proxy_step.h"
 #include "core/search/neighbourhood.h"
 #include "tests/benchmarks/checked_benchmark.h"
@@ -65,7 +66,7 @@ naive::Step step_from(const GatheredPoints& list, double sum_grid, const Kernels
                       const Vec3& proxy_W, const Vec3& hip_W) {
   const ProxyRegions regions{kSettings.r1_m, kSettings.r2_m, kSettings.r3_m, sum_grid,
                              kSettings.stiffness_N_per_m};
-  const ContactQuery query = kernels.contact_query(list.view(), proxy_W.data(), regions);
+  const ContactQuery query = kernels.proxy.contact_query(list.view(), proxy_W.data(), regions);
   naive::Step out;
   out.nearest_distance_m = query.nearest;
   out.state = classify(query.nearest, kSettings);
@@ -146,7 +147,7 @@ void add_steps(const Slide& slide, const Slide& still) {
       points.push_back(still.points[i]);
     return NaiveStep{points};
   });
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const std::string of = "/" + slide.name + "/" + kernels->isa;
     add_step("step_on_list" + of, still,
              [&still, kernels] { return ListedStep(*still.search, still.proxies[0], *kernels); });

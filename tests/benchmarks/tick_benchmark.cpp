@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
@@ -45,7 +46,7 @@ void time_ticks(benchmark::State& state, const Slide& slide, const Kernels& kern
 }  // namespace
 
 void add_ticks(const Slide& slide) {
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         "tick/" + slide.name + "/" + kernels->isa, [&slide, kernels] { return ticks_agree(slide, *kernels); },
         [&slide, kernels](benchmark::State& state) { time_ticks(state, slide, *kernels); });

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/search/neighbour_search.h"
 #include "core/tool/contact/contact_list.h"
 #include "core/tool/motion/tool_renderer.h"
@@ -34,7 +35,7 @@ const char* name_of(TouchRule rule) {
 // --- collision list ---
 
 void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
     finder->on_frame(formatted<TiledCloud>(scene.cloud));
     add(
@@ -100,7 +101,7 @@ struct Stepper {
 
 void add_step(const ToolScene& scene, TouchRule rule) {
   const auto slowest = std::make_shared<Stepper>(scene, rule, kernels_for(Isa::x86_64));
-  for (const Kernels* kernels : levels()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const auto stepper = std::make_shared<Stepper>(scene, rule, *kernels);
     add(
         "tool_step/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
@@ -188,7 +189,7 @@ void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParame
 
 void add_ride(const ToolScene& scene, TouchRule rule) {
   const ToolParameters parameters = settings(rule);
-  for (const Kernels* kernels : levels())
+  for (const Kernels* kernels : supported_kernels())
     add(
         "tool_tick/" + scene.name + "_" + name_of(rule) + "/" + kernels->isa,
         [=, &scene] { return rides_same(scene, parameters, *kernels); },

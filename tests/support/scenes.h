@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
 #include "core/rendering/frame.h"
 #include "core/search/neighbour_search.h"

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "core/kernels/kernels.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 

@@ -40,8 +40,8 @@ void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const T
   disks.radius = radius_.data(), disks.distance = distance_.data(), disks.slope = slope_.data(),
   disks.lower = lower_.data(), disks.cell = cell_.data();
   const std::span<const std::uint32_t> points = finder.within(pose, reach_m);
-  kernels.disks_in_field(finder.cloud().columns(), points.data(), points.size(), disk_radius_ratio_,
-                         cells_per_m_, field, disks);
+  kernels.tool.disks_in_field(finder.cloud().columns(), points.data(), points.size(), disk_radius_ratio_,
+                              cells_per_m_, field, disks);
   count_ = points.size();
   finish_outside(tool);
   is_known_ = true, pose_ = pose, reach_m_ = reach_m;

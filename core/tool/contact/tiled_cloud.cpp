@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernels/kernels.h"
+#include "core/geometry/bounding_box.h"
+#include "core/numeric/order_statistic.h"
 #include "core/search/morton_order.h"
 
 namespace remote_touch {
@@ -19,13 +20,12 @@ const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 // The smallest sphere around the middle of the box of count items.
 template <class Item>  // (i) -> BoundingSphere
 BoundingSphere around(std::uint32_t count, const Item& item) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  BoundingBox box;
   for (std::uint32_t i = 0; i < count; ++i) {
     const BoundingSphere s = item(i);
-    low = low.cwiseMin(s.centre_W - Vec3::Constant(s.radius_m));
-    high = high.cwiseMax(s.centre_W + Vec3::Constant(s.radius_m));
+    box.extend(s.centre_W - Vec3::Constant(s.radius_m)).extend(s.centre_W + Vec3::Constant(s.radius_m));
   }
-  BoundingSphere all{0.5 * (low + high), 0};
+  BoundingSphere all{0.5 * (box.min() + box.max()), 0};
   for (std::uint32_t i = 0; i < count; ++i) {
     const BoundingSphere s = item(i);
     all.radius_m = std::max(all.radius_m, (s.centre_W - all.centre_W).norm() + s.radius_m);
@@ -34,11 +34,8 @@ BoundingSphere around(std::uint32_t count, const Item& item) {
   return all;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_or_0(std::vector<double>& values) {
+  return values.empty() ? 0 : median_in_place(values);
 }
 
 }  // namespace
@@ -149,10 +146,10 @@ void TiledCloud::measure_spacing(const PointCloud& cloud) {
       }
       if (x_[i] != kFarAway && min < 1) nearest.push_back(std::sqrt(min));
     }
-    of_tiles.push_back(median(nearest));
+    of_tiles.push_back(median_or_0(nearest));
   }
   std::vector<double> sorted = of_tiles;
-  const double usual = median(sorted);
+  const double usual = median_or_0(sorted);
   for (std::size_t t = 0; t < tiles_.size(); ++t)  // a tile of few points need not hold neighbours
     std::fill_n(spacing_m_.begin() + tiles_[t].first, tiles_[t].padded_count,
                 of_tiles[t] > 0 ? std::min(of_tiles[t], 2 * usual) : usual);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/cloud/point_cloud.h"
-#include "core/kernels/kernels.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 

@@ -93,12 +93,12 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
   const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
   const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
                           distance_m / grid.size_m + 2, 1 / grid.size_m};
-  const std::size_t tiles = kernels_.near_spheres(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
-                                                  nearness, code, tiles_.data());
-  const std::size_t groups = kernels_.near_spheres(cloud_->group_spheres(), tiles_.data(), tiles, to_cells,
-                                                   nearness, code, groups_.data());
-  const std::size_t count = kernels_.points_in_cells(cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(),
-                                                     groups, to_cells, cells, min, found_.data());
+  const std::size_t tiles = kernels_.tool.near_spheres(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
+                                                       nearness, code, tiles_.data());
+  const std::size_t groups = kernels_.tool.near_spheres(cloud_->group_spheres(), tiles_.data(), tiles,
+                                                        to_cells, nearness, code, groups_.data());
+  const std::size_t count = kernels_.tool.points_in_cells(
+      cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(), groups, to_cells, cells, min, found_.data());
   return {found_.data(), count};
 }
 

@@ -1,5 +1,7 @@
 #include "core/tool/dynamics/wrench_coupling.h"
 
+#include "core/geometry/limited_length.h"
+
 namespace remote_touch {
 
 namespace {
@@ -8,11 +10,6 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
-}
-
-Vec3 cut(const Vec3& v, double max_length) {
-  const double length = v.norm();
-  return length > max_length ? Vec3(v * (max_length / length)) : v;
 }
 
 }  // namespace
@@ -39,7 +36,8 @@ Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inerti
     const double rotational = k * spring.gyration_radius_m * spring.gyration_radius_m;
     torque = inverse_left_jacobian(phi).transpose() * (rotational * phi);
   }
-  return {cut(-k * a_gu.head<3>(), spring.max_force_N), cut(-torque, spring.max_torque_Nm)};
+  return {limited_length(-k * a_gu.head<3>(), spring.max_force_N),
+          limited_length(-torque, spring.max_torque_Nm)};
 }
 
 }  // namespace remote_touch

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/geometry/bounding_box.h"
 #include "core/tool/mesh/mesh_check.h"
 
 namespace remote_touch {
@@ -15,16 +16,15 @@ namespace {
 
 // The first vertex within reach takes the place of later ones; found by cells twice the reach wide.
 void weld(TriangleMesh& mesh, MeshRepair& done) {
-  Vec3 low = mesh.vertices.front(), high = low;
-  for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-  const double reach = 1e-6 * (high - low).maxCoeff();
+  const BoundingBox box = bounding_box(mesh.vertices);
+  const double reach = 1e-6 * box.sizes().maxCoeff();
   if (!(reach > 0)) return;
   using Cell = std::array<std::int64_t, 3>;
   std::map<Cell, std::vector<int>> cells;
   std::vector<int> now(mesh.vertices.size());
   std::vector<Vec3> kept;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Vec3 at = (mesh.vertices[v] - low) / (2 * reach);
+    const Vec3 at = (mesh.vertices[v] - box.min()) / (2 * reach);
     const Cell cell{std::llround(at.x()), std::llround(at.y()), std::llround(at.z())};
     int same = -1;
     for (int n = 0; n < 27; ++n) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "core/geometry/bounding_box.h"
+
 namespace remote_touch {
 
 namespace {
@@ -71,12 +73,11 @@ int TriangleTree::build(const TriangleMesh& mesh, std::vector<int>& order, int b
     nodes_[index].left = begin, nodes_[index].right = begin - end;
     return index;
   }
-  Vec3 low = mesh.vertices[mesh.triangles[order[begin]][0]], high = low;
+  BoundingBox box;
   for (int t = begin; t < end; ++t)
-    for (const int corner : mesh.triangles[order[t]])
-      low = low.cwiseMin(mesh.vertices[corner]), high = high.cwiseMax(mesh.vertices[corner]);
+    for (const int corner : mesh.triangles[order[t]]) box.extend(mesh.vertices[corner]);
   int axis = 0;
-  (high - low).maxCoeff(&axis);
+  box.sizes().maxCoeff(&axis);
   const auto place = [&](int t) {
     const auto [i, j, k] = mesh.triangles[t];
     return mesh.vertices[i][axis] + mesh.vertices[j][axis] + mesh.vertices[k][axis];

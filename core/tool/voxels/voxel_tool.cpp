@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bounding_box.h"
 #include "core/parameters/input_error.h"
 #include "core/tool/voxels/distance_field.h"
 #include "core/tool/voxels/mass_properties.h"
@@ -66,11 +67,6 @@ namespace {
   throw InputError(name, problem);
 }
 
-void bounding_box(const TriangleMesh& mesh, Vec3& low, Vec3& high) {
-  low = high = mesh.vertices.front();
-  for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-}
-
 // Vertices that no triangle uses must not move the box.
 void drop_unused(TriangleMesh& mesh) {
   std::vector<int> now(mesh.vertices.size(), -1);
@@ -103,13 +99,12 @@ void check_and_mend(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolR
 
 void scale(TriangleMesh& mesh, const VoxelToolSettings& settings, ToolReport& report,
            const std::string& name) {
-  Vec3 low, high;
-  bounding_box(mesh, low, high);
-  const double max_length = (high - low).maxCoeff();
+  const Vec3 sides = bounding_box(mesh.vertices).sizes();
+  const double max_length = sides.maxCoeff();
   if (!(max_length > 0) || !std::isfinite(max_length)) refuse(name, "has no size: expected a closed mesh");
   const double factor = settings.size_m > 0 ? settings.size_m / max_length : 1;
   for (Vec3& v : mesh.vertices) v *= factor;
-  report.sides_m = factor * (high - low);
+  report.sides_m = factor * sides;
   const double cells = cells_around(mesh, settings.voxel_m);
   if (cells > kMaxCells)
     refuse(name, std::to_string(report.sides_m.maxCoeff()) + " m long, needs " +

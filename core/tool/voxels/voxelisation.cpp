@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bounding_box.h"
+
 namespace remote_touch {
 
 namespace {
-
-void bounds(const TriangleMesh& mesh, Vec3& low, Vec3& high) {
-  low = high = mesh.vertices.front();
-  for (const Vec3& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
-}
 
 // A face at the share 0 of a cell lies between two cells, at 1/2 in the middle of one.
 double off_the_cells(double face) {
@@ -75,16 +72,15 @@ void mark(const Corners& triangle, const VoxelGrid& grid, Cell low, Cell high,
 }  // namespace
 
 double cells_around(const TriangleMesh& mesh, double voxel_m) {
-  Vec3 low, high;
-  bounds(mesh, low, high);
+  const BoundingBox box = bounding_box(mesh.vertices);
   double cells = 1;
-  for (int i = 0; i < 3; ++i) cells *= cells_along(low[i], high[i], voxel_m);
+  for (int i = 0; i < 3; ++i) cells *= cells_along(box.min()[i], box.max()[i], voxel_m);
   return cells;
 }
 
 VoxelGrid grid_around(const TriangleMesh& mesh, double voxel_m) {
-  Vec3 low, high;
-  bounds(mesh, low, high);
+  const BoundingBox box = bounding_box(mesh.vertices);
+  const Vec3 &low = box.min(), &high = box.max();
   VoxelGrid grid;
   grid.size_m = voxel_m;
   for (int i = 0; i < 3; ++i) {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/kernels/isa.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/loop/live_logger.h"
 #include "runners/live/sensors/sensor_table.h"

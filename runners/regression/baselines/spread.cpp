@@ -7,7 +7,7 @@
 #include "analysis/comparison/column_comparison.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "core/kernels/kernels.h"
+#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/regression/baselines/program_run.h"
 
@@ -68,8 +68,7 @@ void note(std::vector<std::string>& list, const std::string& text) {
 
 std::vector<std::string> levels_of_this_machine() {
   std::vector<std::string> levels;  // the best first: it makes the reference
-  for (const Isa isa : {Isa::x86_64_v4, Isa::x86_64_v3, Isa::x86_64})
-    if (isa <= best_isa()) levels.emplace_back(kernels_for(isa).isa);
+  for (const Kernels* kernels : supported_kernels()) levels.insert(levels.begin(), kernels->isa);
   return levels;
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "core/kernels/isa.h"
+
 namespace remote_touch {
 
 namespace {

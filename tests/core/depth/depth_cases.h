@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/depth/depth_pipeline.h"
+#include "core/kernels/isa.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::depth_cases {

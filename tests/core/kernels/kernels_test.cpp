@@ -1,5 +1,3 @@
-#include "core/kernels/kernels.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,9 @@
 #include <numeric>
 #include <random>
 
-#include "tests/support/every_level.h"
+#include "core/kernels/gather_kernels.h"
+#include "core/kernels/isa.h"
+#include "core/kernels/proxy_kernels.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::kernels_test {
@@ -83,9 +83,9 @@ TEST(ContactQuery, AgreesWithTheEquations) {
     for (const bool with_stiffness : {false, true}) {
       const PointCloud cloud = random_points(700, 0.012, 1, with_radius, with_stiffness);
       const GatheredPoints points = columns(cloud);
-      for (const Kernels* kernels : every_level())
+      for (const Kernels* kernels : supported_kernels())
         for (std::size_t i = 0; i < at.size(); ++i)
-          expect_query(kernels->contact_query(points.view(), at.point(i).data(), kRegions), cloud,
+          expect_query(kernels->proxy.contact_query(points.view(), at.point(i).data(), kRegions), cloud,
                        at.point(i));
     }
 }
@@ -107,10 +107,11 @@ TEST(ContactQuery, SameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
     }
     const GatheredPoints other = columns(mixed);
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const ContactQuery first = every_level()[0]->contact_query(plain.view(), at.point(i).data(), kRegions);
+      const ContactQuery first =
+          supported_kernels()[0]->proxy.contact_query(plain.view(), at.point(i).data(), kRegions);
       ASSERT_GT(first.touching, 0);
-      for (const Kernels* kernels : every_level()) {
-        const ContactQuery got = kernels->contact_query(other.view(), at.point(i).data(), kRegions);
+      for (const Kernels* kernels : supported_kernels()) {
+        const ContactQuery got = kernels->proxy.contact_query(other.view(), at.point(i).data(), kRegions);
         EXPECT_EQ(std::memcmp(&got, &first, sizeof got), 0) << kernels->isa << " " << seed;
       }
     }
@@ -128,10 +129,11 @@ TEST(ContactQuery, AStiffnessThatIsNotANumberIsTheRenderersOwn) {
     const GatheredPoints with_nan = columns(some), with_own = columns(filled);
     for (std::size_t i = 0; i < at.size(); ++i) {
       const Vec3 p = at.point(i);
-      const ContactQuery want = every_level()[0]->contact_query(with_own.view(), p.data(), kRegions);
+      const ContactQuery want =
+          supported_kernels()[0]->proxy.contact_query(with_own.view(), p.data(), kRegions);
       expect_query(want, filled, p);
-      for (const Kernels* kernels : every_level()) {
-        const ContactQuery got = kernels->contact_query(with_nan.view(), p.data(), kRegions);
+      for (const Kernels* kernels : supported_kernels()) {
+        const ContactQuery got = kernels->proxy.contact_query(with_nan.view(), p.data(), kRegions);
         EXPECT_EQ(std::memcmp(&got, &want, sizeof got), 0) << kernels->isa;
       }
     }
@@ -142,10 +144,10 @@ TEST(ContactQuery, WeightFallsFromOneAtR1ToZeroAtR3) {
   const double halfway = 0.5 * (kRegions.r1 + kRegions.r3);  // (1/2)^4 (4/2 + 1) = 3/16
   const std::pair<double, double> cases[] = {
       {0.001, 1}, {kRegions.r1, 1}, {halfway, 0.1875}, {kRegions.r3, 0}, {0.5, 0}};
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const auto& [distance, psi] : cases) {
       const GatheredPoints one = columns(one_point({0, 0, -distance}));
-      const ContactQuery got = kernels->contact_query(one.view(), kOrigin.data(), kRegions);
+      const ContactQuery got = kernels->proxy.contact_query(one.view(), kOrigin.data(), kRegions);
       EXPECT_NEAR(got.normal_sum[2], psi, kOnGrid) << distance;
       EXPECT_EQ(got.normal_sum[0], 0);
       EXPECT_EQ(got.nearest, distance);
@@ -154,12 +156,12 @@ TEST(ContactQuery, WeightFallsFromOneAtR1ToZeroAtR3) {
 
 TEST(ContactQuery, PointAtTheProxyGivesNoDirection) {
   const GatheredPoints alone = columns(one_point(kOrigin)), none = columns({});
-  for (const Kernels* kernels : every_level()) {
-    const ContactQuery got = kernels->contact_query(alone.view(), kOrigin.data(), kRegions);
+  for (const Kernels* kernels : supported_kernels()) {
+    const ContactQuery got = kernels->proxy.contact_query(alone.view(), kOrigin.data(), kRegions);
     EXPECT_EQ(Vec3(got.normal_sum), kOrigin);
     EXPECT_EQ(got.nearest, 0);
     EXPECT_EQ(got.touching, 1);
-    EXPECT_EQ(kernels->contact_query(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
+    EXPECT_EQ(kernels->proxy.contact_query(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
   }
 }
 
@@ -168,8 +170,8 @@ TEST(ContactQuery, TouchingIncludesR2) {
   for (const double d : {kRegions.r2, nextafter(kRegions.r2, 1.0), nextafter(kRegions.r2, 0.0)})
     cloud.append({0, d, 0}), cloud.append({-d, 0, 0});
   const GatheredPoints points = columns(cloud);
-  for (const Kernels* kernels : every_level())
-    EXPECT_EQ(kernels->contact_query(points.view(), kOrigin.data(), kRegions).touching, 4);
+  for (const Kernels* kernels : supported_kernels())
+    EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching, 4);
 }
 
 // Roots of |x - p - d u| = r by the quadratic formula, which long double can afford.
@@ -188,10 +190,10 @@ Roots roots(const Vec3& x, const Vec3& p, const Vec3& u, Real r) {
 }
 
 TEST(FirstHit, ClosedFormsForOnePoint) {
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const auto hit = [&](const Vec3& x, double r_f = 0) {
-      return kernels->first_hit(columns(one_point(x, r_f)).view(), kOrigin.data(),
-                                Vec3::UnitX().eval().data(), kReach);
+      return kernels->proxy.first_hit(columns(one_point(x, r_f)).view(), kOrigin.data(),
+                                      Vec3::UnitX().eval().data(), kReach);
     };
     EXPECT_NEAR(hit({0.02, 0, 0}), 0.015, 1e-17);
     EXPECT_NEAR(hit({0.02, 0.003, 0}), 0.016, 1e-17);  // a 3-4-5 triangle
@@ -204,10 +206,10 @@ TEST(FirstHit, ClosedFormsForOnePoint) {
 }
 
 TEST(WayOut, ClosedFormsForOnePoint) {
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const auto exit_distance = [&](const Vec3& x, double r_f = 0) {
-      return kernels->exit_distance(columns(one_point(x, r_f)).view(), kOrigin.data(),
-                                    Vec3::UnitY().eval().data(), kReach, kRegions.r1);
+      return kernels->proxy.exit_distance(columns(one_point(x, r_f)).view(), kOrigin.data(),
+                                          Vec3::UnitY().eval().data(), kReach, kRegions.r1);
     };
     EXPECT_NEAR(exit_distance({0, -0.003, 0}), 0.002, 1e-17);
     EXPECT_NEAR(exit_distance({0, 0.003, 0}), 0.008, 1e-17);
@@ -233,9 +235,10 @@ TEST(Roots, SmallestAheadAndLargestWithinR1OfManyPoints) {
         if (r.real && r.along > 0 && r.near > 0) first = std::min(first, r.near);
         if ((cloud.point(j) - p).norm() < kRegions.r1 + r_f) max_length = std::max(max_length, r.far);
       }
-      for (const Kernels* kernels : every_level()) {
-        const double hit = kernels->first_hit(points.view(), p.data(), u.data(), kReach);
-        const double out = kernels->exit_distance(points.view(), p.data(), u.data(), kReach, kRegions.r1);
+      for (const Kernels* kernels : supported_kernels()) {
+        const double hit = kernels->proxy.first_hit(points.view(), p.data(), u.data(), kReach);
+        const double out =
+            kernels->proxy.exit_distance(points.view(), p.data(), u.data(), kReach, kRegions.r1);
         ASSERT_TRUE(hit == first || std::abs(hit - first) < 1e-13);  // no ray here grazes a point closer
         ASSERT_NEAR(out, static_cast<double>(max_length), 1e-15);    // some roundings of a centimetre
       }
@@ -257,12 +260,12 @@ double stored_as_float(double value) {
 // stays at the rounding of the coordinates.
 TEST(FirstHit, LandsOnTheContactRadiusFromAMetreAway) {
   const PointCloud at = scenes::random_cloud(300, 1, 8), offset = scenes::random_cloud(300, 0.0028, 9);
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (std::size_t i = 0; i < at.size(); ++i) {
       const Vec3 p = 0.1 * at.point((i + 1) % at.size()), u = (at.point(i) - p).normalized();
       const Vec3 moved = at.point(i) + offset.point(i);
       const Vec3 x(stored_as_float(moved.x()), stored_as_float(moved.y()), stored_as_float(moved.z()));
-      const double d = kernels->first_hit(columns(one_point(x)).view(), p.data(), u.data(), kReach);
+      const double d = kernels->proxy.first_hit(columns(one_point(x)).view(), p.data(), u.data(), kReach);
       Real squared = 0;
       for (int k = 0; k < 3; ++k) squared += std::pow(Real{p[k]} + Real{d} * u[k] - x[k], Real{2});
       ASSERT_NEAR(static_cast<double>(std::sqrt(squared) - Real{kReach}), 0, 1e-15);
@@ -280,7 +283,7 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
   for (std::size_t length = 0; length <= 40; ++length) lengths.push_back(length);
 
   const std::size_t before = 3;
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const std::size_t length : lengths)
       for (const double reach : {0.007, 0.0, kInfinity})
         for (const bool named : {false, true}) {
@@ -288,7 +291,7 @@ TEST(AppendWithin, SamePointsAsAPlainLoop) {
           std::vector<double> out[5];
           for (auto& column : out) column.assign(buffer + 1, -1);
           std::vector<std::uint32_t> index(buffer + 1, 77);
-          const std::size_t count = kernels->append_within(
+          const std::size_t count = kernels->gather.append_within(
               {cloud.x.data(), cloud.y.data(), cloud.z.data(),
                named ? cloud.fixture_radius_m.data() : nullptr, cloud.stiffness_N_per_m.data(),
                named ? names.data() : nullptr, 900, length},

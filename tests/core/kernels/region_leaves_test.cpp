@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/kernels.h"
+#include "core/kernels/isa.h"
+#include "core/kernels/region_kernels.h"
 #include "core/sphere_tree/sphere_tree.h"
-#include "tests/support/every_level.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::region_leaves_test {
@@ -46,13 +46,14 @@ double gap_m(const double leaf[4], const Sphere& region) {
 
 TEST(NearRegions, SameAsAPlainLoopOnEveryLevel) {
   const int regions = 203;
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const double margin : {-0.01, 0.0, 0.004, 0.1})
       for (const bool at_a_middle : {false, true}) {
         Patch patch(regions);
         const Vec3 middle = at_a_middle ? patch.regions[3].centre : Vec3(0.01, 0.02, -0.01);
         const double leaf[4] = {middle.x(), middle.y(), middle.z(), 0.005};
-        const std::size_t count = kernels->append_near_regions(patch.run(), leaf, margin, patch.near(), 2);
+        const std::size_t count =
+            kernels->regions.append_near_regions(patch.run(), leaf, margin, patch.near(), 2);
         std::size_t n = 2;
         for (std::uint32_t i = 0; i < regions; ++i) {
           const Vec3 displacement = middle - patch.regions[i].centre;
@@ -81,9 +82,9 @@ TEST(NearRegions, TheNearestIsFoundAtItsOwnGap) {
     std::size_t nearest = 0;
     for (std::size_t j = 1; j < patch.regions.size(); ++j)
       if (gap_m(leaf, patch.regions[j]) < gap_m(leaf, patch.regions[nearest])) nearest = j;
-    for (const Kernels* kernels : every_level()) {
+    for (const Kernels* kernels : supported_kernels()) {
       const double min_m = gap_m(leaf, patch.regions[nearest]);
-      ASSERT_EQ(kernels->append_near_regions(patch.run(), leaf, min_m, patch.near(), 0), 1u);
+      ASSERT_EQ(kernels->regions.append_near_regions(patch.run(), leaf, min_m, patch.near(), 0), 1u);
       EXPECT_EQ(patch.number[0], 500 + nearest);
       EXPECT_EQ(patch.gap[0], min_m);
     }
@@ -91,12 +92,12 @@ TEST(NearRegions, TheNearestIsFoundAtItsOwnGap) {
 }
 
 TEST(NearRegions, OfNoNumberThereAreNone) {
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     Patch patch(20);
     const double nowhere[4] = {std::nan(""), 0, 0, 0.01}, inverted[4] = {0, 0, 0, -0.5};
-    EXPECT_EQ(kernels->append_near_regions(patch.run(), nowhere, 1, patch.near(), 0), 0u);
-    EXPECT_EQ(kernels->append_near_regions(patch.run(), inverted, 0, patch.near(), 0), 0u);
-    EXPECT_EQ(kernels->deepest_region(patch.near(), 0), 0u);
+    EXPECT_EQ(kernels->regions.append_near_regions(patch.run(), nowhere, 1, patch.near(), 0), 0u);
+    EXPECT_EQ(kernels->regions.append_near_regions(patch.run(), inverted, 0, patch.near(), 0), 0u);
+    EXPECT_EQ(kernels->regions.deepest_region(patch.near(), 0), 0u);
   }
 }
 
@@ -137,16 +138,16 @@ struct PlainChoice {
 TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
   const double leaf[4] = {0.01, 0.02, -0.01, 0.005};
   std::size_t closed_up = 0;
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const int regions : {1, 7, 8, 9, 15, 16, 17, 40, 41, 65, 400})
       for (const double alike : {-2.0, 0.9})
         for (const double motion : {0.0, 0.001, 0.01})
           for (const double max : {-0.004, 0.01, 0.04}) {
             Patch patch(regions);
             const NearRegions near = patch.near();
-            std::size_t found = kernels->append_near_regions(patch.run(), leaf, 0.04, near, 0);
+            std::size_t found = kernels->regions.append_near_regions(patch.run(), leaf, 0.04, near, 0);
             PlainChoice plain(patch, found);
-            RemainingRegions left{kernels->deepest_region(near, found), found};
+            RemainingRegions left{kernels->regions.deepest_region(near, found), found};
             const PlainChoice::Region* kept = plain.deepest();
             while (kept) {
               const std::size_t at = left.deepest;
@@ -154,7 +155,7 @@ TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
               ASSERT_EQ(patch.gap[at], kept->gap) << kernels->isa << ' ' << regions;
               ASSERT_EQ(Vec3(patch.nx[at], patch.ny[at], patch.nz[at]), kept->n);
               plain.keep(*kept, motion, alike, max);
-              left = kernels->next_deepest_region(near, left.count, at, motion, alike, max);
+              left = kernels->regions.next_deepest_region(near, left.count, at, motion, alike, max);
               ASSERT_GE(left.count, plain.count);
               closed_up += left.count < found ? 1 : 0;
               found = left.count;
@@ -168,19 +169,19 @@ TEST(NearRegions, WhatIsKeptStandsForWhatGoes) {
 
 // Equally deep regions around a leaf in the order in which they were found, and as many as stand for nothing.
 TEST(NearRegions, OfEquallyDeepOnesTheFirstIsNext) {
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const std::size_t count : {1, 8, 13, 64, 99}) {
       Patch patch(120);
       for (std::size_t i = 0; i < count; ++i) {
         const double a = 0.05 * static_cast<double>(i);
         patch.gap[i] = -0.001, patch.nx[i] = std::cos(a), patch.ny[i] = std::sin(a), patch.nz[i] = 0;
       }
-      RemainingRegions left{kernels->deepest_region(patch.near(), count), count};
+      RemainingRegions left{kernels->regions.deepest_region(patch.near(), count), count};
       for (std::size_t i = 0; i < count; ++i) {
         const double a = 0.05 * static_cast<double>(i);
         ASSERT_LT(left.deepest, left.count) << kernels->isa;
         EXPECT_EQ(patch.nx[left.deepest], std::cos(a)) << kernels->isa << ' ' << i;
-        left = kernels->next_deepest_region(patch.near(), left.count, left.deepest, 0.01, -2, 0);
+        left = kernels->regions.next_deepest_region(patch.near(), left.count, left.deepest, 0.01, -2, 0);
       }
       EXPECT_EQ(left.deepest, left.count);
     }

@@ -102,7 +102,7 @@ TEST(FreeStep, SameBitsFromTheKeptListAndFromHops) {
     all.reserve(cloud.size(), false, false);
     search->gather({p, 10}, scenes::kernels(), all);
     all.finish();
-    const double first = scenes::kernels().first_hit(all.view(), p.data(), u.data(), 0.005);
+    const double first = scenes::kernels().proxy.first_hit(all.view(), p.data(), u.data(), 0.005);
     kept.around(p);
     for (const double limit : {0.0001, 0.004, 0.009, 0.03, 0.1, 5.0}) {
       const double want = std::min(limit, first);
@@ -248,7 +248,8 @@ TEST(ExitRule, TwoStepsFreeTheProxy) {
       ASSERT_EQ(classify(nearest(cloud, p), out), ContactState::contact);
       int steps = 0;
       for (; steps < 9 && classify(nearest(cloud, p), out) == ContactState::contact; ++steps) {
-        const ContactQuery query = scenes::kernels().contact_query(near.around(p).view(), p.data(), regions);
+        const ContactQuery query =
+            scenes::kernels().proxy.contact_query(near.around(p).view(), p.data(), regions);
         p += contact_step(unit_normal(query, kUp), Vec3(0.003, 0.02, 0) - p, out);
       }
       EXPECT_EQ(classify(nearest(cloud, p), out), ContactState::free);

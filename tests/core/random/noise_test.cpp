@@ -1,4 +1,5 @@
 #include "core/random/noise.h"
+#include "core/kernels/isa.h"
 
 #include <gtest/gtest.h>
 
@@ -57,20 +58,13 @@ std::array<Real, 3> box_muller(const Words& w) {
           radius(w[2]) * std::cos(angle(w[3]))};
 }
 
-std::vector<const Kernels*> every_level() {
-  std::vector<const Kernels*> levels;
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4})
-    if (isa <= best_isa()) levels.push_back(&kernels_for(isa));
-  return levels;
-}
-
 using Normals = std::array<std::vector<double>, 3>;
 
 Normals draw(const NoiseStream& stream, const std::vector<std::uint32_t>& index,
              const Kernels& kernels = scenes::kernels()) {
   Normals n;
   for (auto& column : n) column.resize(index.size());
-  kernels.normals(stream, index.data(), index.size(), n[0].data(), n[1].data(), n[2].data());
+  kernels.noise.normals(stream, index.data(), index.size(), n[0].data(), n[1].data(), n[2].data());
   return n;
 }
 
@@ -97,7 +91,7 @@ TEST(Noise, IsPhiloxAndBoxMullerOfTheKey) {
   const NoiseKey key{0x123456789abcdef0, 4000000001, 17};
   for (const NoiseUse use : {NoiseUse::point_position, NoiseUse::depth})
     for (const std::uint32_t frame : {0u, 25u, (1u << 28) - 1})
-      for (const Kernels* kernels : every_level()) {
+      for (const Kernels* kernels : supported_kernels()) {
         const Normals got = draw(noise_stream(key, use, frame), index, *kernels);
         const std::uint32_t word = frame | (use == NoiseUse::depth ? 1u << 28 : 0u);
         for (std::size_t i = 0; i < index.size(); ++i) {
@@ -116,7 +110,7 @@ TEST(Noise, IsRightAtTheEndsAndSeamsOfItsFunctions) {
   std::vector<std::uint32_t> angles;
   for (std::uint32_t eighth = 0; eighth < 8; ++eighth)
     for (const std::uint32_t beside : {~0u, 0u, 1u}) angles.push_back((eighth << 29) + beside);
-  for (const Kernels* kernels : every_level())
+  for (const Kernels* kernels : supported_kernels())
     for (const std::uint32_t length : lengths)
       for (const std::uint32_t angle : angles) {
         const Words words{length, angle, lengths[angle % lengths.size()], ~angle};
@@ -147,7 +141,7 @@ TEST(Noise, SameBitsForAnySubsetInAnyOrderOnEveryLevel) {
   for (const std::size_t count : {1, 3, 7, 8, 9, 100, 613}) {
     const std::vector<std::uint32_t> some(shuffled.end() - static_cast<std::ptrdiff_t>(count),
                                           shuffled.end());
-    for (const Kernels* kernels : every_level()) {
+    for (const Kernels* kernels : supported_kernels()) {
       const Normals few = draw(stream, some, *kernels);
       for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(few[k][i], all[k][some[i]]) << kernels->isa;
@@ -166,10 +160,10 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
     for (const double z : {0.0, 1.0, -2.5}) {
       const std::vector<std::uint64_t> bounds(kCount, word_bounds(std::abs(x), x));
       std::vector<std::vector<std::uint32_t>> found;
-      for (const Kernels* kernels : every_level()) {
+      for (const Kernels* kernels : supported_kernels()) {
         found.emplace_back(kCount + kLanes);
-        found.back().resize(kernels->candidates(stream, kFirst, kCount, bounds.data(),
-                                                word_bounds(std::abs(z), z), found.back().data()));
+        found.back().resize(kernels->noise.candidates(stream, kFirst, kCount, bounds.data(),
+                                                      word_bounds(std::abs(z), z), found.back().data()));
         ASSERT_EQ(found.back(), found.front()) << kernels->isa;
       }
       const auto is_asked = [](double normal, double min) {

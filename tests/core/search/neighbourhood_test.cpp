@@ -67,7 +67,7 @@ TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   int hits = 0;
   for (std::size_t k = 0; k < from.size(); ++k) {
     const Vec3 p = from.point(k), displacement = to.point(k) - p, u = displacement.normalized();
-    const double expected = scenes::kernels().first_hit(all.view(), p.data(), u.data(), kContactRadius);
+    const double expected = scenes::kernels().proxy.first_hit(all.view(), p.data(), u.data(), kContactRadius);
     EXPECT_EQ(near.first_hit(p, u, kContactRadius, displacement.norm()),
               std::min(expected, displacement.norm()))
         << k;

@@ -1,6 +1,7 @@
 // The points of a patch as the kernels of every level take, measure and add them, against what is written for
 // one point.
 #include "core/tracked_sheet/patch_points.h"
+#include "core/kernels/isa.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include <limits>
 
 #include "core/tracked_sheet/trend.h"
-#include "tests/support/every_level.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::patch_points_test {
@@ -48,7 +48,7 @@ PatchPoints taken(const Kernels& kernels, const GatheredPoints& gathered) {
 TEST(PatchPoints, AreThoseOfTheRegionAtTheirPlaces) {
   const GatheredPoints gathered = gathered_points();
   const PointsView all = gathered.view();
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const PatchPoints points = taken(*kernels, gathered);
     std::size_t next = 0;
     for (std::size_t i = 0; i < gathered.size(); ++i) {
@@ -67,7 +67,7 @@ TEST(PatchPoints, AreThoseOfTheRegionAtTheirPlaces) {
 TEST(PatchPoints, ResidualsAreHeightsAboveTheMap) {
   const GatheredPoints gathered = gathered_points();
   const HeightMap map = bumpy_map();
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const PatchPoints points = taken(*kernels, gathered);
     int unknown = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -86,7 +86,7 @@ TEST(PatchPoints, ResidualsAreHeightsAboveTheMap) {
 TEST(PatchPoints, TheProfileCountsThemOneByOne) {
   const GatheredPoints gathered = gathered_points();
   const PatchPlace proxy{1, -2, 0.5};
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const PatchPoints points = taken(*kernels, gathered);
     const HeightProfile profile = points.profile_near(proxy, 5, 3);
     HeightProfile expected(3);
@@ -105,7 +105,7 @@ TEST(PatchPoints, TheProfileCountsThemOneByOne) {
 TEST(PatchPoints, SumsAreThoseAddedOneByOne) {
   const GatheredPoints gathered = gathered_points();
   const NearPlane plane{1, -2, 5, 0.4, 0.1, -0.2, 1.5};
-  for (const Kernels* kernels : every_level()) {
+  for (const Kernels* kernels : supported_kernels()) {
     const PatchPoints points = taken(*kernels, gathered);
     const PlaneSums near = points.sums_near(plane);
     const QuadraticSums quadratic = points.sums_of_quadratic(6);

@@ -10,6 +10,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
+#include "core/kernels/isa.h"
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/simulation/simulation.h"
 

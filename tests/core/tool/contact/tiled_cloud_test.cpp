@@ -9,7 +9,6 @@
 #include <set>
 
 #include "core/cloud/camera.h"
-#include "core/kernels/kernels.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::tiled_cloud_test {

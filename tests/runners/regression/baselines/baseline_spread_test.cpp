@@ -8,6 +8,7 @@
 
 #include "analysis/columns/hash64.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "core/kernels/isa.h"
 #include "runners/regression/baselines/baseline_bless.h"
 #include "runners/regression/baselines/spread.h"
 #include "runners/simulation/simulation.h"
@@ -171,9 +172,6 @@ cp "$made" "$2"
   const TestFolder folder_{"baseline_spread_test"};
 };
 
-int levels() {
-  return best_isa() == Isa::x86_64_v4 ? 3 : best_isa() == Isa::x86_64_v3 ? 2 : 1;
-}
 int lines(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
@@ -188,7 +186,7 @@ TEST_F(MeasureSpread, EveryProgramAtEveryLevelAndNumberOfThreads) {
     EXPECT_EQ(std::count(measured.over.begin(), measured.over.end(), what), 1) << what;
   for (const char* name : {"gcc/calls", "clang/calls"}) {
     const std::string calls = bytes_of(folder_ / name);
-    EXPECT_EQ(lines(calls), 3 * levels()) << calls;
+    EXPECT_EQ(lines(calls), 3 * static_cast<int>(supported_kernels().size())) << calls;
     for (const char* threads : {"1", "2", "8"})
       EXPECT_HAS(calls, std::string("x86-64-") + threads + ": run " + (folder_ / "my.json").string() +
                             " --set seed=2 --set title=two words --quiet -o " + scratch().string());

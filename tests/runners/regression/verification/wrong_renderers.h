@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
 #include "runners/experiment/factory.h"
 

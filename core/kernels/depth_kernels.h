@@ -1,5 +1,6 @@
-// Rows of a depth image as the kernels take them. Pixel (column, row) of a plane is plane[row * stride +
-// column]; columns and rows count from the region that is asked for, so those of its border are negative.
+// The depth pipeline, 6.2.1: from a depth image to points (7.1), the bilateral filter (7.2), normals, and
+// into a cloud. Pixel (column, row) of a plane is plane[row * stride + column]; columns and rows count from
+// the region that is asked for, so those of its border are negative. No alignment asked.
 #pragma once
 
 #include <cstddef>
@@ -73,5 +74,22 @@ inline constexpr float kThinnest = 1e-4f;
 
 // (7.2) takes squared distances in units of sigma_f^2 / (kFilterExponent / 2).
 inline constexpr double kFilterExponent = 0.033102384734499175;
+
+struct DepthKernels {
+  // The points of one row in the camera frame, their z times scale.
+  void (*depth_to_points)(const PixelRow&, double scale, const PointPlanes&);
+  // (7.1), (7.2): what the filter adds to the z of every pixel, for points with lengths in units of
+  // sigma_f / sqrt(kFilterExponent / 2).
+  void (*filter_depth)(const RowBand&, const PointPlanes& points, float* change);
+  // Unit normals towards the sensor, NaN where there is no plane. Lengths are in units of the radius; step is
+  // (1 / fx, 1 / fy).
+  void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
+                        const PointPlanes& normals);
+  // One row into the cloud, m; X_WC row by row, three rows of four. z are those of the points the normals are
+  // of.
+  void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);
+  void (*normals_to_cloud)(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
+                           const CloudRow&);
+};
 
 }  // namespace remote_touch

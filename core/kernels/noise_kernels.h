@@ -1,0 +1,26 @@
+// Standard normals of the counter-based generator; core/random/noise.h says what they are keyed by.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace remote_touch {
+
+// Counter and key of the generator.
+struct NoiseStream {
+  std::uint32_t key[2];
+  std::uint32_t counter[3];  // the generator's counter without its first word, which is the point's index
+};
+
+struct NoiseKernels {
+  // Three standard normals for each of the points index[0..count), by Box and Muller.
+  void (*normals)(const NoiseStream&, const std::uint32_t* index, std::size_t count, double* x, double* y,
+                  double* z);
+  // Of the points first .. first + count - 1, in order, those whose random words allow the x normal to be
+  // what x[i] asks and the z normal what z asks (word_bounds in noise.h); of points that are not returned
+  // neither is. Returns how many; index has the capacity for count + kLanes.
+  std::size_t (*candidates)(const NoiseStream&, std::uint32_t first, std::size_t count,
+                            const std::uint64_t* x, std::uint64_t z, std::uint32_t* index);
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,15 @@
+#include "core/numeric/order_statistic.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace remote_touch {
+
+double quantile_in_place(std::span<double> values, double fraction) {
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+}  // namespace remote_touch
