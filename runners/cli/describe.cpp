@@ -4,8 +4,8 @@
 #include "analysis/measures/measures.h"
 #include "core/tool/mesh/generated_tools.h"
 #include "runners/cli/commands.h"
-#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
+#include "runners/experiment/sections.h"
 #include "runners/figures/figures.h"
 #include "runners/scorecard/benchmark.h"
 #include "runners/settings/json_parameters.h"
@@ -23,31 +23,36 @@ void print(const Parameters& parameters) {
                 value_text(p).c_str(), allowed(p).c_str());
 }
 
-// Prints a part of experiments that is no entry of the catalog, if it has that name.
-template <class Settings>
-bool describe_section(const char* section, const char* what, const std::string& name) {
-  if (name != section) return false;
-  std::printf("%s: %s\n", section, what);
-  Settings settings;
-  print(parameters(settings));
-  return true;
+// What a section takes: the entries of its catalog, or its parameters.
+void print_section(const ExperimentSection& section) {
+  for (const SectionEntry& entry : section.entries())
+    if (section.heading)
+      std::printf("  %-24s %s\n", entry.name.c_str(), entry.summary.c_str());
+    else
+      print(entry.make()->settings());
 }
 
-// Prints the entry of that name, if the table has it.
-template <class Entry>
-bool describe_entry(std::span<const Entry> entries, const char* kind, const std::string& name) {
-  for (const Entry& entry : entries) {
-    if (name != entry.name) continue;
-    std::printf("%s: a %s: %s\n", entry.name, kind, entry.summary);
-    print(entry.make()->settings());
+bool describe_section(const std::string& name) {
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (name != section.key) continue;
+    std::printf("%s: \"%s\" of an experiment: %s\n", section.key, section.key, section.summary);
+    print_section(section);
     return true;
   }
   return false;
 }
 
-void print_run_settings() {
-  RunSettings settings;
-  print(parameters(settings));
+// Of the catalogs of all sections: a scenario and a trajectory may have the same name.
+bool describe_entry(const std::string& name) {
+  bool found = false;
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries()) {
+      if (name != entry.name) continue;
+      std::printf("%s: a \"%s\" of an experiment: %s\n", name.c_str(), section.key, entry.summary.c_str());
+      print(entry.make()->settings());
+      found = true;
+    }
+  return found;
 }
 
 bool describe_experiment(const std::string& name) {
@@ -56,8 +61,8 @@ bool describe_experiment(const std::string& name) {
     const Experiment experiment = Experiment::load(name);
     std::printf("%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
                 parse_json(experiment.to_json(), name).dump(2).c_str());
-    std::puts("Parameters of the run itself; those of its parts: remote-touch describe PART");
-    print_run_settings();
+    std::puts("Parameters of the run itself; those of its sections: remote-touch describe SECTION");
+    describe_section("run");
     return true;
   }
   return false;
@@ -120,37 +125,12 @@ bool describe_tool(const std::string& name) {
 
 int command_describe(const CommandLine&, const DescribeRequest& request) {
   const std::string& name = request.name;
-  bool found = describe_entry(scenarios(), "scenario", name);
-  found |= describe_entry(fixtures(), "fixture rule", name);
-  found |= describe_entry(renderers(), "renderer", name);
-  found |= describe_entry(trajectories(), "trajectory", name);
+  bool found = describe_section(name);
+  found |= describe_entry(name);
   found |= describe_experiment(name);
   found |= describe_sweep(name);
   found |= describe_method(name);
   found |= describe_scene(name);
-  if (name == "run") {
-    std::puts("run: parameters of the run itself");
-    print_run_settings();
-    found = true;
-  }
-  found |= describe_section<SensorFaults>(
-      "faults", "\"faults\" of an experiment: sensor faults, for any scenario", name);
-  found |= describe_section<DepthPipelineSettings>(
-      "depth-pipeline",
-      "\"depth_pipeline\" of an experiment: depth images are filtered and get normals, 6.2.1", name);
-  found |= describe_section<GuidanceSettings>(
-      "guidance", "\"guidance\" of an experiment: the springs of fixtures with role = guidance, 7.3.2", name);
-  found |= describe_section<SequenceStep>(
-      "sequence", "\"sequence\" of an experiment: steps that enable and disable fixtures", name);
-  found |= describe_section<OperatorSettings>(
-      "operator",
-      "\"operator\" of an experiment: a simulated hand that follows the trajectory and feels forces", name);
-  found |= describe_section<MotorSettings>(
-      "device", "\"device\" of an experiment: actuated axes of the haptic device", name);
-  found |= describe_section<LiveSettings>(
-      "live", "\"live\" of an experiment: where device and camera stand when it is run in real time", name);
-  found |= describe_section<SafetyLimits>(
-      "safety", "\"safety\" of an experiment: limits of the force on a real haptic device", name);
   found |= describe_tool(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;

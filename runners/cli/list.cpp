@@ -2,8 +2,8 @@
 
 #include "analysis/measures/measures.h"
 #include "runners/cli/commands.h"
-#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
+#include "runners/experiment/sections.h"
 #include "runners/figures/figures.h"
 #include "runners/scorecard/benchmark.h"
 #include "runners/sweep/sweep.h"
@@ -17,14 +17,13 @@ void row(const char* name, const std::string& text) {
 }  // namespace
 
 int command_list(const CommandLine&, const ListRequest&) {
-  std::puts("scenarios");
-  for (const auto& entry : scenarios()) row(entry.name, entry.summary);
-  std::puts("fixture rules");
-  for (const auto& entry : fixtures()) row(entry.name, entry.summary);
-  std::puts("renderers");
-  for (const auto& entry : renderers()) row(entry.name, entry.summary);
-  std::puts("trajectories");
-  for (const auto& entry : trajectories()) row(entry.name, entry.summary);
+  std::puts("sections");
+  for (const auto& section : experiment_sections()) row(section.key, section.summary);
+  for (const auto& section : experiment_sections()) {
+    if (!section.heading) continue;
+    std::puts(section.heading);
+    for (const auto& entry : section.entries()) row(entry.name.c_str(), entry.summary);
+  }
   std::puts("experiments");
   for (const auto& stored : embedded_experiments())
     row(stored.name, Experiment::load(stored.name).settings().title);

@@ -1,41 +1,15 @@
-// One resolved configuration: scenario, faults of the sensor, depth pipeline, fixtures, guidance, task,
-// renderer, trajectory, operator, device, live loop, durations, seed.
+// What can be run: a resolved configuration, and all that is built from it.
 #pragma once
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/guidance/guided_renderer.h"
-#include "runners/experiment/catalog.h"
-#include "runners/experiment/frame_stream.h"
-#include "runners/live/devices/safety_gate.h"
-#include "runners/live/loop/live_settings.h"
-#include "runners/operator/simulated_hand.h"
+#include "runners/experiment/configuration.h"
 #include "runners/settings/embedded_data.h"
-#include "scenarios/faults/sensor_faults.h"
 
 namespace remote_touch {
-
-// Settings of the run itself.
-struct RunSettings {
-  double duration_s = 0;
-  double haptic_rate_hz = 1000;
-  Transport transport;
-  NoiseKey key;
-  std::string title;
-};
-
-Parameters parameters(RunSettings& s);
-
-// A catalog entry by its name, with settings.
-template <class Entry>
-struct Part {
-  std::string name;
-  decltype(Entry{}.make()) factory;
-};
 
 class Experiment {
  public:
@@ -43,12 +17,12 @@ class Experiment {
   // InputError for anything that cannot be run, so that nothing starts that would fail for its configuration.
   static Experiment from_json(const std::string& text, const std::string& label,
                               const std::vector<std::string>& overrides = {});
-  static Experiment from_json(nlohmann::ordered_json configuration);
+  static Experiment from_json(const nlohmann::ordered_json& configuration);
   // A name of data/experiments, a JSON file, or a live session, which runs again.
   static Experiment load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
-  const RunSettings& settings() const { return settings_; }
-  const std::vector<SequenceStep>& sequence() const { return sequence_; }
+  const RunSettings& settings() const { return configuration_.run; }
+  const std::vector<SequenceStep>& sequence() const { return configuration_.sequence; }
   std::string to_json() const;  // complete: every parameter, one line
   // The recordings that a run reads, as they are named; none has been looked for yet.
   std::vector<RecordingPart> inputs() const;
@@ -69,27 +43,11 @@ class Experiment {
   // and of all guidance beside them.
   double max_stiffness_N_per_m() const;
   // For the live loop; offline runs take no notice of them.
-  LiveSettings live() const { return live_.value_or(LiveSettings{}); }
-  SafetyLimits safety() const { return safety_.value_or(SafetyLimits{}); }
+  LiveSettings live() const { return configuration_.live.value_or(LiveSettings{}); }
+  SafetyLimits safety() const { return configuration_.safety.value_or(SafetyLimits{}); }
 
  private:
-  std::vector<FixtureValues> fixture_values() const;
-  bool has_guidance() const;
-  bool can_be_pressed(const SequenceStep& step) const;
-
-  RunSettings settings_;
-  Part<ScenarioEntry> scenario_;
-  std::optional<SensorFaults> faults_;
-  std::optional<DepthPipelineSettings> depth_pipeline_;
-  std::vector<Part<FixtureEntry>> fixtures_;
-  std::optional<GuidanceSettings> guidance_;
-  std::vector<SequenceStep> sequence_;
-  std::optional<OperatorSettings> operator_;
-  std::optional<MotorSettings> device_;
-  std::optional<LiveSettings> live_;
-  std::optional<SafetyLimits> safety_;
-  Part<RendererEntry> renderer_;
-  Part<TrajectoryEntry> trajectory_;
+  ExperimentConfiguration configuration_;
 };
 
 }  // namespace remote_touch

@@ -18,12 +18,17 @@
 
 namespace remote_touch {
 
-template <class Seam, class... Arguments>
-class Factory {
+// Settings that can be read, listed and checked.
+class Configurable {
  public:
-  virtual ~Factory() = default;
+  virtual ~Configurable() = default;
   virtual Parameters settings() = 0;         // pointers into this object
   virtual std::string validate() const = 0;  // "r1_m = 1: expected ..."; empty: they fit together
+};
+
+template <class Seam, class... Arguments>
+class Factory : public Configurable {
+ public:
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };

@@ -13,7 +13,7 @@ std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment)
   const Json resolved = parse_json(experiment.to_json(), "experiment");
   for (const Json& part : resolved.at("fixtures")) {
     const auto factory = find_entry(fixtures(), part.at("name").get<std::string>(), "fixture").make();
-    read_parameters(part, factory->settings(), "fixtures", /*skip_name=*/true);
+    read_parameters(part, factory->settings(), "fixtures", {"name"});
     rules.push_back(factory->build());
   }
   return rules;

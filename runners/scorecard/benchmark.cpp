@@ -54,7 +54,7 @@ Bound bound_of(const Json& json, const std::string& label) {
                   {{"measure", &bound.measure, 0, 0, "what is bounded"},
                    {"min", &bound.min, -1e12, 1e12, "lower end"},
                    {"max", &bound.max, -1e12, 1e12, "upper end"}},
-                  label, false);
+                  label);
   return bound;
 }
 

@@ -14,7 +14,7 @@ constexpr double kDamper_Ns_per_m = 3;
 // All parameters of the renderer, those left out with their defaults.
 Json complete(const Json& renderer) {
   auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
-  read_parameters(renderer, factory->settings(), "renderer", true);
+  read_parameters(renderer, factory->settings(), "renderer", {"name"});
   Json all = {{"name", renderer.at("name")}};
   write_parameters(factory->settings(), all);
   return all;

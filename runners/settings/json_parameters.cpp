@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/parameters/input_error.h"
+#include "runners/settings/renamed_names.h"
 
 namespace remote_touch {
 
@@ -144,14 +145,25 @@ std::pair<std::size_t, std::size_t> edit_distance(const std::string& a, const st
   return {*std::min_element(row.begin(), row.end()), row.back()};
 }
 
-[[noreturn]] void refuse_key(const std::string& key, const Parameters& parameters,
+std::vector<std::string> all_keys(const Parameters& parameters, const std::vector<std::string>& others) {
+  std::vector<std::string> keys;
+  for (const Parameter& p : parameters) keys.push_back(p.name);
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
+}
+
+// The present name of a key that was renamed, or the nearest in spelling; pre: one is known.
+std::string meant(const std::string& key, const std::vector<std::string>& known) {
+  return new_name(key, known)
+      .value_or(*std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+        return edit_distance(key, a) < edit_distance(key, b);
+      }));
+}
+
+[[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
                              const std::string& prefix) {
-  const auto nearest = std::min_element(
-      parameters.begin(), parameters.end(),
-      [&](const auto& a, const auto& b) { return edit_distance(key, a.name) < edit_distance(key, b.name); });
-  throw InputError(prefix + key,
-                   "unknown; " + (nearest == parameters.end() ? std::string("no parameters here")
-                                                              : "did you mean " + prefix + nearest->name));
+  throw InputError(prefix + key, known.empty() ? "unknown; no parameters here"
+                                               : "unknown; did you mean " + prefix + meant(key, known));
 }
 
 // As JSON, for a message: shortened, and safe to print whatever the value holds.
@@ -181,16 +193,16 @@ std::string value_text(const Parameter& parameter) {
 }
 
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     bool skip_name) {
+                     const std::vector<std::string>& elsewhere) {
   if (!object.is_object()) throw InputError(path, "not an object: expected {\"name\": ..., ...}");
   const std::string prefix = path.empty() ? "" : path + ".";
   for (const auto& item : object.items()) {
     const std::string& key = item.key();
     const Json& value = item.value();
-    if (skip_name && key == "name") continue;
+    if (std::find(elsewhere.begin(), elsewhere.end(), key) != elsewhere.end()) continue;
     const auto found =
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == key; });
-    if (found == parameters.end()) refuse_key(key, parameters, prefix);
+    if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix);
     if (!std::visit(Reader{value, *found}, found->value))
       throw InputError(prefix + key + " = " + shown(value), "expected " + allowed(*found));
   }

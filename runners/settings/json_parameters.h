@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "core/parameters/parameter.h"
 
@@ -12,9 +13,9 @@ using Json = nlohmann::ordered_json;
 
 // Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
 // one), a value of the wrong kind or one out of range; path is what the object is called, for example
-// "renderer". The key "name" is skipped where skip_name is set.
+// "renderer". elsewhere: keys that the caller reads.
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     bool skip_name);
+                     const std::vector<std::string>& elsewhere = {});
 
 // All parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);

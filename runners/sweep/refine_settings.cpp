@@ -22,7 +22,7 @@ std::optional<RefineSettings> read_refine(const Json& json, const std::vector<Me
   const auto found = json.find("refine");
   if (found == json.end() || found->is_null()) return std::nullopt;
   RefineSettings refine;
-  read_parameters(*found, parameters(refine), "refine", false);
+  read_parameters(*found, parameters(refine), "refine");
   const auto is_it = [&](const Measure& measure) { return refine.measure == measure.name; };
   if (std::none_of(chosen.begin(), chosen.end(), is_it))
     throw InputError(label + ": refine.measure = \"" + refine.measure + "\"",

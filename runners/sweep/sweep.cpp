@@ -8,6 +8,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
+#include "runners/settings/renamed_names.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
 
@@ -104,7 +105,11 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   if (found == json.end()) return {measures().begin(), measures().end()};
   std::vector<Measure> chosen;
   std::string known;
-  for (const Measure& measure : measures()) known += (known.empty() ? "" : ", ") + std::string(measure.name);
+  std::vector<std::string> names;
+  for (const Measure& measure : measures()) {
+    known += (known.empty() ? "" : ", ") + std::string(measure.name);
+    names.push_back(measure.name);
+  }
   const auto refuse = [&](const std::string& what) {
     throw InputError(label + ": measures", what + ": expected a list of different names of " + known);
   };
@@ -112,7 +117,10 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   for (const Json& name : *found) {
     const auto is_it = [&](const Measure& measure) { return name == measure.name; };
     const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
-    if (measure == measures().end()) refuse(name.dump() + " is unknown");
+    if (measure == measures().end()) {
+      const auto renamed = new_name(name.is_string() ? name.get<std::string>() : "", names);
+      refuse(name.dump() + " is unknown" + (renamed ? ", did you mean " + *renamed : ""));
+    }
     if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " comes twice");
     chosen.push_back(*measure);
   }
@@ -199,7 +207,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   auto definition = std::make_shared<Definition>();
   Json plain = json;
   for (const char* part : {"experiment", "set", "axes", "measures", "refine"}) plain.erase(part);
-  read_parameters(plain, parameters(definition->title, definition->replicates), "", false);
+  read_parameters(plain, parameters(definition->title, definition->replicates), "");
   definition->measures = read_measures(json, label);
   definition->refine = read_refine(json, definition->measures, definition->replicates, label);
   definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);

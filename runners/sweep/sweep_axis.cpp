@@ -61,7 +61,7 @@ SweepAxis range_axis(const Json& json, const std::string& label, int levels) {
   for (const char* needed : {"from", "to", "count"})
     if (!json.contains(needed))
       throw InputError(label, std::string(needed) + " is missing: expected from, to and count, or values");
-  read_parameters(json, parameters(axis), label, false);
+  read_parameters(json, parameters(axis), label);
   if (axis.count > 1 && axis.from == axis.to)
     throw InputError(label + ".to = " + Json(axis.to).dump(), "expected a value different from \"from\"");
   if (axis.scale == Scale::log && !(axis.from > 0 && axis.to > 0))
@@ -92,7 +92,7 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   Json rest = json;
   rest.erase("values");
   const Parameters known = {{"parameter", &parameter, 0, 0, "path of the parameter"}};
-  read_parameters(rest, known, label, false);
+  read_parameters(rest, known, label);
   const Json& values = json["values"];
   if (!values.is_array() || values.empty() || values.size() > kMaxValues)
     throw InputError(label + ".values", "expected a list of 1 to " + std::to_string(kMaxValues) + " values");

@@ -124,7 +124,7 @@ def read_curve(file, group):
     y = read_column(file, table, text(group.attrs, "y"))
     style = text(group.attrs, "style", "line")
     if style not in STYLES:
-        raise PlotError(f"{file.filename}: {group.name}: style {style!r}: allowed {', '.join(STYLES)}")
+        raise PlotError(f"{file.filename}: {group.name}: style {style!r}: expected {', '.join(STYLES)}")
     if style in NEED_Z and not text(group.attrs, "z"):
         raise PlotError(f"{file.filename}: {group.name}: style {style!r} needs z, the name of a third column")
     z = read_column(file, table, text(group.attrs, "z")) if style in NEED_Z else None

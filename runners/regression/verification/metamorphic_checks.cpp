@@ -35,7 +35,7 @@ class Subject {
     Json configuration = Json::object();
     for (const std::string& assignment : assignments_) apply_override(configuration, assignment);
     auto factory = entry_.make();
-    read_parameters(configuration, factory->settings(), "", false);
+    read_parameters(configuration, factory->settings(), "");
     const std::string problem = factory->validate();
     if (!problem.empty()) throw InputError(problem);
     return factory;

@@ -234,14 +234,14 @@ TEST_F(FixtureContract, GivesTheValuesOfItsSettings) {
   for (const FixtureEntry& entry : fixtures()) {
     const auto made = factory(entry);
     const Json set = {{"radius_m", 0.25}, {"stiffness_N_per_m", 77}, {"schedule", {{1, 0.5}, {2, 0}}}};
-    read_parameters(set, made->settings(), entry.name, false);
+    read_parameters(set, made->settings(), entry.name);
     EXPECT_EQ(made->validate(), "") << entry.name;
     const auto rule = made->build();
     EXPECT_EQ(rule->values().radius_m, 0.25) << entry.name;
     EXPECT_EQ(rule->values().stiffness_N_per_m, 77) << entry.name;
     EXPECT_EQ(rule->strength(0), 0.5) << entry.name;
     EXPECT_TRUE(rule->changes_with_time()) << entry.name;
-    read_parameters({{"schedule", {{1, 0.5}, {0, 0}}}}, made->settings(), entry.name, false);
+    read_parameters({{"schedule", {{1, 0.5}, {0, 0}}}}, made->settings(), entry.name);
     EXPECT_HAS(made->validate(), "schedule: time") << entry.name;
   }
 }
@@ -264,7 +264,7 @@ TEST_F(FixtureContract, SettingsSurviveARoundTripThroughAnExperiment) {
   for (const FixtureEntry& entry : fixtures()) {
     const auto made = factory(entry);
     read_parameters({{"radius_m", 0.1 + 0.2}, {"schedule", {{0, 0.1}, {1e-3, 1}}}}, made->settings(),
-                    entry.name, false);
+                    entry.name);
     rules.push_back({{"name", entry.name}});
     write_parameters(made->settings(), rules.back());
   }

@@ -131,16 +131,16 @@ TEST(ExperimentSections, RefuseValuesThatAreNone) {
   EXPECT_HAS(why("operator.mass_kg=0"), "operator.mass_kg = 0: expected 0.01 to 100");
   EXPECT_HAS(why("device.torque_x=1"), "device.torque_x = 1: expected true, false");
   EXPECT_HAS(why("fixtures.0.role=both"), "fixtures.0.role = \"both\": expected forbidden, guidance");
-  EXPECT_HAS(why("device.turn_x=true"), "device.turn_x: unknown; did you mean device.torque_x");
+  EXPECT_HAS(why("device.torqe_x=true"), "device.torqe_x: unknown; did you mean device.torque_x");
 }
 
 TEST(ExperimentSections, RefuseSectionsOfAnotherShape) {
   EXPECT_HAS(why("sequence=3"), "sequence: expected a list of {\"action\": ..., parameters}");
   EXPECT_HAS(why(R"(sequence={"action": "wait"})"), "sequence: expected a list of");
-  EXPECT_HAS(why("sequence=[3]"), "sequence.0: expected {parameters}");
+  EXPECT_HAS(why("sequence=[3]"), "sequence.0: expected an object of parameters");
   for (const std::string section : {"faults", "guidance", "operator", "device"}) {
-    EXPECT_HAS(why(section + "=3"), section + ": expected {parameters}");
-    EXPECT_HAS(why(section + "=[]"), section + ": expected {parameters}");
+    EXPECT_HAS(why(section + "=3"), section + ": expected an object of parameters");
+    EXPECT_HAS(why(section + "=[]"), section + ": expected an object of parameters");
   }
 }
 
@@ -151,7 +151,7 @@ TEST(ExperimentSections, RefuseSettingsThatContradictEachOther) {
   EXPECT_HAS(
       why("operator.rotational_stiffness_Nm_per_rad=40"),
       "operator.rotational_stiffness_Nm_per_rad = 40.000000: expected below 40.000000 for this inertia");
-  EXPECT_HAS(why("operator.grip=[[0,2]]"), "operator.grip: share 2.000000: expected 0 to 1");
+  EXPECT_HAS(why("operator.grip=[[0,2]]"), "operator.grip: fraction 2.000000: expected 0 to 1");
   EXPECT_HAS(why("operator.presses=[[0,32,1]]"), "operator.presses: button 32.000000: expected integers");
   EXPECT_HAS(why("sequence.0.fixture="), "sequence.0.fixture = \"\": expected the label of a fixture");
   EXPECT_HAS(why("sequence.2.fixture=valve"), "sequence.2.fixture = \"valve\": expected none for wait");

@@ -198,11 +198,16 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
   EXPECT_EQ(nearest("renderer.stiffnes=3"),
             "renderer.stiffnes: unknown; did you mean renderer.stiffness_N_per_m");
   EXPECT_HAS(nearest("renderer.stifness_N_per_m=3"), "renderer.stiffness_N_per_m");
-  EXPECT_HAS(nearest("renderer.r1=3"), "expected is renderer.r1_m");
-  EXPECT_HAS(nearest("scenario.colums=3"), "expected is scenario.columns");
-  EXPECT_HAS(nearest("trajectory.waypoint=3"), "expected is trajectory.waypoints");
+  EXPECT_HAS(nearest("renderer.r1=3"), "did you mean renderer.r1_m");
+  EXPECT_HAS(nearest("scenario.colums=3"), "did you mean scenario.columns");
+  EXPECT_HAS(nearest("trajectory.waypoint=3"), "did you mean trajectory.waypoints");
   EXPECT_HAS(nearest("duration=3"), "duration: unknown; did you mean duration_s");
-  EXPECT_HAS(nearest("sede=3"), "expected is seed");
+  EXPECT_HAS(nearest("sede=3"), "did you mean seed");
+  // Sections stand beside the parameters of the run.
+  EXPECT_HAS(nearest("fixture=3"), "fixture: unknown; did you mean fixtures");
+  EXPECT_HAS(nearest("saftey.ramp_s=3"), "did you mean safety");
+  EXPECT_HAS(nearest("renderer.nam=proxy"), "did you mean renderer.name");
+  EXPECT_HAS(nearest("run.seed=3"), "run: unknown");
 }
 
 TEST(Experiments, RefuseTextThatIsNoExperiment) {

@@ -9,7 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "runners/experiment/experiment.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/sections.h"
 #include "runners/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
@@ -20,26 +21,12 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of settings that are no entry of a list.
-template <class Settings>
-struct Section {
-  Parameters settings() { return parameters(values); }
-  Settings values;
-};
-
 // Calls visit(label, make) for everything that has parameters; make() gives a new owner of default settings.
 template <class Visit>
 void for_each_owner(Visit visit) {
-  for (const auto& entry : scenarios()) visit(std::string("scenario ") + entry.name, entry.make);
-  for (const auto& entry : fixtures()) visit(std::string("fixture rule ") + entry.name, entry.make);
-  for (const auto& entry : renderers()) visit(std::string("renderer ") + entry.name, entry.make);
-  for (const auto& entry : trajectories()) visit(std::string("trajectory ") + entry.name, entry.make);
-  visit(std::string("faults"), [] { return std::make_unique<Section<SensorFaults>>(); });
-  visit(std::string("run"), [] { return std::make_unique<Section<RunSettings>>(); });
-  visit(std::string("guidance"), [] { return std::make_unique<Section<GuidanceSettings>>(); });
-  visit(std::string("sequence"), [] { return std::make_unique<Section<SequenceStep>>(); });
-  visit(std::string("operator"), [] { return std::make_unique<Section<OperatorSettings>>(); });
-  visit(std::string("device"), [] { return std::make_unique<Section<MotorSettings>>(); });
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries())
+      visit(std::string(section.key) + " " + entry.name, entry.make);
 }
 
 template <class Owner>
@@ -52,7 +39,7 @@ Json written(Owner& owner) {
 // The message with which a parameter refuses a value; empty when it takes it.
 std::string refused(const Parameter& parameter, const Json& value) {
   try {
-    read_parameters({{parameter.name, value}}, {parameter}, "part", false);
+    read_parameters({{parameter.name, value}}, {parameter}, "part");
     return {};
   } catch (const InputError& error) {
     return error.what();
@@ -120,11 +107,12 @@ bool carries_unit(const std::string& name) {
                                               "min_saturation",
                                               "min_lightness",
                                               "max_lightness",
-                                              "frame_drop_probability",
+                                              "filter_window",
+                                              "normal_window",
+                                              "device_scale",
                                               "detections_per_tick",
                                               "disk_radius_ratio",
                                               "colour_noise",
-                                              "dropout_probability",
                                               "approach_axis",
                                               "max_tool_leaves",
                                               "min_points",
@@ -135,9 +123,10 @@ bool carries_unit(const std::string& name) {
                                               "empty_frame",
                                               "view_direction",
                                               "threshold"};
-  static const char* const kUnits[] = {
-      "_fraction", "_m",       "_s",        "_hz", "_deg", "_px", "_per_m", "_per_min",    "_N_per_m",
-      "_Ns_per_m", "_m_per_s", "_m_per_s2", "_N",  "_Nm",  "_kg", "_kg_m2", "_Nm_per_rad", "_Nms_per_rad"};
+  static const char* const kUnits[] = {"_probability", "_fraction", "_m",          "_s",          "_hz",
+                                       "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",
+                                       "_Ns_per_m",    "_m_per_s",  "_m_per_s2",   "_N",          "_Nm",
+                                       "_kg",          "_kg_m2",    "_Nm_per_rad", "_Nms_per_rad"};
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }
@@ -161,7 +150,7 @@ TEST(Parameters, DefaultsAreAllowedAndSurviveARoundTrip) {
     const auto owner = make(), again = make();
     const Json defaults = written(*owner);
     EXPECT_EQ(defaults.size(), owner->settings().size());
-    ASSERT_NO_THROW(read_parameters(Json::parse(defaults.dump()), again->settings(), "part", false));
+    ASSERT_NO_THROW(read_parameters(Json::parse(defaults.dump()), again->settings(), "part"));
     EXPECT_EQ(written(*again), defaults);
   });
 }
@@ -191,7 +180,7 @@ TEST(Parameters, EveryValueSurvivesARoundTrip) {
     const Json changed = written(*owner);
     const Json defaults = written(*again);
     for (const auto& [name, value] : defaults.items()) EXPECT_NE(changed[name], value) << name;
-    ASSERT_NO_THROW(read_parameters(Json::parse(changed.dump()), again->settings(), "part", false));
+    ASSERT_NO_THROW(read_parameters(Json::parse(changed.dump()), again->settings(), "part"));
     EXPECT_EQ(written(*again), changed);
   });
 }
@@ -286,7 +275,7 @@ TEST(Parameters, RefuseEveryOtherKind) {
 TEST(Parameters, AWholeNumberMayBeWrittenWithAPoint) {
   int count = 0;
   const Parameters list = {{"count", &count, 0, 10, "a count"}};
-  read_parameters(Json::parse(R"({"count": 3.0})"), list, "part", false);
+  read_parameters(Json::parse(R"({"count": 3.0})"), list, "part");
   EXPECT_EQ(count, 3);
 }
 

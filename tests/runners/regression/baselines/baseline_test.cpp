@@ -190,7 +190,7 @@ TEST_F(CheckBaseline, WhatTheListDoesNotHave) {
   baseline.subject = "moon";
   expect_uncomparable(baseline, "moon: cannot be read", "remote-touch list");
   baseline.subject = "short.json", baseline.overrides = {"renderer.moon=1"};
-  expect_uncomparable(baseline, "renderer.moon: unknown", "nearest expected");
+  expect_uncomparable(baseline, "renderer.moon: unknown", "did you mean");
   baseline.overrides = {}, baseline.tolerances = {{"moon", {1}}};
   expect_uncomparable(baseline, "tolerance of moon", "no such column");
 }

@@ -1,0 +1,59 @@
+// One resolved configuration as plain data. Its sections are read, checked, written and described as the
+// table in sections.cpp says.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/guidance/guided_renderer.h"
+#include "runners/experiment/catalog.h"
+#include "runners/experiment/frame_stream.h"
+#include "runners/live/devices/safety_gate.h"
+#include "runners/live/loop/live_settings.h"
+#include "runners/operator/simulated_hand.h"
+#include "scenarios/faults/sensor_faults.h"
+
+namespace remote_touch {
+
+// Settings of the run itself.
+struct RunSettings {
+  double duration_s = 0;
+  double haptic_rate_hz = 1000;
+  Transport transport;
+  NoiseKey key;
+  std::string title;
+};
+
+Parameters parameters(RunSettings& s);
+inline std::string validate(const RunSettings&) {
+  return {};
+}
+
+// A catalog entry by its name, with settings.
+template <class Entry>
+struct Part {
+  std::string name;
+  decltype(Entry{}.make()) factory;
+};
+
+struct ExperimentConfiguration {
+  RunSettings run;
+  Part<ScenarioEntry> scenario;
+  std::optional<SensorFaults> faults;
+  std::optional<DepthPipelineSettings> depth_pipeline;
+  std::vector<Part<FixtureEntry>> fixtures;
+  std::optional<GuidanceSettings> guidance;
+  std::vector<SequenceStep> sequence;
+  Part<RendererEntry> renderer;
+  Part<TrajectoryEntry> trajectory;
+  std::optional<OperatorSettings> operator_settings;
+  std::optional<MotorSettings> device;
+  std::optional<LiveSettings> live;
+  std::optional<SafetyLimits> safety;
+
+  std::vector<FixtureValues> fixture_values() const;
+  bool has_guidance() const;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,23 @@
+// Names of version 0.1 that are others since version 0.2, for hints about old files and scripts.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace remote_touch {
+
+// A parameter of an experiment or a sweep, a measure, or a column of a trace.
+struct RenamedName {
+  const char* old_name;
+  const char* new_name;
+};
+
+// Sorted by the old name; some of these have another new name in another section.
+std::span<const RenamedName> renamed_names();
+
+// What old_name is called now, of the names that are known where it was given.
+std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known);
+
+}  // namespace remote_touch
