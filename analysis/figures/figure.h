@@ -43,6 +43,7 @@ struct Claim {
   std::string criterion;  // in words, with numbers
   std::string unit;
   Verdict verdict = Verdict::not_run;
+  bool of_map = false;  // about a whole map: not to be judged on a part of it
 };
 
 // measured within [low, high].

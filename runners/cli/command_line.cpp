@@ -88,8 +88,10 @@ void add_figure(Subcommands& commands) {
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
   command
       ->add_option("--coarse", figure->coarse,
-                   "use every Nth value of the axes of maps: a quick preview whose claims are not judged")
+                   "use every Nth value of the axes of maps: what is claimed of a whole map is not judged")
       ->check(CLI::Range(1, 10));
+  command->add_flag("--quick", figure->quick,
+                    "the same for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
 }
 
 void add_scorecard(Subcommands& commands) {

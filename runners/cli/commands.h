@@ -40,7 +40,8 @@ int command_run(const CommandLine& line, const RunRequest& request);
 struct FigureRequest {
   std::vector<std::string> names;
   std::string folder;
-  int coarse = 1;  // every so manieth value of a map's axes
+  int coarse = 1;      // every so manieth value of a map's axes
+  bool quick = false;  // maps that take minutes coarse
 };
 int command_figure(const CommandLine& line, const FigureRequest& request);
 

@@ -2,15 +2,15 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
+#include "runners/cli/claims_file.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/figure_runs.h"
 #include "runners/cli/progress.h"
-#include "runners/figures/figures.h"
 #include "runners/provenance/provenance.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -18,80 +18,50 @@ namespace remote_touch {
 
 namespace {
 
-// Each once, in the order of the table.
-std::vector<const FigureEntry*> chosen_figures(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
+namespace fs = std::filesystem;
+
+// Each once.
+std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
+  for (const std::string& name : request.names) {
     const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
     if (std::none_of(figures().begin(), figures().end(), is_named))
       throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
   }
-  std::vector<const FigureEntry*> chosen;
+  std::vector<FigureRun> chosen;
   for (const FigureEntry& entry : figures()) {
     const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
-    if (std::any_of(names.begin(), names.end(), names_it)) chosen.push_back(&entry);
+    const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
+    if (std::any_of(request.names.begin(), request.names.end(), names_it)) chosen.push_back({&entry, coarse});
   }
-  return chosen;
+  return quickest_first(chosen);
 }
 
-bool is_judged(const Claim& claim) {
-  return claim.verdict == Verdict::pass || claim.verdict == Verdict::fail;
-}
-
-nlohmann::ordered_json claim_json(const Claim& claim) {
-  const nlohmann::ordered_json none;
-  return {{"figure", claim.figure},
-          {"claim", claim.claim},
-          {"paper", claim.paper},
-          {"measured", std::isfinite(claim.measured) ? nlohmann::ordered_json(claim.measured) : none},
-          {"criterion", claim.criterion},
-          {"unit", claim.unit},
-          {"pass", is_judged(claim) ? nlohmann::ordered_json(claim.verdict == Verdict::pass) : none}};
-}
-
-void print(const Claim& claim) {
+std::string line_of(const Claim& claim) {
   const char* verdict = claim.verdict == Verdict::pass   ? "pass"
                         : claim.verdict == Verdict::fail ? "FAIL"
                         : claim.verdict == Verdict::open ? "open"
                                                          : "not run";
-  std::printf("  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured, claim.unit.c_str(),
-              claim.criterion.c_str());
-}
-
-// The claims that an earlier call left in the folder, of figures that are not made now.
-nlohmann::ordered_json other_claims(const std::filesystem::path& file,
-                                    const std::vector<const FigureEntry*>& chosen) {
-  nlohmann::ordered_json kept = nlohmann::ordered_json::array();
-  std::ifstream in(file);
-  const auto earlier =
-      nlohmann::ordered_json::parse(in, nullptr, false);  // absent or damaged: nothing to keep
-  if (!earlier.is_array()) return kept;
-  for (const auto& claim : earlier) {
-    const auto name = claim.is_object() ? claim.find("figure") : claim.end();
-    if (name == claim.end() || !name->is_string()) continue;
-    const std::string figure = *name;
-    const auto is_made = [&](const FigureEntry* entry) { return figure == entry->name; };
-    if (std::none_of(chosen.begin(), chosen.end(), is_made)) kept.push_back(claim);
-  }
-  return kept;
-}
-
-std::string figure_command(const std::string& name, int coarse) {
-  const std::string whole = "remote-touch figure " + name;
-  return coarse == 1 ? whole : whole + " --coarse " + std::to_string(coarse);
+  char line[1000];
+  std::snprintf(line, sizeof line, "  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured,
+                claim.unit.c_str(), claim.criterion.c_str());
+  return line;
 }
 
 // A share of a coarse map is not that of the whole.
-void leave_unjudged(Figure& figure, int coarse) {
-  figure.caption += " Coarse: about one in " + std::to_string(coarse) +
-                    " values of each axis of the maps, so no claim is judged.";
+void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
+  figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
+                    std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +
+                    std::to_string(coarse) +
+                    " values of each axis. What is claimed of a whole map is not judged.";
   for (Claim& claim : figure.claims) {
+    if (!claim.of_map) continue;
     claim.verdict = Verdict::open;
     claim.criterion += ", not judged on a coarse map";
   }
 }
 
 // A recording that is not there is no failure of the method: the claim says so and the rest goes on.
-Figure make(const FigureEntry& entry, const FigureContext& context) {
+Figure made_or_not_run(const FigureEntry& entry, const FigureContext& context) {
   try {
     return entry.make(context);
   } catch (const MissingRecording& error) {
@@ -101,41 +71,109 @@ Figure make(const FigureEntry& entry, const FigureContext& context) {
   }
 }
 
+// A folder that figures are written into.
+class FigureFolder {
+ public:
+  FigureFolder(const CommandLine& line, const std::string& folder, const std::vector<FigureRun>& runs)
+      : line_(line),
+        folder_(folder),
+        runs_(runs),
+        claims_(make(folder_) / "claims.json", names()),
+        printed_(runs.size()) {
+    write_progress({std::vector<JobProgress>(runs.size()), TimeLeft{std::vector<double>(runs.size()), 0}});
+  }
+  ~FigureFolder() {
+    std::error_code ignored;
+    fs::remove(progress_file(), ignored);
+  }
+
+  void finish(std::size_t run, const FigureContext& context, Figure figure) {
+    std::string command = "remote-touch figure " + figure.name;
+    if (context.made_runs_of_maps() < context.runs_of_maps()) {
+      leave_unjudged(figure, context, runs_[run].coarse);
+      command += " --coarse " + std::to_string(runs_[run].coarse);
+    }
+    const fs::path file = folder_ / ("fig" + figure.name + ".h5");
+    write_figure(file, figure,
+                 provenance(context.configurations(), command, line_.kernels->isa, context.inputs()));
+    claims_.replace(figure.name, figure.claims);
+    printed_[run] = "figure " + figure.name + " -> " + file.string() + "\n";
+    for (const Claim& claim : figure.claims) {
+      printed_[run] += line_of(claim);
+      all_hold_ &= claim.verdict != Verdict::fail;
+    }
+  }
+  // What the figures say is printed in their order, whichever was made first.
+  void report(const FigureProgress& progress, Progress& shown) {
+    for (; next_ < runs_.size() && progress.runs[next_].state == JobState::done; ++next_) {
+      shown.clear();
+      std::fputs(printed_[next_].c_str(), stdout);
+    }
+    std::fflush(stdout);
+    write_progress(progress);
+    shown.update(words(runs_, progress));
+  }
+  bool all_hold() const { return all_hold_; }
+
+ private:
+  static fs::path make(const fs::path& folder) {
+    std::error_code failure;
+    fs::create_directories(folder, failure);
+    if (failure)
+      throw InputError(folder.string(),
+                       "cannot be made (" + failure.message() + "): expected a writable folder");
+    return folder;
+  }
+  static std::vector<std::string> names() {
+    std::vector<std::string> list;
+    for (const FigureEntry& entry : figures()) list.emplace_back(entry.name);
+    return list;
+  }
+  fs::path progress_file() const { return folder_ / "progress.json"; }
+
+  // For scripts/plot --follow: in a program that does not end by itself nothing else says what is still to
+  // come.
+  void write_progress(const FigureProgress& progress) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      const JobState state = progress.runs[i].state;
+      list.push_back({{"name", runs_[i].entry->name},
+                      {"summary", runs_[i].entry->summary},
+                      {"state", state == JobState::waiting   ? "waiting"
+                                : state == JobState::running ? "running"
+                                                             : "done"},
+                      {"left_s", std::round(progress.left.of_job_s[i])}});
+    }
+    const std::string text =
+        nlohmann::ordered_json{{"left_s", std::round(progress.left.all_s)}, {"figures", list}}.dump(1) + "\n";
+    if (text == written_) return;
+    write_file_atomically(progress_file(), text.data(), text.size());
+    written_ = text;
+  }
+
+  const CommandLine& line_;
+  fs::path folder_;
+  const std::vector<FigureRun>& runs_;
+  ClaimsFile claims_;
+  std::vector<std::string> printed_;
+  std::size_t next_ = 0;
+  bool all_hold_ = true;
+  std::string written_;
+};
+
 }  // namespace
 
 int command_figure(const CommandLine& line, const FigureRequest& request) {
-  const auto chosen = chosen_figures(request.names);
-  std::error_code failure;
-  std::filesystem::create_directories(request.folder, failure);
-  if (failure)
-    throw InputError(request.folder,
-                     "cannot be made (" + failure.message() + "): expected a writable folder");
-
-  const auto claims_file = std::filesystem::path(request.folder) / "claims.json";
-  nlohmann::ordered_json claims = other_claims(claims_file, chosen);
-  bool all_hold = true;
-  for (const FigureEntry* entry : chosen) {
-    Progress progress(std::string("figure ") + entry->name, line.quiet);
-    const FigureContext context(
-        *line.kernels, line.stop, [&](double fraction) { progress.update(fraction); }, request.coarse);
-    Figure figure = make(*entry, context);
-    const bool is_coarse = context.has_coarse_map();
-    if (is_coarse) leave_unjudged(figure, request.coarse);
-    const auto file = std::filesystem::path(request.folder) / ("fig" + figure.name + ".h5");
-    write_figure(
-        file, figure,
-        provenance(context.configurations(), figure_command(figure.name, is_coarse ? request.coarse : 1),
-                   line.kernels->isa, context.inputs()));
-    std::printf("figure %s -> %s\n", figure.name.c_str(), file.string().c_str());
-    for (const Claim& claim : figure.claims) {
-      print(claim);
-      claims.push_back(claim_json(claim));
-      all_hold &= claim.verdict != Verdict::fail;
-    }
-    const std::string text = claims.dump(2) + "\n";  // after each figure: an interruption keeps what is done
-    write_file_atomically(claims_file, text.data(), text.size());
-  }
-  return all_hold ? kDone : kCheckFailed;
+  const std::vector<FigureRun> runs = chosen_figures(request);
+  FigureFolder folder(line, request.folder, runs);
+  Progress shown("figures", line.quiet);
+  make_figures(
+      line, runs, made_or_not_run,
+      [&](std::size_t run, const FigureContext& context, Figure figure) {
+        folder.finish(run, context, std::move(figure));
+      },
+      [&](const FigureProgress& progress) { folder.report(progress, shown); });
+  return folder.all_hold() ? kDone : kCheckFailed;
 }
 
 }  // namespace remote_touch

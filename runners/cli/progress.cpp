@@ -15,7 +15,12 @@ Progress::Progress(std::string what, bool quiet)
       last_(start_) {}
 
 Progress::~Progress() {
+  clear();
+}
+
+void Progress::clear() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+  shown_ = false;
 }
 
 bool Progress::is_due() {
@@ -31,6 +36,10 @@ void Progress::show(const std::string& text) {
   std::fprintf(stderr, "%s%s: %s%s", terminal_ ? "\r\033[K" : "", what_.c_str(), text.c_str(),
                terminal_ ? "" : "\n");
   std::fflush(stderr);
+}
+
+void Progress::update(const std::string& text) {
+  if (is_due()) show(text);
 }
 
 void Progress::update(double fraction) {

@@ -13,6 +13,8 @@ class Progress {
   Progress(std::string what, bool quiet);
   ~Progress();
   void update(double fraction);  // 0 to 1
+  void update(const std::string& text);
+  void clear();  // before something else is printed
   // Counted things, earlier ones of them done before this program began.
   void update(std::size_t done, std::size_t total, std::size_t earlier, const char* things);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -11,9 +12,9 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/figure_runs.h"
 #include "runners/cli/progress.h"
 #include "runners/cli/shell_command.h"
-#include "runners/figures/figures.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
 #include "runners/regression/comparison/comparison_text.h"
@@ -208,19 +209,23 @@ class Repro {
                                                               : std::max(1, std::atoi((option + 1)->c_str()));
   }
   ResultComparison figure_again(Progress& progress) const {
-    for (const FigureEntry& entry : figures()) {
-      if (entry.name != of("figure")) continue;
-      const FigureContext context(
-          *line_.kernels, line_.stop, [&](double fraction) { progress.update(fraction); }, coarse());
-      std::vector<Column> columns;
-      for (const Table& table : entry.make(context).tables)
-        for (Column column : table.columns) {
-          column.name = table.name + "/" + column.name;
-          columns.push_back(std::move(column));
-        }
-      return compare_figure(StoredFigure(Hdf5Reader(file_)), ColumnsInMemory(std::move(columns)), {});
-    }
-    throw InputError(file_, "is figure " + of("figure") + ", which this program does not know");
+    const auto is_it = [&](const FigureEntry& entry) { return entry.name == of("figure"); };
+    const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
+    if (entry == figures().end())
+      throw InputError(file_, "is figure " + of("figure") + ", which this program does not know");
+    const std::vector<FigureRun> runs = {{&*entry, coarse()}};
+    std::vector<Column> columns;
+    make_figures(
+        line_, runs, [](const FigureEntry& made, const FigureContext& context) { return made.make(context); },
+        [&](std::size_t, const FigureContext&, Figure figure) {
+          for (Table& table : figure.tables)
+            for (Column& column : table.columns) {
+              column.name = table.name + "/" + column.name;
+              columns.push_back(std::move(column));
+            }
+        },
+        [&](const FigureProgress& made) { progress.update(words(runs, made)); });
+    return compare_figure(StoredFigure(Hdf5Reader(file_)), ColumnsInMemory(std::move(columns)), {});
   }
 
   const CommandLine& line_;

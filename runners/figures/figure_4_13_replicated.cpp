@@ -86,13 +86,13 @@ Figure figure_4_13_replicated(const FigureContext& context) {
                    probability_panel("Without", "map_without_estimate", "contour_without_estimate")};
   figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
   figure.claims = {
-      claim_between("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")), 0.395,
-                    0.455, "fraction"),
-      claim_between("4.13-replicated", "success over the map without the velocity estimate", "-",
-                    mean(numbers(without, "survived")), 0.03, 0.09, "fraction"),
-      claim_at_most("4.13-replicated",
-                    "largest difference of the 50 % contour from the reference, six noise levels", "-",
-                    max_contour_deviation(half), 100, "r_c/s^2"),
+      of_map(claim_between("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")),
+                           0.395, 0.455, "fraction")),
+      of_map(claim_between("4.13-replicated", "success over the map without the velocity estimate", "-",
+                           mean(numbers(without, "survived")), 0.03, 0.09, "fraction")),
+      of_map(claim_at_most("4.13-replicated",
+                           "largest difference of the 50 % contour from the reference, six noise levels", "-",
+                           max_contour_deviation(half), 100, "r_c/s^2")),
   };
   return figure;
 }

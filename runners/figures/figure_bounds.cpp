@@ -133,17 +133,18 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
                     rms_from_print(thickness), 3e-4, "m"),
       claim_at_most("bounds", "refitted normal error against (4.24), largest factor from r_c/2 to 2 r_c",
                     "(4.24)", max_factor_from_print(normal_error), 3, "1"),
-      claim_at_least("bounds", "pop-throughs that (4.17) foresees at their update", "exact if all were known",
-                     criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "fraction"),
-      claim_at_least("bounds", "updates without pop-through at which (4.17) holds", "exact if all were known",
-                     criterion.holds_stays / (criterion.holds_stays + criterion.fails_stays), 0.98,
-                     "fraction"),
-      claim_between("bounds", "cells in which (4.25) as printed and the outcome agree", "a bit loose",
-                    agreement_of(bounds.front(), map).fraction(), 0.75, 0.85, "fraction"),
-      claim_at_least("bounds", "cells in which the bound with scatter and the outcome agree", "-",
-                     agreement_of(bounds.back(), map).fraction(), 0.87, "fraction"),
-      claim_at_most("bounds", "safe cells of the bound with scatter that popped through", "-",
-                    agreement_of(bounds.back(), map).safe_popped, 0.15, "fraction"),
+      of_map(claim_at_least(
+          "bounds", "pop-throughs that (4.17) foresees at their update", "exact if all were known",
+          criterion.fails_pops / (criterion.fails_pops + criterion.holds_pops), 0.7, "fraction")),
+      of_map(claim_at_least(
+          "bounds", "updates without pop-through at which (4.17) holds", "exact if all were known",
+          criterion.holds_stays / (criterion.holds_stays + criterion.fails_stays), 0.98, "fraction")),
+      of_map(claim_between("bounds", "cells in which (4.25) as printed and the outcome agree", "a bit loose",
+                           agreement_of(bounds.front(), map).fraction(), 0.75, 0.85, "fraction")),
+      of_map(claim_at_least("bounds", "cells in which the bound with scatter and the outcome agree", "-",
+                            agreement_of(bounds.back(), map).fraction(), 0.87, "fraction")),
+      of_map(claim_at_most("bounds", "safe cells of the bound with scatter that popped through", "-",
+                           agreement_of(bounds.back(), map).safe_popped, 0.15, "fraction")),
   };
 }
 

@@ -11,6 +11,7 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/experiment.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/schedule/side_by_side.h"
 #include "runners/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 
@@ -23,9 +24,9 @@ inline constexpr double kContactRadius_m = 0.005;
 class FigureContext {
  public:
   // coarse: every so manieth value of the axes of maps, to look at; 1 for the whole.
-  FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, std::function<void(double)> progress,
-                int coarse = 1)
-      : kernels_(kernels), stop_(stop), progress_(std::move(progress)), coarse_(coarse) {}
+  FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, int coarse = 1,
+                SideBySide runs = side_by_side)
+      : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
 
   Trace run(const Experiment& experiment) const;
   // For an experiment whose frames are used without a run.
@@ -44,8 +45,9 @@ class FigureContext {
   }
   // A stored sweep that has thousands of runs, for the two calls below.
   Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // Whether one was asked for that is coarse: no claim can be judged then.
-  bool has_coarse_map() const { return has_coarse_map_; }
+  // Of all maps that were asked for: the runs that they have, and how many of them are made.
+  std::size_t runs_of_maps() const { return runs_of_maps_; }
+  std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
   // Every run of a sweep; throws InputError when one failed.
   SweepResult sweep(const Sweep& sweep) const;
   // What of(trace) gives for each run of a sweep's plan, in its order.
@@ -65,23 +67,22 @@ class FigureContext {
   std::string inputs() const { return inputs_.text(); }
 
  private:
-  Trace simulated(const Experiment& experiment, std::function<void(double)> progress = {}) const;
+  Trace simulated(const Experiment& experiment) const;
   template <class Work>
   auto collect(std::size_t count, Work&& work) const {
     std::vector<decltype(work(std::size_t{}))> results(count);
-    for_each(count, [&](std::size_t i) { results[i] = work(i); });
+    runs_(count, [&](std::size_t i) { results[i] = work(i); });
     return results;
   }
-  void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
   void note(const std::string& configuration) const { configurations_.push_back(configuration); }
 
   mutable std::vector<std::string> configurations_;
   mutable InputHashes inputs_;
   const Kernels& kernels_;
   const std::atomic<bool>* stop_;
-  std::function<void(double)> progress_;
   int coarse_;
-  mutable bool has_coarse_map_ = false;
+  SideBySide runs_;
+  mutable std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
 
 // A new figure is one file and one line in figures.cpp. May throw InputError: the figure is then reported as
@@ -90,6 +91,9 @@ struct FigureEntry {
   const char* name;
   const char* summary;
   Figure (*make)(const FigureContext& context);
+  double expected_s;     // what it takes of one thread, for the order of figures and the time left
+  bool has_map = false;  // most of that is the map
+  int quick_coarse = 1;  // how coarse its maps are where it has to be quick
 };
 std::span<const FigureEntry> figures();
 

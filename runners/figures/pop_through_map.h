@@ -8,6 +8,7 @@
 
 #include "analysis/figures/figure.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "runners/figures/figures.h"
 #include "analysis/theory/pop_through_bound.h"
 
 namespace remote_touch {
@@ -39,6 +40,12 @@ Table bound_table();  // that, named "bound"
 
 // A map's panel: x noise, y acceleration, the same ranges in all figures.
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
+
+// A claim about a whole map.
+inline Claim of_map(Claim claim) {
+  claim.of_map = true;
+  return claim;
+}
 
 double mean(const std::vector<double>& values);
 

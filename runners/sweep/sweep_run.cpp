@@ -34,15 +34,12 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
 
 void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
   const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
-  const auto count = static_cast<long>(runs.size());
   std::exception_ptr failure;
   std::mutex one_at_a_time;
   std::atomic<bool> ends{false};
-  // An exception must not leave the loop, it would end the program.
-#pragma omp parallel for schedule(dynamic)
-  for (long i = 0; i < count; ++i) {
-    if (ends) continue;
-    const std::size_t run = runs[static_cast<std::size_t>(i)];
+  options.runs(runs.size(), [&](std::size_t i) {
+    if (ends) return;
+    const std::size_t run = runs[i];
     try {
       do_run(sweep, options, run, result);
       const std::lock_guard lock(one_at_a_time);
@@ -51,7 +48,7 @@ void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOpti
       const std::lock_guard lock(one_at_a_time);
       if (!ends.exchange(true)) failure = std::current_exception();
     }
-  }
+  });
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -6,6 +6,7 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "core/kernels/kernels.h"
+#include "runners/schedule/side_by_side.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {
@@ -14,6 +15,7 @@ struct SweepRunOptions {
   const Kernels* kernels = nullptr;                    // null: the machine's best
   const std::atomic<bool>* stop = nullptr;             // when set, the sweep ends with Interrupted
   std::function<void(std::size_t run)> finished = {};  // one call at a time; what it throws ends the sweep
+  SideBySide runs = side_by_side;                      // how runs share threads
 };
 
 // Does every pending run, in parallel; bits do not depend on threads or order. A run that fails is marked and

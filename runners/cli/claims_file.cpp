@@ -1,0 +1,57 @@
+#include "runners/cli/claims_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <utility>
+
+#include "analysis/storage/atomic_file.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_judged(const Claim& claim) {
+  return claim.verdict == Verdict::pass || claim.verdict == Verdict::fail;
+}
+
+Json claim_json(const Claim& claim) {
+  const Json none;
+  return {{"figure", claim.figure},
+          {"claim", claim.claim},
+          {"paper", claim.paper},
+          {"measured", std::isfinite(claim.measured) ? Json(claim.measured) : none},
+          {"criterion", claim.criterion},
+          {"unit", claim.unit},
+          {"pass", is_judged(claim) ? Json(claim.verdict == Verdict::pass) : none}};
+}
+
+}  // namespace
+
+ClaimsFile::ClaimsFile(std::filesystem::path file, std::vector<std::string> order)
+    : file_(std::move(file)), order_(std::move(order)), claims_(order_.size() + 1, Json::array()) {
+  std::ifstream in(file_);
+  const Json earlier = Json::parse(in, nullptr, false);  // absent or damaged: nothing to keep
+  if (!earlier.is_array()) return;
+  for (const auto& claim : earlier) {
+    const auto name = claim.is_object() ? claim.find("figure") : claim.end();
+    if (name == claim.end() || !name->is_string()) continue;
+    const auto place = std::find(order_.begin(), order_.end(), name->get<std::string>());
+    claims_[static_cast<std::size_t>(place - order_.begin())].push_back(claim);
+  }
+}
+
+void ClaimsFile::replace(const std::string& figure, std::span<const Claim> claims) {
+  const auto place = std::find(order_.begin(), order_.end(), figure);
+  Json& own = claims_[static_cast<std::size_t>(place - order_.begin())];
+  own = Json::array();
+  for (const Claim& claim : claims) own.push_back(claim_json(claim));
+  Json all = Json::array();
+  for (const Json& of_figure : claims_) all.insert(all.end(), of_figure.begin(), of_figure.end());
+  const std::string text = all.dump(2) + "\n";
+  write_file_atomically(file_, text.data(), text.size());
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+// Figures made side by side, with progress.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "runners/cli/commands.h"
+#include "runners/figures/figures.h"
+#include "runners/schedule/time_left.h"
+
+namespace remote_touch {
+
+struct FigureRun {
+  const FigureEntry* entry;
+  int coarse = 1;  // its maps
+
+  double expected_s() const {
+    return entry->has_map ? entry->expected_s / (coarse * coarse) : entry->expected_s;
+  }
+};
+
+// How far they are, by run.
+struct FigureProgress {
+  std::vector<JobProgress> runs;
+  TimeLeft left;
+};
+
+// In the order in which they begin: the quickest first.
+std::vector<FigureRun> quickest_first(const std::vector<FigureRun>& runs);
+
+// make: of one run. finish: takes the figure of a run, one at a time, in any order, on the thread that made
+// it. report: called twice a second by the calling thread, and once at the end. Both may throw. Where a
+// figure fails the others are made all the same; then throws what the first of them, in their order, threw.
+void make_figures(
+    const CommandLine& line, const std::vector<FigureRun>& runs,
+    const std::function<Figure(const FigureEntry& entry, const FigureContext& context)>& make,
+    const std::function<void(std::size_t run, const FigureContext& context, Figure figure)>& finish,
+    const std::function<void(const FigureProgress& progress)>& report);
+
+// Eye and terminal: "figures: 12 of 23 made, at work on 4.13 and bounds, 85 s left".
+std::string words(const std::vector<FigureRun>& runs, const FigureProgress& progress);
+
+}  // namespace remote_touch
