@@ -10,7 +10,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // 0 / 0 has the sign that a machine likes
 
 bool has_force(const Trace& trace, std::size_t i) {
-  return !trace.force(i).isZero(0);
+  return !trace.force_N[i].isZero(0);
 }
 
 // Mean of what value(i) gives for the ticks that end in contact and have a known truth; height is that of the
@@ -42,7 +42,7 @@ double rms_force_change_N(const Trace& trace, bool at_updates) {
   double squares = 0, count = 0;
   for (std::size_t i = 1; i < trace.length(); ++i) {
     if (trace.frame_update(i) != at_updates || !has_force(trace, i) || !has_force(trace, i - 1)) continue;
-    squares += (trace.force(i) - trace.force(i - 1)).squaredNorm(), ++count;
+    squares += (trace.force_N[i] - trace.force_N[i - 1]).squaredNorm(), ++count;
   }
   return count == 0 ? kNone : std::sqrt(squares / count);
 }
@@ -98,7 +98,7 @@ double force_noise_N(const Trace& trace) {
 double energy_injected_J(const Trace& trace) {
   double energy_J = 0;
   for (std::size_t i = 0; i + 1 < trace.length(); ++i)
-    energy_J += trace.force(i).dot(trace.hip(i + 1) - trace.hip(i));
+    energy_J += trace.force_N[i].dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
   return energy_J;
 }
 

@@ -104,8 +104,8 @@ double rms_surface_error_m(const Trace& trace) {
 double max_force_jump_N(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 1; i < trace.length(); ++i) {
-    if (!trace.frame_update(i) || trace.force(i).isZero(0) || trace.force(i - 1).isZero(0)) continue;
-    max = std::max(max, (trace.force(i) - trace.force(i - 1)).norm());
+    if (!trace.frame_update(i) || trace.force_N[i].isZero(0) || trace.force_N[i - 1].isZero(0)) continue;
+    max = std::max(max, (trace.force_N[i] - trace.force_N[i - 1]).norm());
   }
   return max;
 }
@@ -115,7 +115,7 @@ double no_force_fraction(const Trace& trace, double contact_radius_m) {
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (!pressing(trace, i, contact_radius_m)) continue;
     ++pressed;
-    silent += trace.force(i).isZero(0) ? 1 : 0;
+    silent += trace.force_N[i].isZero(0) ? 1 : 0;
   }
   return pressed == 0 ? 0 : static_cast<double>(silent) / static_cast<double>(pressed);
 }
@@ -137,17 +137,17 @@ double unconverged_fraction(const Trace& trace) {
 double non_finite_fraction(const Trace& trace) {
   return fraction(trace, [&](std::size_t i) {
     const bool tool = !trace.has_tool() ||
-                      (trace.torque(i).allFinite() && trace.tool_orientation_at(i).coeffs().allFinite());
+                      (trace.torque_Nm[i].allFinite() && trace.tool_orientation[i].coeffs().allFinite());
     const bool hand =
-        !trace.has_hand() || (trace.device_force(i).allFinite() && trace.device_torque(i).allFinite());
-    return !trace.proxy(i).allFinite() || !trace.force(i).allFinite() || !trace.normal_at(i).allFinite() ||
-           !tool || !hand;
+        !trace.has_hand() || (trace.device_force_N[i].allFinite() && trace.device_torque_Nm[i].allFinite());
+    return !trace.proxy_position_m[i].allFinite() || !trace.force_N[i].allFinite() ||
+           !trace.normal[i].allFinite() || !tool || !hand;
   });
 }
 
 double max_force_N(const Trace& trace) {
   double max = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force(i).norm());
+  for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force_N[i].norm());
   return max;
 }
 

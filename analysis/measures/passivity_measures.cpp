@@ -12,7 +12,7 @@ constexpr double kNoCycle = std::numeric_limits<double>::quiet_NaN();
 
 // From tick i until the next.
 double work_J(const Trace& trace, std::size_t i) {
-  return trace.force(i).dot(trace.hip(i + 1) - trace.hip(i));
+  return trace.force_N[i].dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
 }
 
 // Of each piece that begins and ends with an update and has a force.
@@ -25,7 +25,7 @@ std::vector<double> work_between_updates_J(const Trace& trace) {
       if (begun && felt) pieces.push_back(work);
       work = 0, begun = true, felt = false;
     }
-    felt |= !trace.force(i).isZero(0);
+    felt |= !trace.force_N[i].isZero(0);
     if (i + 1 < trace.length()) work += work_J(trace, i);
   }
   return pieces;

@@ -5,13 +5,13 @@ namespace remote_touch {
 namespace {
 
 double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
-  return trace.proxy(i).dot(normal) - trace.signed_distance_m[i];
+  return trace.proxy_position_m[i].dot(normal) - trace.signed_distance_m[i];
 }
 
 // The normal that (4.3) used; where it moved nothing, the one that the tick ended with.
 Vec3 normal_of_update(const Trace& trace, std::size_t first_tick) {
-  const Vec3 frame_correction = trace.frame_correction(first_tick);
-  return frame_correction.isZero(0) ? trace.normal_at(first_tick - 1) : Vec3(frame_correction.normalized());
+  const Vec3 frame_correction = trace.frame_correction_m[first_tick];
+  return frame_correction.isZero(0) ? trace.normal[first_tick - 1] : Vec3(frame_correction.normalized());
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, dou
     update.estimate_m_per_s = trace.surface_velocity_m_per_s[i - 1];
     update.thickness_m = trace.signed_distance_m[i - 1] - r1_m;
     update.normal_error = 1 - normal.dot(normal_of_update(trace, i));
-    update.frame_correction_m = trace.frame_correction(i).dot(normal);
+    update.frame_correction_m = trace.frame_correction_m[i].dot(normal);
     update.above_before = trace.signed_distance_m[i - 1] > 0;
     updates.push_back(update);
   }

@@ -37,7 +37,8 @@ void add_lists(Subcommands& commands) {
   commands.add("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
                command_list);
   auto [describe, described] =
-      commands.add("describe", "describe parameters: range, default, meaning", command_describe);
+      commands.add("describe", "describe parameters: range, default, meaning; `trace`: columns of a trace",
+                   command_describe);
   describe->add_option("name", described->name, "a name from `remote-touch list`")->required();
   auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
   inspect->add_option("file", inspected->file, "an HDF5 file")->required();

@@ -1,7 +1,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "analysis/measures/measures.h"
+#include "analysis/trace/trace.h"
 #include "core/tool/mesh/generated_tools.h"
 #include "runners/cli/commands.h"
 #include "runners/experiment/experiment.h"
@@ -121,6 +124,43 @@ bool describe_tool(const std::string& name) {
   return true;
 }
 
+const char* runs_with(TracePart part) {
+  switch (part) {
+    case TracePart::always:
+      break;
+    case TracePart::tool:
+      return "In a run with a tool:";
+    case TracePart::guidance:
+      return "In a run with guidance or a sequence:";
+    case TracePart::hand:
+      return "In a run with an operator or a device:";
+  }
+  return "In every run:";
+}
+
+void print(const TraceColumn& column) {
+  std::string meaning = column.meaning;
+  for (std::size_t i = 0; i < column.value_names.size(); ++i)
+    meaning += (i == 0 ? ": " : ", ") + std::to_string(i) + " " + column.value_names[i];
+  std::printf("  %-24s %-4s x %d  %s\n", column.name, column.unit, column.width, meaning.c_str());
+  if (std::string_view(column.meaning) != column.meaning_with_tool)
+    std::printf("  %-24s            with a tool: %s\n", "", column.meaning_with_tool);
+}
+
+// What runs store, in the order of the file.
+bool describe_trace(const std::string& name) {
+  if (name != "trace") return false;
+  std::puts(
+      "trace: what a run records: a row for each tick. Columns with unit, numbers in a row and meaning:");
+  std::optional<TracePart> part;
+  for (const TraceColumn& column : trace_columns()) {
+    if (part != column.part) std::puts(runs_with(column.part));
+    part = column.part;
+    print(column);
+  }
+  return true;
+}
+
 }  // namespace
 
 int command_describe(const CommandLine&, const DescribeRequest& request) {
@@ -131,6 +171,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   found |= describe_sweep(name);
   found |= describe_method(name);
   found |= describe_scene(name);
+  found |= describe_trace(name);
   found |= describe_tool(name);
   for (const FigureEntry& entry : figures())
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;

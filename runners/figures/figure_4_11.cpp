@@ -14,7 +14,7 @@ constexpr double kShell_m = 1e-5;
 // First tick in which the HIP is below the surface.
 std::size_t jump_tick(const Trace& trace) {
   std::size_t i = 0;
-  while (i + 1 < trace.length() && trace.hip(i).y() >= 0) ++i;
+  while (i + 1 < trace.length() && trace.hip_position_m[i].y() >= 0) ++i;
   return i;
 }
 
@@ -22,7 +22,7 @@ Table heights(const Trace& trace) {
   std::vector<double> time, hip, proxy;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     time.push_back(trace.time_s[i]);
-    hip.push_back(trace.hip(i).y()), proxy.push_back(trace.proxy(i).y());
+    hip.push_back(trace.hip_position_m[i].y()), proxy.push_back(trace.proxy_position_m[i].y());
   }
   Table table{"heights", "height of HIP and proxy"};
   table.add("time", "s", "simulated time", time);

@@ -14,8 +14,8 @@ Table heights_per_update(const Trace& trace) {
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (i + 1 < trace.length() && !trace.frame_update(i + 1)) continue;
     frame.push_back(trace.frame_index[i]);
-    proxy.push_back(trace.proxy(i).y());
-    plane.push_back(trace.proxy(i).y() - trace.signed_distance_m[i]);
+    proxy.push_back(trace.proxy_position_m[i].y());
+    plane.push_back(trace.proxy_position_m[i].y() - trace.signed_distance_m[i]);
   }
   Table table{"updates", "height before each update of the cloud"};
   table.add("frame", "1", "number of the frame", frame);

@@ -64,8 +64,8 @@ Slide slide_of(const Trace& trace) {
     if (trace.time_s[i] < kSettled_s) continue;
     const double height = trace.signed_distance_m[i] / kContactRadius_m - 1;
     n += 1, sum += height, squares += height * height;
-    if (!trace.frame_update(i) || trace.force(i).isZero(0) || trace.force(i - 1).isZero(0)) continue;
-    jumps += (trace.force(i) - trace.force(i - 1)).squaredNorm(), updates += 1;
+    if (!trace.frame_update(i) || trace.force_N[i].isZero(0) || trace.force_N[i - 1].isZero(0)) continue;
+    jumps += (trace.force_N[i] - trace.force_N[i - 1]).squaredNorm(), updates += 1;
   }
   const double mean_height = sum / n;
   return {mean_height, std::sqrt(std::max(0.0, squares / n - mean_height * mean_height)),
@@ -125,8 +125,8 @@ double ticks_that_differ(const FigureContext& context, const char* experiment) {
               ours = context.run(Experiment::load(experiment, {kTracked}));
   double count = 0;
   for (std::size_t i = 0; i < paper.length(); ++i)
-    count += paper.proxy(i) != ours.proxy(i) || paper.force(i) != ours.force(i) ||
-                     paper.normal_at(i) != ours.normal_at(i)
+    count += paper.proxy_position_m[i] != ours.proxy_position_m[i] || paper.force_N[i] != ours.force_N[i] ||
+                     paper.normal[i] != ours.normal[i]
                  ? 1
                  : 0;
   return count;

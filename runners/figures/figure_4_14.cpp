@@ -86,14 +86,17 @@ std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace,
   const PointCloud cloud = scenario.cloud(0);
   std::vector<double> x, y;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (std::abs(cloud.z[i] - trace.hip(0).z()) < 1e-6) x.push_back(cloud.x[i]), y.push_back(cloud.y[i]);
+    if (std::abs(cloud.z[i] - trace.hip_position_m[0].z()) < 1e-6)
+      x.push_back(cloud.x[i]), y.push_back(cloud.y[i]);
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (std::abs(trace.proxy(i).x() - valley_x) < std::abs(trace.proxy(nearest).x() - valley_x)) nearest = i;
+    if (std::abs(trace.proxy_position_m[i].x() - valley_x) <
+        std::abs(trace.proxy_position_m[nearest].x() - valley_x))
+      nearest = i;
   Table points{"points", "one row of the grid"}, ball{"ball", "the proxy in a valley"};
   points.add("x", "m", "position", x), points.add("y", "m", "height", y);
-  ball.add("x", "m", "position", {trace.proxy(nearest).x()}),
-      ball.add("y", "m", "height", {trace.proxy(nearest).y()});
+  ball.add("x", "m", "position", {trace.proxy_position_m[nearest].x()}),
+      ball.add("y", "m", "height", {trace.proxy_position_m[nearest].y()});
   return {points, ball};
 }
 

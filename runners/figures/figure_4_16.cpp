@@ -16,9 +16,10 @@ namespace {
 Table path_table(const std::string& name, const Trace& trace, int along, int up) {
   std::vector<double> proxy_along, proxy_up, hip_along, hip_up, force;
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    proxy_along.push_back(trace.proxy(i)[along]), proxy_up.push_back(trace.proxy(i)[up]);
-    hip_along.push_back(trace.hip(i)[along]), hip_up.push_back(trace.hip(i)[up]);
-    force.push_back(trace.force(i).norm());
+    proxy_along.push_back(trace.proxy_position_m[i][along]),
+        proxy_up.push_back(trace.proxy_position_m[i][up]);
+    hip_along.push_back(trace.hip_position_m[i][along]), hip_up.push_back(trace.hip_position_m[i][up]);
+    force.push_back(trace.force_N[i].norm());
   }
   Table table{name, "paths of HIP and proxy, and the force"};
   table.add("time", "s", "simulated time", trace.time_s);
@@ -71,10 +72,10 @@ void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
 
 // Limits around a path, so that far points do not shrink it.
 std::pair<double, double> around(const Trace& trace, int axis) {
-  double low = trace.hip(0)[axis], high = low;
+  double low = trace.hip_position_m[0][axis], high = low;
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    low = std::min({low, trace.hip(i)[axis], trace.proxy(i)[axis]});
-    high = std::max({high, trace.hip(i)[axis], trace.proxy(i)[axis]});
+    low = std::min({low, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
+    high = std::max({high, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
   }
   return {low - 0.03, high + 0.03};
 }
@@ -120,7 +121,7 @@ void add_scan(Figure& figure, const FigureContext& context, const char* name, co
   const Experiment experiment = Experiment::load(name);
   const Trace trace = context.run(experiment);
   const PointCloud cloud = experiment.build_scenario(kernels_for(Isa::x86_64))->cloud(0);
-  const Vec3 middle = trace.hip(trace.length() / 2);
+  const Vec3 middle = trace.hip_position_m[trace.length() / 2];
   const double slope = middle.y() / middle.z();  // of the plane through the camera and the scanned row
   figure.tables.push_back(path_table(table, trace, 0, 2));
   figure.tables.push_back(slice_table(

@@ -15,8 +15,8 @@ constexpr double kStiffness_N_per_m = 600;
 Table distances(const Trace& trace) {
   std::vector<double> proxy, hip, force;
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    proxy.push_back(trace.proxy(i).norm()), hip.push_back(trace.hip(i).norm());
-    force.push_back(trace.force(i).norm());
+    proxy.push_back(trace.proxy_position_m[i].norm()), hip.push_back(trace.hip_position_m[i].norm());
+    force.push_back(trace.force_N[i].norm());
   }
   Table table{"distances", "distances to the point, and the force"};
   table.add("time", "s", "simulated time", trace.time_s);
@@ -39,7 +39,8 @@ double entrenched_ticks(const Trace& trace) {
 double max_gap_outside(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (trace.hip(i).norm() > kBoundary_m) max = std::max(max, (trace.proxy(i) - trace.hip(i)).norm());
+    if (trace.hip_position_m[i].norm() > kBoundary_m)
+      max = std::max(max, (trace.proxy_position_m[i] - trace.hip_position_m[i]).norm());
   return max;
 }
 
@@ -48,9 +49,9 @@ double max_gap_outside(const Trace& trace) {
 double max_force_error(const Trace& trace) {
   double max = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double depth = kFixtureRadius_m - trace.hip(i).norm();
+    const double depth = kFixtureRadius_m - trace.hip_position_m[i].norm();
     if (depth <= 0) continue;
-    max = std::max(max, std::abs(trace.force(i).norm() - kStiffness_N_per_m * depth));
+    max = std::max(max, std::abs(trace.force_N[i].norm() - kStiffness_N_per_m * depth));
   }
   return max;
 }

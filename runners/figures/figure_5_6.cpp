@@ -21,13 +21,13 @@ struct Crossing {
 Crossing crossing(const Trace& trace) {
   Crossing c;
   for (std::size_t i = 1; i < trace.length(); ++i) {
-    if (!(trace.hip(i).x() > trace.hip(i - 1).x())) continue;
+    if (!(trace.hip_position_m[i].x() > trace.hip_position_m[i - 1].x())) continue;
     const Vec3 contact = contact_point(trace, i, kContactRadius_m);
-    const double stretch = (trace.hip(i) - trace.proxy(i)).norm() - kContactRadius_m;
-    c.hip_x.push_back(trace.hip(i).x()), c.hip_y.push_back(trace.hip(i).y());
-    c.proxy_y.push_back(trace.proxy(i).y());
+    const double stretch = (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm() - kContactRadius_m;
+    c.hip_x.push_back(trace.hip_position_m[i].x()), c.hip_y.push_back(trace.hip_position_m[i].y());
+    c.proxy_y.push_back(trace.proxy_position_m[i].y());
     c.contact_x.push_back(contact.x()), c.contact_y.push_back(contact.y());
-    c.force.push_back(trace.force(i).norm());
+    c.force.push_back(trace.force_N[i].norm());
     c.stiffness.push_back(c.force.back() / stretch);
   }
   return c;

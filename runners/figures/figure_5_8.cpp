@@ -23,7 +23,8 @@ const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
 
 // Distance of the proxy to the surface as the newest frame shows it, beyond r_f + r_c.
 double from_seen_m(const FixtureRun& run, std::size_t i) {
-  return run.scenario->signed_distance(run.trace.proxy(i), run.frame_captured_s(i)) - run.boundary_m(i);
+  return run.scenario->signed_distance(run.trace.proxy_position_m[i], run.frame_captured_s(i)) -
+         run.boundary_m(i);
 }
 
 // The same to the surface as it is in that very tick.
@@ -78,7 +79,8 @@ double growth_m_per_s(const FixtureRun& run) {
 }
 
 double surface_height_m(const FixtureRun& run, std::size_t i, double time_s) {
-  return run.scenario->surface_height(run.trace.proxy(i).x(), run.trace.proxy(i).z(), time_s);
+  return run.scenario->surface_height(run.trace.proxy_position_m[i].x(), run.trace.proxy_position_m[i].z(),
+                                      time_s);
 }
 
 double max_speed_m_per_s(const FixtureRun& run) {
@@ -117,9 +119,9 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
   const Trace& trace = run.trace;
   std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
-    rows.push_back({trace.time_s[i], trace.hip(i).y(), trace.proxy(i).y(),
+    rows.push_back({trace.time_s[i], trace.hip_position_m[i].y(), trace.proxy_position_m[i].y(),
                     surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
-                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force(i).norm()});
+                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force_N[i].norm()});
   }
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},

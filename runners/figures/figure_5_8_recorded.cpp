@@ -29,10 +29,10 @@ Table frame_table(const RecordedRun& r) {
   for (const FrameOutcome& frame : r.frames) {
     const std::size_t i = frame.tick;
     const Trace& trace = r.run.trace;
-    rows.push_back({trace.time_s[i], static_cast<double>(trace.frame_index[i]), trace.hip(i).z(),
-                    trace.proxy(i).z(), frame.nearest_distance_m, r.run.boundary_m(i),
+    rows.push_back({trace.time_s[i], static_cast<double>(trace.frame_index[i]), trace.hip_position_m[i].z(),
+                    trace.proxy_position_m[i].z(), frame.nearest_distance_m, r.run.boundary_m(i),
                     frame.nearest_distance_m - r.run.boundary_m(i), trace.signed_distance_m[i],
-                    frame.hidden_m, frame.camera_motion_m, frame.surface_motion_m, trace.force(i).norm()});
+                    frame.hidden_m, frame.camera_motion_m, frame.surface_motion_m, trace.force_N[i].norm()});
   }
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},

@@ -32,11 +32,11 @@ double rotated_deg(const Eigen::Quaterniond& q) {
 }
 
 double device_deg(const Trace& trace, std::size_t i) {
-  return rotated_deg(trace.hip_orientation_at(i));
+  return rotated_deg(trace.hip_orientation[i]);
 }
 
 double tool_deg(const Trace& trace, std::size_t i) {
-  return rotated_deg(trace.tool_orientation_at(i));
+  return rotated_deg(trace.tool_orientation[i]);
 }
 
 // Where the device has turned farthest.
@@ -57,7 +57,7 @@ bool agrees(const Trace& t, std::size_t i) {
 
 // On its way into the box and out of it, the device is not turned.
 bool moves_along(const Trace& t, std::size_t i) {
-  return rotation_vector(t.hip_orientation_at(i)).norm() < kAgree_rad;
+  return rotation_vector(t.hip_orientation[i]).norm() < kAgree_rad;
 }
 
 bool any_count(const Trace& t, std::size_t i) {
@@ -76,10 +76,10 @@ Table motion_table(const BoxRun& run) {
   const Trace& t = run.trace;
   std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < t.length(); i += kTableStride_6_3)
-    rows.push_back({t.time_s[i], t.hip(i).y() - t.hip(0).y(), t.proxy(i).y() - t.hip(0).y(), device_deg(t, i),
-                    tool_deg(t, i), static_cast<double>(t.contact_count[i]),
-                    static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
-                    t.force(i).norm(), t.torque(i).norm()});
+    rows.push_back({t.time_s[i], t.hip_position_m[i].y() - t.hip_position_m[0].y(),
+                    t.proxy_position_m[i].y() - t.hip_position_m[0].y(), device_deg(t, i), tool_deg(t, i),
+                    static_cast<double>(t.contact_count[i]), static_cast<double>(t.active_constraints[i]),
+                    static_cast<double>(t.contact_clusters[i]), t.force_N[i].norm(), t.torque_Nm[i].norm()});
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
       {"device_y", "m", "displacement of the device along y from its start"},
@@ -140,7 +140,8 @@ std::vector<BoxRun> box_runs(const FigureContext& context) {
 double max_gap_untouched_m(const Trace& t) {
   double gap = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
-    if (t.contact_count[i] == 0) gap = std::max(gap, std::abs(t.hip(i).y() - t.proxy(i).y()));
+    if (t.contact_count[i] == 0)
+      gap = std::max(gap, std::abs(t.hip_position_m[i].y() - t.proxy_position_m[i].y()));
   return gap;
 }
 

@@ -79,7 +79,7 @@ Table touch_table(const TouchRun& run) {
                     lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
                     static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
                     t.tool_penetration_m[i], static_cast<double>(t.detections[i]),
-                    static_cast<double>(t.budget_exhausted[i]), t.force(i).norm(), t.torque(i).norm()});
+                    static_cast<double>(t.budget_exhausted[i]), t.force_N[i].norm(), t.torque_Nm[i].norm()});
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
       {"frame", "1", "frame in use"},
@@ -187,7 +187,7 @@ void add_claims(Figure& figure, const TouchRun& run) {
       fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }), 0.9,
       "fraction"));
   claim(claim_at_least(name, words + "largest distance from tool to device", "-", max_lag_m(t), 0.005, "m"));
-  claim(claim_at_most(name, words + "force at the end", "0", t.force(t.length() - 1).norm(), 0, "N"));
+  claim(claim_at_most(name, words + "force at the end", "0", t.force_N[t.length() - 1].norm(), 0, "N"));
 }
 
 Table summary_table(const std::vector<TouchRun>& runs) {

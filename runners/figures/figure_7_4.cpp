@@ -23,7 +23,7 @@ const char* const kOffCentre =
 int pushes(const Trace& t) {
   int count = 0;
   for (std::size_t i = 1; i < t.length(); ++i)
-    if (t.force(i).norm() > 0.1 && t.force(i - 1).norm() <= 0.1) ++count;
+    if (t.force_N[i].norm() > 0.1 && t.force_N[i - 1].norm() <= 0.1) ++count;
   return count;
 }
 
@@ -31,14 +31,15 @@ int pushes(const Trace& t) {
 double max_free_force_N(const Trace& t) {
   double max = 0;
   for (std::size_t i = 0; i < t.length(); ++i)
-    if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0) max = std::max(max, t.force(i).norm());
+    if (std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0)
+      max = std::max(max, t.force_N[i].norm());
   return max;
 }
 
 double max_torque_Nm(const Trace& t, double from_s, double until_s) {
   double max = 0;
   for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
-    max = std::max(max, t.torque(i).norm());
+    max = std::max(max, t.torque_Nm[i].norm());
   return max;
 }
 
@@ -49,7 +50,7 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   figure.claims.push_back(claim_between(figure.name, "device behind the tool, pushed to the " + valve, "-",
                                         lag_m(t, held), 0.018, 0.022, "m"));
   figure.claims.push_back(
-      claim_between(figure.name, "force there", "rises when pushed", t.force(held).norm(), 5, 8, "N"));
+      claim_between(figure.name, "force there", "rises when pushed", t.force_N[held].norm(), 5, 8, "N"));
   figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
                                          "rises when pushed", max_torque_Nm(t, held_s - 1, held_s + 1), 0.01,
                                          "N m"));
@@ -64,7 +65,7 @@ void add_claims(Figure& figure, const ValveTask& task) {
   claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
   for (const double free_s : {0.25, kBetween_s, t.time_s.back()})
     claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
-                        t.force(tick_of(t, free_s)).norm(), 0, "N"));
+                        t.force_N[tick_of(t, free_s)].norm(), 0, "N"));
   add_push_claims(figure, task, "left", kHeldLeft_s);
   add_push_claims(figure, task, "right", kHeldRight_s);
   for (const Valve valve : {Valve::left, Valve::right})
@@ -79,7 +80,7 @@ void add_claims(Figure& figure, const ValveTask& task) {
 void add_slip(Figure& figure, const ValveTask& slip) {
   const Trace& t = slip.trace;
   const std::size_t last = t.length() - 1;
-  const Vec3 aside = t.proxy(last) - t.intended(last);
+  const Vec3 aside = t.proxy_position_m[last] - t.intended_position_m[last];
   figure.claims.push_back(claim_at_least(figure.name,
                                          slip.words + ": how far the tool was pushed up, past the valve", "-",
                                          aside.y(), 0.01, "m"));

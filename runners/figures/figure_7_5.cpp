@@ -26,14 +26,14 @@ std::size_t first_pull(const Trace& t) {
 Vec3 residual_Nm(const Trace& t) {
   Vec3 sum = Vec3::Zero();
   const std::size_t from = tick_of(t, kArrived_s);
-  for (std::size_t i = from; i < t.length(); ++i) sum += about_handle(t, i, t.torque(i)).cwiseAbs();
+  for (std::size_t i = from; i < t.length(); ++i) sum += about_handle(t, i, t.torque_Nm[i]).cwiseAbs();
   return sum / double(t.length() - from);
 }
 
 double residual_N(const Trace& t) {
   double sum = 0;
   const std::size_t from = tick_of(t, kArrived_s);
-  for (std::size_t i = from; i < t.length(); ++i) sum += t.force(i).norm();
+  for (std::size_t i = from; i < t.length(); ++i) sum += t.force_N[i].norm();
   return sum / double(t.length() - from);
 }
 
@@ -49,9 +49,9 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   claim(claim_between(name, words + "when guidance begins to pull", "about 3", t.time_s[first], kPressed_s,
                       kPressed_s + 1e-9, "s"));
   claim(claim_between(name, words + "its force in that tick, cut at 4 N", "a step",
-                      t.guidance_force(first).norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N"));
+                      t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N"));
   claim(claim_at_least(name, words + "force of the region before, pushed to the left", "rises",
-                       t.force(tick_of(t, kPushed_s)).norm(), 2, "N"));
+                       t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N"));
   claim(claim_at_most(name, words + "force at the end", "decays", residual_N(t), 0.2, "N"));
   claim(claim_at_most(name, words + "torque about the handle's y and z at the end", "-",
                       std::max(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m"));
@@ -95,7 +95,9 @@ Table target_table(const ValveTask& task) {
   const Trace& t = task.trace;
   std::vector<std::vector<double>> rows;
   for (std::size_t i = first_pull(t); i < t.length(); ++i)
-    if (t.frame_update(i)) rows.push_back({t.time_s[i], t.goal(i).x(), t.goal(i).y(), t.goal(i).z()});
+    if (t.frame_update(i))
+      rows.push_back(
+          {t.time_s[i], t.guidance_goal_m[i].x(), t.guidance_goal_m[i].y(), t.guidance_goal_m[i].z()});
   return table_of("goals", "where guidance leads to, by each frame",
                   {{"time", "s", "simulated time"}, {"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, rows);
 }

@@ -49,8 +49,8 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
     for (std::size_t k = 0; k < cloud.size(); ++k) {
       if (!(cloud.fixture_radius_m[k] > 0)) continue;
       const Vec3 p_W = cloud.point(k);
-      if (!((p_W - t.proxy(i)).norm() < task.tool->reach_m + min)) continue;
-      const Vec3 p_T = t.tool_orientation_at(i).conjugate() * (p_W - t.proxy(i));
+      if (!((p_W - t.proxy_position_m[i]).norm() < task.tool->reach_m + min)) continue;
+      const Vec3 p_T = t.tool_orientation[i].conjugate() * (p_W - t.proxy_position_m[i]);
       for (const Vec3& vertex : task.tool->mesh.vertices) min = std::min(min, (vertex - p_T).norm());
     }
   }
@@ -63,8 +63,8 @@ double goal_wander_m(const Trace& t) {
   Vec3 first = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < t.length(); ++i) {
     if (!t.guidance_active[i]) continue;
-    if (!first.allFinite()) first = t.goal(i);
-    wander = std::max(wander, (t.goal(i) - first).norm());
+    if (!first.allFinite()) first = t.guidance_goal_m[i];
+    wander = std::max(wander, (t.guidance_goal_m[i] - first).norm());
   }
   return wander;
 }
@@ -74,7 +74,7 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
   const std::string name = figure.name;
   claim(claim_at_least(name, "force of the organ's region, pushed towards it", "-",
-                       t.force(tick_of(t, kButtonPushed_s)).norm(), 1, "N"));
+                       t.force_N[tick_of(t, kButtonPushed_s)].norm(), 1, "N"));
   claim(claim_at_least(
       name,
       "least distance of a vertex of the tool's mesh, while it touches, to a point with a region of 20 mm",

@@ -23,8 +23,9 @@ Trace settled(const Trace& trace) {
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (trace.time_s[i] < 1.0) continue;
     RenderOutput out;
-    out.proxy_W = trace.proxy(i), out.force_N = trace.force(i), out.frame_index = trace.frame_index[i];
-    part.append(trace.time_s[i], {trace.hip(i)}, out,
+    out.proxy_W = trace.proxy_position_m[i], out.force_N = trace.force_N[i],
+    out.frame_index = trace.frame_index[i];
+    part.append(trace.time_s[i], {trace.hip_position_m[i]}, out,
                 {trace.signed_distance_m[i], trace.slave_distance_m[i], 0});
   }
   return part;
@@ -32,7 +33,7 @@ Trace settled(const Trace& trace) {
 
 Table force_table(const std::string& name, const Trace& trace) {
   std::vector<double> force;
-  for (std::size_t i = 0; i < trace.length(); ++i) force.push_back(trace.force(i).norm());
+  for (std::size_t i = 0; i < trace.length(); ++i) force.push_back(trace.force_N[i].norm());
   Table table{name, "force with the term " + name};
   table.add("time", "s", "simulated time", trace.time_s);
   table.add("force", "N", "magnitude of the force", force);

@@ -96,11 +96,11 @@ std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const Fix
     PointCloud cloud = run.scenario->cloud(place);
     if (place > 0)
       to[static_cast<std::size_t>(place)] =
-          motion(before, cloud, pixel_of(trace.hip(0), cloud.image->camera));
+          motion(before, cloud, pixel_of(trace.hip_position_m[0], cloud.image->camera));
     for (FrameOutcome& outcome : outcomes) {
       if (place_of(trace.frame_index[outcome.tick], count) != place) continue;
-      outcome.nearest_distance_m = nearest_distance_m(trace.proxy(outcome.tick), cloud);
-      outcome.hidden_m = hidden_m(trace.proxy(outcome.tick), cloud);
+      outcome.nearest_distance_m = nearest_distance_m(trace.proxy_position_m[outcome.tick], cloud);
+      outcome.hidden_m = hidden_m(trace.proxy_position_m[outcome.tick], cloud);
     }
     before = std::move(cloud);
   }
@@ -128,7 +128,8 @@ std::vector<PopThrough> pop_throughs(const FixtureRun& run) {
       if (trace.frame_update(i) && !std::isnan(trace.signed_distance_m[i - 1]))
         pop.surface_motion_m =
             trace.signed_distance_m[i - 1] -
-            run.scenario->signed_distance(trace.proxy(i - 1) + trace.frame_correction(i), trace.time_s[i]);
+            run.scenario->signed_distance(trace.proxy_position_m[i - 1] + trace.frame_correction_m[i],
+                                          trace.time_s[i]);
       found.push_back(pop);
     }
     known_m = distance_m;

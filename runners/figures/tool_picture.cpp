@@ -90,8 +90,8 @@ Table pose_table(const std::string& name, const Trace& trace, const std::vector<
     turns.push_back({q.w(), q.x(), q.y(), q.z()});
   };
   for (const std::size_t tick : ticks) {
-    add(tick, trace.proxy(tick), trace.tool_orientation_at(tick));
-    add(tick, trace.hip(tick), trace.hip_orientation_at(tick));
+    add(tick, trace.proxy_position_m[tick], trace.tool_orientation[tick]);
+    add(tick, trace.hip_position_m[tick], trace.hip_orientation[tick]);
   }
   Table table{name, "poses of tool and device, in turn"};
   table.add("time", "s", "simulated time", time_s);
@@ -125,11 +125,11 @@ double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
 }
 
 double lag_m(const Trace& trace, std::size_t tick) {
-  return (trace.hip(tick) - trace.proxy(tick)).norm();
+  return (trace.hip_position_m[tick] - trace.proxy_position_m[tick]).norm();
 }
 
 double lag_rad(const Trace& trace, std::size_t tick) {
-  return angle_between(trace.tool_orientation_at(tick), trace.hip_orientation_at(tick));
+  return angle_between(trace.tool_orientation[tick], trace.hip_orientation[tick]);
 }
 
 }  // namespace remote_touch

@@ -24,7 +24,7 @@ constexpr int kRaysOfRegion = 60;
 constexpr std::uint32_t kRegionColour = 0xC0392B;
 
 Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
-  return t.proxy(tick) + t.tool_orientation_at(tick) * p_T;
+  return t.proxy_position_m[tick] + t.tool_orientation[tick] * p_T;
 }
 
 // How far a ray from a place in the regions goes before it leaves them all.
@@ -109,24 +109,26 @@ double min_clearance_m(const ValveTask& task, Valve valve) {
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < task.trace.length(); i += kClearanceEvery) {
     // No place of the tool can be nearer than this.
-    const double bound_m = task.tank->distance_to_valve(valve, task.trace.proxy(i)) - task.tool->reach_m;
+    const double bound_m =
+        task.tank->distance_to_valve(valve, task.trace.proxy_position_m[i]) - task.tool->reach_m;
     if (bound_m < min) min = std::min(min, clearance_m(task, valve, i));
   }
   return min;
 }
 
 Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W) {
-  return trace.hip_orientation_at(tick).conjugate() * torque_W;
+  return trace.hip_orientation[tick].conjugate() * torque_W;
 }
 
 Table task_table(const ValveTask& task) {
   const Trace& t = task.trace;
   std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < t.length(); i += kEvery) {
-    const Vec3 torque_T = about_handle(t, i, t.torque(i)), device_T = about_handle(t, i, t.device_torque(i));
-    rows.push_back({t.time_s[i], t.force(i).norm(), t.torque(i).norm(), torque_T.x(), torque_T.y(),
-                    torque_T.z(), device_T.x(), t.device_force(i).norm(), lag_m(t, i),
-                    (t.intended(i) - t.hip(i)).norm(), double(t.contact_count[i]),
+    const Vec3 torque_T = about_handle(t, i, t.torque_Nm[i]),
+               device_T = about_handle(t, i, t.device_torque_Nm[i]);
+    rows.push_back({t.time_s[i], t.force_N[i].norm(), t.torque_Nm[i].norm(), torque_T.x(), torque_T.y(),
+                    torque_T.z(), device_T.x(), t.device_force_N[i].norm(), lag_m(t, i),
+                    (t.intended_position_m[i] - t.hip_position_m[i]).norm(), double(t.contact_count[i]),
                     double(t.contact_clusters[i]), double(t.active_constraints[i]), t.tool_penetration_m[i],
                     double(t.detections[i]), double(t.budget_exhausted[i])});
   }

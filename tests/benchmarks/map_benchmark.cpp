@@ -111,7 +111,7 @@ bool equals_full(const Cell& cell, const Kernels& kernels) {
 bool follows(const std::vector<Vec3>& plain_W, const Trace& trace, std::size_t steps) {
   if (plain_W.size() != trace.length()) return false;
   for (std::size_t i = 0; i < steps; ++i)
-    if (!((plain_W[i] - trace.proxy(i)).norm() < 1e-7)) return false;
+    if (!((plain_W[i] - trace.proxy_position_m[i]).norm() < 1e-7)) return false;
   return true;
 }
 

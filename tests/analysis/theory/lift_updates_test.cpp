@@ -42,9 +42,9 @@ TEST(LiftUpdates, MarginIsTheHeightOverTheNewPlane) {
   const auto updates = lift_updates(trace, Vec3(0, 1, 0), 0.00499, 30);
   for (std::size_t i = 1; i < trace.length(); ++i) {
     if (!trace.frame_update(i)) continue;
-    const double plane = trace.proxy(i).y() - trace.signed_distance_m[i];
+    const double plane = trace.proxy_position_m[i].y() - trace.signed_distance_m[i];
     EXPECT_NEAR(updates.at(next).margin_m(0.00499, 30),
-                trace.proxy(i - 1).y() + trace.frame_correction(i).y() - plane, 1e-12);
+                trace.proxy_position_m[i - 1].y() + trace.frame_correction_m[i].y() - plane, 1e-12);
     ++next;
   }
   EXPECT_EQ(next, updates.size());

@@ -243,7 +243,7 @@ TEST(SensorFaultFrames, ARunWithEverythingEnds) {
   const Trace once = simulate(Experiment::load("fig4.12", set), {});
   const Trace again = simulate(Experiment::load("fig4.12", set), {});
   EXPECT_EQ(once.proxy_position_m, again.proxy_position_m);
-  for (std::size_t i = 0; i < once.length(); ++i) ASSERT_TRUE(once.proxy(i).allFinite());
+  for (std::size_t i = 0; i < once.length(); ++i) ASSERT_TRUE(once.proxy_position_m[i].allFinite());
   EXPECT_NE(once.proxy_position_m,
             simulate(Experiment::load("fig4.12", {"scenario.truth=moving"}), {}).proxy_position_m);
 }

@@ -88,8 +88,8 @@ TEST(ForceOverTime, StaysBoundedWhenTheStreamStops) {
       "fig4.12", {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0", "scenario.rise_frames=20",
                   "scenario.acceleration_frames=0", "duration_s=4"}));
   for (std::size_t i = 800; i < trace.length(); ++i)
-    ASSERT_LE(trace.force(i).norm(), kStiffness * (0.03 + kContactRadius + 0.1 * 0.1 + 1e-3)) << i;
-  EXPECT_EQ(trace.force(trace.length() - 1), trace.force(trace.length() - 1000));
+    ASSERT_LE(trace.force_N[i].norm(), kStiffness * (0.03 + kContactRadius + 0.1 * 0.1 + 1e-3)) << i;
+  EXPECT_EQ(trace.force_N[trace.length() - 1], trace.force_N[trace.length() - 1000]);
 }
 
 // Below 10 Hz a frame interval is longer than max_prediction_s: the estimate must be right all the same.

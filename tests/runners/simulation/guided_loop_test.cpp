@@ -34,7 +34,7 @@ TEST(GuidedLoop, RegionsAreSwitchedWithTheNextFrame) {
                     {"action": "unlock", "fixture": "ball", "not_before_s": 1.0}])");
   ASSERT_EQ(trace.length(), 1500u);
   for (std::size_t i = 0; i < trace.length(); ++i) {
-    const double force_N = trace.force(i).norm();
+    const double force_N = trace.force_N[i].norm();
     // Unlocked from the beginning; frame 16 comes at 533.3 ms, frame 31 at 1033.3 ms.
     if (i <= 533 || i >= 1100) {
       ASSERT_EQ(force_N, 0) << i;
@@ -44,14 +44,14 @@ TEST(GuidedLoop, RegionsAreSwitchedWithTheNextFrame) {
     ASSERT_EQ(trace.sequence_step[i], i < 500 ? 0 : i < 1000 ? 1 : 2) << i;
   }
   EXPECT_EQ(trace.frame_index[533], 15);
-  EXPECT_GT(trace.force(534).norm(), 0);
+  EXPECT_GT(trace.force_N[534].norm(), 0);
 }
 
 TEST(GuidedLoop, ARegionThatIsUnlockedFirstBeginsLocked) {
   const Trace trace = beside_a_ball(R"([{"action": "unlock", "fixture": "ball", "not_before_s": 0.5}])");
-  EXPECT_GT(trace.force(100).norm(), 0.1);
-  EXPECT_GT(trace.force(533).norm(), 0.1);
-  EXPECT_EQ(trace.force(600).norm(), 0);
+  EXPECT_GT(trace.force_N[100].norm(), 0.1);
+  EXPECT_GT(trace.force_N[533].norm(), 0.1);
+  EXPECT_EQ(trace.force_N[600].norm(), 0);
 }
 
 // --- guidance ---
@@ -81,17 +81,17 @@ Trace of_a_tool(const std::string& rotation_deg, const std::vector<std::string>&
 TEST(GuidedLoop, HandAndGuidanceMeetWhereTheirSpringsAreEven) {
   const Trace trace = beside_a_goal({});
   const std::size_t end = trace.length() - 1;
-  EXPECT_LT((trace.goal(end) - Vec3(0, 0.05, 0)).norm(), 1e-12);
-  EXPECT_LT((trace.hip(end) - Vec3(0.02 * 300 / 500, 0.05, 0)).norm(), 1e-9);
-  EXPECT_LT((trace.guidance_force(end) - Vec3(-0.012 * 200, 0, 0)).norm(), 1e-6);
-  EXPECT_EQ(trace.device_force(end), trace.force(end));
-  EXPECT_EQ(trace.intended(end), Vec3(0.02, 0.05, 0));
+  EXPECT_LT((trace.guidance_goal_m[end] - Vec3(0, 0.05, 0)).norm(), 1e-12);
+  EXPECT_LT((trace.hip_position_m[end] - Vec3(0.02 * 300 / 500, 0.05, 0)).norm(), 1e-9);
+  EXPECT_LT((trace.guidance_force_N[end] - Vec3(-0.012 * 200, 0, 0)).norm(), 1e-6);
+  EXPECT_EQ(trace.device_force_N[end], trace.force_N[end]);
+  EXPECT_EQ(trace.intended_position_m[end], Vec3(0.02, 0.05, 0));
 }
 
 TEST(GuidedLoop, AHandThatLetsGoIsLedToTheGoal) {
   const Trace trace = beside_a_goal({"operator.grip=[[1,1],[1,0]]"});
-  EXPECT_GT(trace.hip(999).x(), 0.0119);
-  EXPECT_LT((trace.hip(trace.length() - 1) - Vec3(0, 0.05, 0)).norm(), 1e-9);
+  EXPECT_GT(trace.hip_position_m[999].x(), 0.0119);
+  EXPECT_LT((trace.hip_position_m[trace.length() - 1] - Vec3(0, 0.05, 0)).norm(), 1e-9);
 }
 
 // From the press on; the step ends when the tool is within 5 mm, and then nothing pulls any more.
@@ -103,32 +103,33 @@ TEST(GuidedLoop, ATaskIsPlayedByThePressesOfTheHand) {
   bool left = false;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     ASSERT_EQ(trace.buttons[i], i >= 1000 && i < 1100 ? 16 : 0) << i;
-    const bool there = (trace.hip(i) - Vec3(0, 0.05, 0)).norm() <= 0.005;
+    const bool there = (trace.hip_position_m[i] - Vec3(0, 0.05, 0)).norm() <= 0.005;
     left |= i >= 1000 && there;
     ASSERT_EQ(trace.guidance_active[i], i >= 1000 && !left ? 1 : 0) << i;
     ASSERT_EQ(trace.sequence_step[i], left ? 2 : 0) << i;
   }
   EXPECT_TRUE(left);
-  EXPECT_LT((trace.guidance_force(1000) - Vec3(-4, 0, 0)).norm(), 1e-12) << "it jumps to its largest length";
-  EXPECT_EQ(trace.force(trace.length() - 1), Vec3::Zero());
+  EXPECT_LT((trace.guidance_force_N[1000] - Vec3(-4, 0, 0)).norm(), 1e-12)
+      << "it jumps to its largest length";
+  EXPECT_EQ(trace.force_N[trace.length() - 1], Vec3::Zero());
 }
 
 TEST(GuidedLoop, TurnsMeetWhereTheirSpringsAreEven) {
   const Trace trace = of_a_tool("[0,0,30]", {});
   const std::size_t end = trace.length() - 1;
   const double guiding = 200 * 9e-4, holding = 1;
-  const Vec3 turn = rotation_vector(trace.hip_orientation_at(end));
+  const Vec3 turn = rotation_vector(trace.hip_orientation[end]);
   EXPECT_LT((turn - Vec3(0, 0, 30 * kDegree * guiding / (guiding + holding))).norm(), 1e-9);
-  EXPECT_EQ(trace.device_torque(end), trace.torque(end));
+  EXPECT_EQ(trace.device_torque_Nm[end], trace.torque_Nm[end]);
 }
 
 // 7.5.2: a device without a motor for the roll cannot exert the torque that is left, and it never vanishes.
 TEST(GuidedLoop, WithoutAMotorForTheRollATorqueRemains) {
   const Trace trace = of_a_tool("[40,0,0]", {"device.torque_x=false", "operator.grip=[[0,0]]"});
   for (std::size_t i = 0; i < trace.length(); i += 100) {
-    ASSERT_LT((trace.guidance_torque(i) - Vec3(40 * kDegree * 200 * 9e-4, 0, 0)).norm(), 1e-9) << i;
-    ASSERT_LT(trace.device_torque(i).norm(), 1e-15) << i;
-    ASSERT_LT(rotation_vector(trace.hip_orientation_at(i)).norm(), 1e-9) << i;
+    ASSERT_LT((trace.guidance_torque_Nm[i] - Vec3(40 * kDegree * 200 * 9e-4, 0, 0)).norm(), 1e-9) << i;
+    ASSERT_LT(trace.device_torque_Nm[i].norm(), 1e-15) << i;
+    ASSERT_LT(rotation_vector(trace.hip_orientation[i]).norm(), 1e-9) << i;
   }
 }
 
@@ -137,16 +138,15 @@ TEST(GuidedLoop, TheTorqueThatRemainsIsAboutTheHandle) {
   const Trace trace =
       of_a_tool("[40,30,-20]", {"device.torque_x=false", "operator.grip=[[0,0]]", "duration_s=20"});
   const std::size_t end = trace.length() - 1;
-  const Vec3 torque_T = trace.hip_orientation_at(end).conjugate() * trace.torque(end);
+  const Vec3 torque_T = trace.hip_orientation[end].conjugate() * trace.torque_Nm[end];
   EXPECT_GT(std::abs(torque_T.x()), 0.05);
   EXPECT_LT(torque_T.tail<2>().norm(), 1e-6);
-  EXPECT_LT(trace.device_torque(end).norm(), 1e-6);
+  EXPECT_LT(trace.device_torque_Nm[end].norm(), 1e-6);
   // With all motors nothing remains.
   const Trace whole = of_a_tool("[40,30,-20]", {"operator.grip=[[0,0]]", "duration_s=20"});
-  EXPECT_LT(whole.torque(end).norm(), 1e-6);
-  EXPECT_LT(
-      rotation_vector(whole.hip_orientation_at(end) * whole.goal_orientation_at(end).conjugate()).norm(),
-      1e-6);
+  EXPECT_LT(whole.torque_Nm[end].norm(), 1e-6);
+  EXPECT_LT(rotation_vector(whole.hip_orientation[end] * whole.guidance_orientation[end].conjugate()).norm(),
+            1e-6);
 }
 
 // --- traces ---
@@ -168,8 +168,8 @@ TEST(GuidedLoop, SameTaskSameBits) {
   const std::vector<std::string> overrides{"operator.grip=[[1,1],[1,0]]", "device.torque_x=false"};
   const Trace a = beside_a_goal(overrides), b = beside_a_goal(overrides);
   ASSERT_EQ(a.hip_position_m.size(), b.hip_position_m.size());
-  EXPECT_EQ(std::memcmp(a.hip_position_m.data(), b.hip_position_m.data(), 8 * a.hip_position_m.size()), 0);
-  EXPECT_EQ(std::memcmp(a.device_force_N.data(), b.device_force_N.data(), 8 * a.device_force_N.size()), 0);
+  EXPECT_EQ(std::memcmp(a.hip_position_m.data(), b.hip_position_m.data(), 24 * a.hip_position_m.size()), 0);
+  EXPECT_EQ(std::memcmp(a.device_force_N.data(), b.device_force_N.data(), 24 * a.device_force_N.size()), 0);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ double bar_stops_at(const std::string& rule, double spacing_m, double phase_m) {
                           poses("[0,0,0,0,0,0,0], [0,0,0,0,30,0,1], [0,0,0,0,30,0,0.2]"),
                           {"scenario.spacing_m=" + number(spacing_m), "scenario.phase_m=" + number(phase_m)});
   EXPECT_EQ(sum(trace.budget_exhausted), 0);
-  return rotation_vector(trace.tool_orientation_at(trace.length() - 1)).y() / kRadiansPerDegree;
+  return rotation_vector(trace.tool_orientation[trace.length() - 1]).y() / kRadiansPerDegree;
 }
 
 // In closed form 40 sin(a) + 5 cos(a) = 20: 22.62 degrees. Disks hold the corner as a wall would, wherever
@@ -130,10 +130,11 @@ TEST(ToolContact, TheBackOfASheetHoldsTheToolAndLetsItGoByLookAhead) {
   } tools[] = {{"ball", 0.01}, {"bar", 0.005}, {"slab-10", 0.02}};
   for (const auto& t : tools) {
     const Trace trace = from_behind(t.mesh, "look-ahead");
-    for (std::size_t i = 500; i < 700; ++i) EXPECT_NEAR(trace.proxy(i).z(), -t.half_m, 2e-4) << t.mesh;
+    for (std::size_t i = 500; i < 700; ++i)
+      EXPECT_NEAR(trace.proxy_position_m[i].z(), -t.half_m, 2e-4) << t.mesh;
     for (std::size_t i = 1; i < trace.length(); ++i)  // on the way back it follows as soon as it may
-      if (i > 700 && trace.hip(i).z() < -t.half_m - 1e-4) {
-        EXPECT_LT((trace.proxy(i) - trace.hip(i)).norm(), 1e-12) << t.mesh;
+      if (i > 700 && trace.hip_position_m[i].z() < -t.half_m - 1e-4) {
+        EXPECT_LT((trace.proxy_position_m[i] - trace.hip_position_m[i]).norm(), 1e-12) << t.mesh;
       }
   }
 }
@@ -150,13 +151,13 @@ TEST(ToolContact, ASlabThatLiesFlatOnTheBackOfASheetSlidesAndIsLetGo) {
                 ",0,0,0.5], [0,-0.003,0,0,0,0,0.3], [0.013,-0.003,0.009,0,0,0,0.3], "
                 "[0.013,-0.06,0.009,0,0,0,0.5]"));
       const std::string what = "tilt " + tilt + ", width " + width;
-      for (std::size_t i = 500; i < 1100; ++i) ASSERT_LT(trace.proxy(i).y(), -0.0099) << what;
+      for (std::size_t i = 500; i < 1100; ++i) ASSERT_LT(trace.proxy_position_m[i].y(), -0.0099) << what;
       for (std::size_t i = 800; i < 1100; ++i) {
-        const Vec3 lag = trace.proxy(i) - trace.hip(i);
+        const Vec3 lag = trace.proxy_position_m[i] - trace.hip_position_m[i];
         ASSERT_LT(std::hypot(lag.x(), lag.z()), 1e-9) << what << ", tick " << i;
       }
       const std::size_t last = trace.length() - 1;
-      EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12) << what;
+      EXPECT_LT((trace.proxy_position_m[last] - trace.hip_position_m[last]).norm(), 1e-12) << what;
     }
 }
 
@@ -173,7 +174,7 @@ TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
               ", [0,-0.05,0,0,0,0,0.2], [0.2,-0.05,0,0,0,0,0.2], [0.2,0.05,0,0,0,0,0.2], "
               "[0,0.0122,0,0,0,0,0.4]"),
         {"duration_s=2"});
-    EXPECT_NEAR(trace.proxy(trace.length() - 1).y(), 0.06, 1e-3) << displacement;
+    EXPECT_NEAR(trace.proxy_position_m[trace.length() - 1].y(), 0.06, 1e-3) << displacement;
   }
 }
 
@@ -181,7 +182,8 @@ TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
 TEST(ToolContact, TheBackOfASheetSucksTheToolThroughByVoxels) {
   const Trace trace = from_behind("ball", "voxels");
   double max_distance = -1;
-  for (std::size_t i = 0; i < trace.length(); ++i) max_distance = std::max(max_distance, trace.proxy(i).z());
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    max_distance = std::max(max_distance, trace.proxy_position_m[i].z());
   EXPECT_GT(max_distance, 0.005);
 }
 
@@ -198,12 +200,14 @@ TEST(ToolContact, ATrappedToolFollowsAlongAWedgeAndRecovers) {
                               {where});
       ASSERT_EQ(trace.state[900], static_cast<int>(ContactState::entrenched)) << where;
       for (std::size_t i = 620; i < 1000; ++i)
-        EXPECT_NEAR(trace.proxy(i).x(), trace.hip(i).x(), 1.5e-3) << rule << " " << where << " " << i;
+        EXPECT_NEAR(trace.proxy_position_m[i].x(), trace.hip_position_m[i].x(), 1.5e-3)
+            << rule << " " << where << " " << i;
       // 10 mm in 6 mm: 2 mm at either side, and a share more where the printed rule leaves it uneven
       EXPECT_LT(deepest(trace), rule == "look-ahead" ? 2.1e-3 : 4.5e-3) << where;
       const std::size_t last = trace.length() - 1;
-      EXPECT_LT((trace.proxy(last) - trace.hip(last)).norm(), 1e-12) << rule << " " << where;
-      EXPECT_LT(trace.force(last).norm(), 1e-9);
+      EXPECT_LT((trace.proxy_position_m[last] - trace.hip_position_m[last]).norm(), 1e-12)
+          << rule << " " << where;
+      EXPECT_LT(trace.force_N[last].norm(), 1e-9);
     }
 }
 
@@ -214,15 +218,14 @@ TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
     double max = 0;
     for (std::size_t i = 0; i < trace.length(); ++i) {
       const double lag =
-          (rotation_vector(trace.hip_orientation_at(i)) - rotation_vector(trace.tool_orientation_at(i)))
-              .norm();
-      max = std::max(max, rotation_vector(trace.tool_orientation_at(i)).y() / kRadiansPerDegree);
+          (rotation_vector(trace.hip_orientation[i]) - rotation_vector(trace.tool_orientation[i])).norm();
+      max = std::max(max, rotation_vector(trace.tool_orientation[i]).y() / kRadiansPerDegree);
       if (lag > kRadiansPerDegree) {
         EXPECT_GT(trace.contact_count[i], 0) << i;
       }
       if (i < 1900 || i > 6100) {
         EXPECT_EQ(trace.contact_count[i], 0) << i;
-        EXPECT_EQ(trace.proxy(i), trace.hip(i));
+        EXPECT_EQ(trace.proxy_position_m[i], trace.hip_position_m[i]);
       }
     }
     EXPECT_GT(max, 20.5) << rule;

@@ -45,8 +45,8 @@ Heights slide(const std::string& renderer, double sigma, int seed) {
   for (std::size_t i = 500; i < trace.length(); ++i) {
     const double h = trace.signed_distance_m[i] / kRc - 1;
     n += 1, sum += h, squares += h * h;
-    if (trace.frame_update(i) && !trace.force(i).isZero(0) && !trace.force(i - 1).isZero(0))
-      jumps += (trace.force(i) - trace.force(i - 1)).squaredNorm(), updates += 1;
+    if (trace.frame_update(i) && !trace.force_N[i].isZero(0) && !trace.force_N[i - 1].isZero(0))
+      jumps += (trace.force_N[i] - trace.force_N[i - 1]).squaredNorm(), updates += 1;
   }
   return {sum / n, std::sqrt(std::max(0.0, squares / n - sum / n * sum / n)), std::sqrt(jumps / updates)};
 }
@@ -133,7 +133,7 @@ TEST(TrackedSheet, FixturesKeepTheirDistance) {
         run("fig4.11", {kSheet, fixture, setting("scenario.noise_sigma_m", sigma * kRc),
                         "trajectory.waypoints=[[0,0.06,0,0],[0,0.01,0,0.1],[0.02,0.01,0.01,0.02]]"});
     EXPECT_NEAR(trace.signed_distance_m.back(), 0.025, 0.002) << sigma;
-    EXPECT_GT(trace.force(trace.length() - 1).y(), 5) << sigma;
+    EXPECT_GT(trace.force_N[trace.length() - 1].y(), 5) << sigma;
   }
 }
 
@@ -147,7 +147,7 @@ TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
   double min = 1, max = 0, min_force = 1e9;
   for (std::size_t i = 600; i < trace.length(); ++i) {
     min = std::min(min, trace.signed_distance_m[i]), max = std::max(max, trace.signed_distance_m[i]);
-    min_force = std::min(min_force, trace.force(i).y());
+    min_force = std::min(min_force, trace.force_N[i].y());
   }
   EXPECT_NEAR(min, 0.025, 0.002);
   EXPECT_NEAR(max, 0.025, 0.002);

@@ -279,9 +279,10 @@ TEST(MovingShape, RenderersTakeFramesWithoutPoints) {
         "duration_s": 0.8})";
     const Trace trace = simulate(Experiment::from_json(text, what), {});
     ASSERT_EQ(trace.length(), 800u);
-    EXPECT_GT(trace.force(390).y(), 0) << what;
-    EXPECT_TRUE(trace.force(420).isZero(0)) << what;
-    for (std::size_t i = 0; i < trace.length(); ++i) ASSERT_TRUE(trace.proxy(i).allFinite()) << what;
+    EXPECT_GT(trace.force_N[390].y(), 0) << what;
+    EXPECT_TRUE(trace.force_N[420].isZero(0)) << what;
+    for (std::size_t i = 0; i < trace.length(); ++i)
+      ASSERT_TRUE(trace.proxy_position_m[i].allFinite()) << what;
   }
 }
 

@@ -122,12 +122,12 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
   const auto max_rendered_N = [](const LiveResult& result) {
     double max = 0;
     const Trace& trace = result.log.trace;
-    for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force(i).norm());
+    for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force_N[i].norm());
     return max;
   };
   const auto rendered_at_last_N = [](const LiveResult& result) {
     const Trace& trace = result.log.trace;
-    return trace.force(trace.length() - 1).norm();
+    return trace.force_N[trace.length() - 1].norm();
   };
   // At the device, once its force no longer rises; none where the machine has paused meanwhile.
   const auto resting_N = [&] {

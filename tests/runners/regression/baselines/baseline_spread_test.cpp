@@ -196,11 +196,11 @@ TEST_F(MeasureSpread, EveryProgramAtEveryLevelAndNumberOfThreads) {
 
 TEST_F(MeasureSpread, TheLargestDeviationOfEachColumn) {
   const auto programs = two_programs();
-  trace("gcc/x86-64-8.h5", build("GNU 12"), [](Trace& made) { made.force_N[3 * 7] += 0x1p-30; });
+  trace("gcc/x86-64-8.h5", build("GNU 12"), [](Trace& made) { made.force_N[7].x() += 0x1p-30; });
   trace("clang/x86-64-2.h5", build("Clang 14"), [](Trace& made) {
-    made.force_N[3 * 5 + 1] -= 0x1p-20, made.force_N[3 * 6] += 0x1p-25, made.proxy_steps[3] += 2;
+    made.force_N[5].y() -= 0x1p-20, made.force_N[6].x() += 0x1p-25, made.proxy_steps[3] += 2;
   });
-  trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) { made.force_N[3 * 5 + 1] += 0x1p-22; });
+  trace("clang/x86-64-8.h5", build("Clang 14"), [](Trace& made) { made.force_N[5].y() += 0x1p-22; });
   const Measured measured = measure(programs);
   EXPECT_EQ(measured.spread, (Tolerances{{"force", {0x1p-20}}, {"proxy_steps", {2}}}));
   EXPECT_EQ(bytes_of(measured.reference), bytes_of(folder_ / "gcc/plain.h5"));
@@ -212,7 +212,7 @@ TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
       {"state: ", [](Trace& made) { made.state[11] = 0; }},
       {"status: ", [](Trace& made) { made.status[11] = 1; }},
       {"frame_hash: ", [](Trace& made) { made.frame_hash[11] ^= 1; }},
-      {"force: ", [](Trace& made) { made.force_N[3 * 11] = kNaN; }},
+      {"force: ", [](Trace& made) { made.force_N[11].x() = kNaN; }},
       {"nearest_distance: ", [](Trace& made) { made.nearest_distance_m[11] = -kInfinity; }}};
   for (const auto& [name, change] : changes) {
     trace("clang/x86-64-8.h5", build("Clang 14"), change);

@@ -122,7 +122,7 @@ TEST_F(CheckBaseline, WithOverrides) {
 }
 
 TEST_F(CheckBaseline, ChangedNumbers) {
-  Baseline baseline = stored_run([](Trace& trace) { trace.force_N[3 * 120 + 1] += 0x1p-20; });
+  Baseline baseline = stored_run([](Trace& trace) { trace.force_N[120].y() += 0x1p-20; });
   const BaselineCheck changed = check(baseline);
   EXPECT_EQ(changed.state, State::changed);
   EXPECT_EQ(changed.text, "force of 18 columns, from tick 120 on (drift)");
@@ -143,7 +143,7 @@ TEST_F(CheckBaseline, WhatHasNoTolerance) {
   for (const auto& change : std::vector<std::function<void(Trace&)>>{
            [](Trace& trace) { trace.state[100] ^= 1; }, [](Trace& trace) { trace.frame_hash[0] ^= 1; },
            [](Trace& trace) { trace.nearest_distance_m[9] = std::nan(""); },
-           [](Trace& trace) { trace.force_N[9] = INFINITY; }}) {
+           [](Trace& trace) { trace.force_N[3].x() = INFINITY; }}) {
     Baseline baseline = stored_run(change);
     baseline.tolerances = {{"*", {1e99}}};
     EXPECT_EQ(check(baseline).state, State::changed);

@@ -108,8 +108,8 @@ TEST_F(CompareTraceFiles, AConfigurationAloneIsNoRegression) {
 TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   write_changed("a.h5", [](Trace&) {});
   write_changed("b.h5", [](Trace& trace) {
-    trace.force_N[3 * 410 + 1] += 0.25;
-    trace.force_N[3 * 412 + 1] += 1e-3;
+    trace.force_N[410].y() += 0.25;
+    trace.force_N[412].y() += 1e-3;
     trace.nearest_distance_m[600] = kNaN;
     trace.state[700] = (trace.state[700] + 1) % 3;
   });
@@ -131,8 +131,9 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   const Trace trace = run(Experiment::load("fig4.12"));
   const json before = divergence["baseline"]["force"], after = divergence["candidate"]["force"];
   ASSERT_EQ(before.size(), 6u);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(before[i], trace.force_N[3 * 409 + i]);  // to the last bit
-  EXPECT_EQ(after[4], trace.force_N[3 * 410 + 1] + 0.25);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(before[i], trace.force_N[409 + i / 3][static_cast<int>(i % 3)]);  // to the last bit
+  EXPECT_EQ(after[4], trace.force_N[410].y() + 0.25);
   for (const json& name : divergence["baseline"]["state"])
     EXPECT_TRUE(name == "free" || name == "contact" || name == "entrenched") << name;
   EXPECT_EQ(divergence["baseline"]["frame_hash"][1], trace.frame_hash[410]);  // all 64 bits
@@ -230,7 +231,7 @@ TEST_F(CompareTraceFiles, AToleranceOfNoColumnIsRefused) {
 
 TEST_F(CompareTraceFiles, HashesAgainstHashesAndTraces) {
   write_changed("a.h5", [](Trace&) {});
-  write_changed("b.h5", [](Trace& trace) { trace.force_N[3 * 410] += 1e-9; });
+  write_changed("b.h5", [](Trace& trace) { trace.force_N[410].x() += 1e-9; });
   for (const char* name : {"a", "b"})
     write_hashes(folder_ / (std::string(name) + "_hashes.h5"),
                  hashes_of_trace(StoredTrace(folder_ / (std::string(name) + ".h5")), 100),

@@ -1,0 +1,102 @@
+// The columns of a trace follow from its table: each is filled, stored and described.
+#include "analysis/trace/trace.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace remote_touch {
+namespace {
+
+// Where every number of a tick is another one.
+Trace one_tick(bool tool, bool guidance, bool hand) {
+  RenderOutput out;
+  out.proxy_W = {1, 2, 3}, out.state = ContactState::entrenched, out.contact_count = 4;
+  if (tool) {
+    out.tool.emplace();
+    out.tool->orientation_W = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5);
+    out.tool->budget_exhausted = true;
+  }
+  if (guidance) out.guidance.emplace().sequence_missed = 7;
+  DeviceState device;
+  device.buttons = 9;
+  Trace trace;
+  trace.append(0.25, device, out, {5, 6, 0xfedcba9876543210u},
+               hand ? std::optional<HandState>(HandState{}) : std::nullopt);
+  return trace;
+}
+
+std::vector<std::string> names(const std::vector<Column>& columns) {
+  std::vector<std::string> list;
+  for (const Column& column : columns) list.push_back(column.name);
+  return list;
+}
+
+const Column& find(const std::vector<Column>& columns, const std::string& name) {
+  for (const Column& column : columns)
+    if (column.name == name) return column;
+  throw std::out_of_range(name);
+}
+
+template <class Number>
+std::vector<Number> values(const Trace& trace, const std::string& name) {
+  return std::get<std::vector<Number>>(find(trace.columns(), name).values);
+}
+
+TEST(TraceColumns, AreThoseOfTheTableInItsOrder) {
+  const std::vector<Column> columns = one_tick(true, true, true).columns();
+  ASSERT_EQ(columns.size(), trace_columns().size());
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const TraceColumn& described = trace_columns()[i];
+    EXPECT_EQ(columns[i].name, described.name);
+    EXPECT_EQ(columns[i].units, described.unit);
+    EXPECT_EQ(columns[i].width, described.width) << described.name;
+    EXPECT_EQ(columns[i].value_names, described.value_names) << described.name;
+    EXPECT_EQ(columns[i].length(), 1u) << described.name;
+    EXPECT_TRUE(seen.insert(described.name).second) << described.name << " is there twice";
+  }
+  EXPECT_STREQ(trace_columns().back().name, "tick_hash");
+}
+
+TEST(TraceColumns, ARunHasThoseOfItsParts) {
+  const std::size_t always = names(one_tick(false, false, false).columns()).size();
+  EXPECT_EQ(always, 19u);
+  EXPECT_EQ(names(one_tick(true, false, false).columns()).size(), always + 9);
+  EXPECT_EQ(names(one_tick(false, true, false).columns()).size(), always + 10);
+  EXPECT_EQ(names(one_tick(false, false, true).columns()).size(), always + 5);
+}
+
+TEST(TraceColumns, HoldWhatTheTickWas) {
+  const Trace trace = one_tick(true, true, true);
+  EXPECT_EQ(values<double>(trace, "time"), std::vector<double>{0.25});
+  EXPECT_EQ(values<double>(trace, "proxy_position"), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(values<std::int32_t>(trace, "state"), std::vector<std::int32_t>{2});
+  EXPECT_EQ(values<std::int32_t>(trace, "contact_count"), std::vector<std::int32_t>{4});
+  EXPECT_EQ(values<double>(trace, "signed_distance"), std::vector<double>{5});
+  EXPECT_EQ(values<double>(trace, "slave_distance"), std::vector<double>{6});
+  EXPECT_EQ(values<std::uint64_t>(trace, "frame_hash"), std::vector<std::uint64_t>{0xfedcba9876543210u});
+  EXPECT_EQ(values<double>(trace, "tool_orientation"), (std::vector<double>{0.5, 0.1, -0.7, 0.5}))
+      << "w x y z";
+  EXPECT_EQ(values<std::int32_t>(trace, "budget_exhausted"), std::vector<std::int32_t>{1});
+  EXPECT_EQ(values<std::int32_t>(trace, "sequence_missed"), std::vector<std::int32_t>{7});
+  EXPECT_EQ(values<std::int32_t>(trace, "buttons"), std::vector<std::int32_t>{9});
+}
+
+// A tool has no proxy of radius r_c: what is said of it must not be said of one.
+TEST(TraceColumns, OfAToolDoNotSpeakOfAProxy) {
+  const std::vector<Column> proxy = one_tick(false, false, false).columns();
+  const std::vector<Column> tool = one_tick(true, false, false).columns();
+  for (const char* name : {"contact_count", "nearest_distance", "signed_distance", "proxy_position"}) {
+    EXPECT_NE(find(proxy, name).long_name.find("proxy"), std::string::npos) << name;
+    EXPECT_NE(find(tool, name).long_name.find("tool"), std::string::npos) << name;
+  }
+  for (const Column& column : tool)
+    EXPECT_EQ(column.long_name.find("proxy"), std::string::npos) << column.name << ": " << column.long_name;
+}
+
+}  // namespace
+}  // namespace remote_touch
