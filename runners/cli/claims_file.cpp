@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
@@ -31,7 +32,9 @@ Json claim_json(const Claim& claim) {
 }  // namespace
 
 ClaimsFile::ClaimsFile(std::filesystem::path file, std::vector<std::string> order)
-    : file_(std::move(file)), order_(std::move(order)), claims_(order_.size() + 1, Json::array()) {
+    : file_(std::move(file)),
+      order_(std::move(order)),
+      claims_(std::make_unique<std::vector<Json>>(order_.size() + 1, Json::array())) {
   std::ifstream in(file_);
   const Json earlier = Json::parse(in, nullptr, false);  // absent or damaged: nothing to keep
   if (!earlier.is_array()) return;
@@ -39,17 +42,19 @@ ClaimsFile::ClaimsFile(std::filesystem::path file, std::vector<std::string> orde
     const auto name = claim.is_object() ? claim.find("figure") : claim.end();
     if (name == claim.end() || !name->is_string()) continue;
     const auto place = std::find(order_.begin(), order_.end(), name->get<std::string>());
-    claims_[static_cast<std::size_t>(place - order_.begin())].push_back(claim);
+    (*claims_)[static_cast<std::size_t>(place - order_.begin())].push_back(claim);
   }
 }
 
+ClaimsFile::~ClaimsFile() = default;
+
 void ClaimsFile::replace(const std::string& figure, std::span<const Claim> claims) {
   const auto place = std::find(order_.begin(), order_.end(), figure);
-  Json& own = claims_[static_cast<std::size_t>(place - order_.begin())];
+  Json& own = (*claims_)[static_cast<std::size_t>(place - order_.begin())];
   own = Json::array();
   for (const Claim& claim : claims) own.push_back(claim_json(claim));
   Json all = Json::array();
-  for (const Json& of_figure : claims_) all.insert(all.end(), of_figure.begin(), of_figure.end());
+  for (const Json& of_figure : *claims_) all.insert(all.end(), of_figure.begin(), of_figure.end());
   const std::string text = all.dump(2) + "\n";
   write_file_atomically(file_, text.data(), text.size());
 }

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ class ClaimsFile {
  public:
   // Keeps what an earlier call left in the folder until the figure is made again. order: the figures' names.
   ClaimsFile(std::filesystem::path file, std::vector<std::string> order);
+  ~ClaimsFile();
+  ClaimsFile(const ClaimsFile&) = delete;
+  ClaimsFile& operator=(const ClaimsFile&) = delete;
 
   // Writes the file: an interruption keeps what is done.
   void replace(const std::string& figure, std::span<const Claim> claims);
@@ -22,7 +26,7 @@ class ClaimsFile {
  private:
   std::filesystem::path file_;
   std::vector<std::string> order_;
-  std::vector<nlohmann::ordered_json> claims_;  // of the figures in that order, and behind them of others
+  std::unique_ptr<std::vector<nlohmann::ordered_json>> claims_;  // in that order; the last: of other figures
 };
 
 }  // namespace remote_touch
