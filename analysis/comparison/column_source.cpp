@@ -16,7 +16,7 @@ bool ColumnSource::has(const std::string& name) const {
 }
 
 StoredTrace::StoredTrace(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
-  hdf5_.require_schema(kTraceSchema, "a trace of remote-touch run or replay");
+  hdf5_.require_kind("trace", "a trace of remote-touch run or replay");
   std::istringstream list(attribute(hdf5_.attributes(), "columns"));
   for (std::string name; std::getline(list, name, ',');) columns_.push_back(name);
 }
@@ -34,7 +34,7 @@ std::vector<std::uint64_t> StoredTrace::running_hash() const {
 }
 
 StoredFigure::StoredFigure(Hdf5Reader hdf5) : hdf5_(std::move(hdf5)) {
-  hdf5_.require_schema(kFigureSchema, "a figure of remote-touch figure");
+  hdf5_.require_kind("figure", "a figure of remote-touch figure");
   const std::string tables = "/tables/";
   for (const std::string& path : hdf5_.datasets())
     if (path.starts_with(tables)) columns_.push_back(path.substr(tables.size()));

@@ -2,6 +2,7 @@
 
 #include "analysis/columns/hash64.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
 
 namespace remote_touch {
 
@@ -19,7 +20,7 @@ TickHashes hashes_of_trace(const StoredTrace& trace, int every) {
 void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
                   const TextAttributes& provenance) {
   Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", kHashesSchema);
+  hdf5.attribute("/", "schema", schema_name("hashes"));
   hdf5.attributes("/", provenance);
   hdf5.group("/hashes");
   hdf5.columns("/hashes",
@@ -31,7 +32,7 @@ void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
 
 StoredHashes read_hashes(const std::filesystem::path& file) {
   const Hdf5Reader hdf5(file);
-  hdf5.require_schema(kHashesSchema, "the result of remote-touch hashes");
+  hdf5.require_kind("hashes", "the result of remote-touch hashes");
   StoredHashes stored{
       {hdf5.values<std::int32_t>("/hashes/tick"), hdf5.values<std::uint64_t>("/hashes/tick_hash")},
       hdf5.attributes()};

@@ -11,8 +11,6 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kHashesSchema = "remote-touch-hashes/2";
-
 struct TickHashes {
   std::vector<std::int32_t> tick;   // rising; the last is the trace's last
   std::vector<std::uint64_t> hash;  // the running hash at that tick (hash64.h)

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "analysis/storage/digest.h"
+#include "analysis/storage/schema.h"
 
 namespace remote_touch {
 
@@ -27,7 +28,7 @@ std::string write_trace(const std::filesystem::path& file, const std::vector<Col
                         const TextAttributes& provenance, const std::vector<double>& step_duration_s) {
   const std::string sum = digest(columns);
   Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", kTraceSchema);
+  hdf5.attribute("/", "schema", schema_name("trace"));
   hdf5.attributes("/", provenance);
   hdf5.attribute("/", "digest", sum);
   hdf5.attribute("/", "columns", names(columns));
@@ -138,7 +139,7 @@ std::string write_figure(const std::filesystem::path& file, const Figure& figure
                          const TextAttributes& provenance) {
   const std::string sum = digest(figure.tables);
   Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", kFigureSchema);
+  hdf5.attribute("/", "schema", schema_name("figure"));
   hdf5.attributes("/", {{"figure", figure.name}, {"title", figure.title}, {"caption", figure.caption}});
   hdf5.attributes("/", provenance);
   hdf5.attribute("/", "digest", sum);

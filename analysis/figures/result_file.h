@@ -10,9 +10,6 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kTraceSchema = "remote-touch-trace/2";
-inline constexpr const char* kFigureSchema = "remote-touch-figure/2";
-
 // What of a result's root attributes tells where it came from: all that its writer does not add by itself.
 TextAttributes provenance_of(const TextAttributes& attributes);
 

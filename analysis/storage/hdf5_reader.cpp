@@ -8,6 +8,7 @@
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_values.h"
+#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -86,11 +87,23 @@ void Hdf5Reader::damaged(const std::string& how) const {
   throw InputError(file_, "damaged (" + how + "): expected a result of this program");
 }
 
-void Hdf5Reader::require_schema(const std::string& schema, const std::string& allowed) const {
+void Hdf5Reader::require_kind(const std::string& kind, const std::string& made_by) const {
   const std::string found = attribute(attributes_, "schema");
-  if (found == schema) return;
+  if (found == schema_name(kind)) return;
   throw InputError(file_, (found.empty() ? "names no schema" : "is of schema " + found) + ": expected " +
-                              schema + ", " + allowed);
+                              schema_name(kind) + ", " + made_by);
+}
+
+// Columns and keys have other names in other versions: nothing of such a file can be used.
+void Hdf5Reader::require_version() const {
+  const std::string schema = attribute(attributes_, "schema");
+  const std::string current = "/" + std::to_string(kSchemaVersion);
+  if (!schema.starts_with(kSchemaPrefix) || schema.ends_with(current)) return;
+  const std::string readable = schema.substr(0, schema.rfind('/')) + current;
+  if (schema.ends_with("/1"))
+    throw InputError(file_, "written by version 0.1 (schema " + schema + "); this version reads " + readable +
+                                ": run it again");
+  throw InputError(file_, "is of schema " + schema + ": expected " + readable);
 }
 
 void Hdf5Reader::require_file_digest() const {
@@ -105,8 +118,9 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string())
     handle_ = std::make_shared<Handle>(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     attributes_ = root_attributes(*static_cast<Handle*>(handle_.get()));
   });
+  require_version();
   // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
-  if (attribute(attributes_, "schema").starts_with("remote-touch-") && !has("/sweep/checksum"))
+  if (attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
     require_file_digest();
 }
 

@@ -15,13 +15,13 @@ namespace remote_touch {
 // Every member throws InputError naming the file when it is damaged.
 class Hdf5Reader {
  public:
-  // Throws InputError when the file is missing, not HDF5, or its seal is broken; also when a finished result
-  // of this program has none.
+  // Throws InputError when the file is missing, not HDF5, its seal is broken or that of a finished result of
+  // this program is missing, or when another version of this program wrote it in its own layout.
   explicit Hdf5Reader(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }
-  // Throws InputError unless the file is of that schema; allowed: what makes one.
-  void require_schema(const std::string& schema, const std::string& allowed) const;
+  // Throws InputError unless the file is of that kind, as schema_name() has them; made_by: what makes one.
+  void require_kind(const std::string& kind, const std::string& made_by) const;
   const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
   std::vector<std::string> datasets() const;                        // paths, sorted
   bool has(const std::string& dataset) const;
@@ -42,6 +42,7 @@ class Hdf5Reader {
   [[noreturn]] void damaged(const std::string& how) const;
 
  private:
+  void require_version() const;
   void require_file_digest() const;
   template <class Read>
   auto guarded(Read&& read) const;

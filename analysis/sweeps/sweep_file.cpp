@@ -7,6 +7,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -75,7 +76,7 @@ std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
 // bytes.
 void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attributes, Storage storage) {
   std::sort(attributes.begin(), attributes.end());
-  hdf5.attribute("/", "schema", kSweepSchema);
+  hdf5.attribute("/", "schema", schema_name("sweep"));
   hdf5.attributes("/", attributes);
   if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
   hdf5.attributes("/", {{"axes", joined(result.axes)}, {"measures", joined(result.measures)}});
@@ -153,7 +154,7 @@ namespace {
 class SweepReader {
  public:
   explicit SweepReader(const std::filesystem::path& file) : hdf5_(file), datasets_(hdf5_.datasets()) {
-    hdf5_.require_schema(kSweepSchema, "the result of remote-touch sweep or merge");
+    hdf5_.require_kind("sweep", "the result of remote-touch sweep or merge");
   }
 
   std::string text(const std::string& name) const { return attribute(hdf5_.attributes(), name); }

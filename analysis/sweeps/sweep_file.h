@@ -11,8 +11,6 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kSweepSchema = "remote-touch-sweep/2";
-
 // Of axes, measures, states and errors.
 std::string digest(const SweepResult& result);
 

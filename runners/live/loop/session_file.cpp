@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/file_digest.h"
+#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -36,7 +37,7 @@ SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorVi
                              const RigidTransform& registered, const TextAttributes& provenance)
     : file_(target), has_colour_(view.has_colour) {
   using Number = Hdf5Appender::Number;
-  file_.attributes("/", {{"schema", kSessionSchema}, {"view", view_text(view, registered)}});
+  file_.attributes("/", {{"schema", schema_name("session")}, {"view", view_text(view, registered)}});
   file_.attributes("/", provenance);
   file_.group("/ticks"), file_.group("/frames");
   file_.dataset({"/ticks/number", "1", "number of the tick: its time times the haptic rate", Number::u64});
@@ -100,7 +101,7 @@ void SessionWriter::finish() {
 }
 
 SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
-  file_.require_schema(kSessionSchema, "which remote-touch live --record makes");
+  file_.require_kind("session", "which remote-touch live --record makes");
   read_view();
   captured_s_ = file_.values<double>("/frames/captured");
   fixtures_off_ = file_.values<std::uint64_t>("/frames/fixtures_off");

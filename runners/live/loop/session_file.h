@@ -15,8 +15,6 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kSessionSchema = "remote-touch-session/2";
-
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as they
 // were written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's
 // attributes: config, view, haptic rate and the provenance.

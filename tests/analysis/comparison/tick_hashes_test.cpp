@@ -10,6 +10,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/schema.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
@@ -128,7 +129,7 @@ TEST(TickHashes, OtherFilesAndDamageAreRefused) {
 
 fs::path with_columns(const TestFolder& folder, const std::vector<Column>& columns) {
   Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", kHashesSchema);
+  hdf5.attribute("/", "schema", schema_name("hashes"));
   hdf5.group("/hashes");
   hdf5.columns("/hashes", columns, "");
   hdf5.save(folder / "h.h5");

@@ -51,7 +51,7 @@ TEST(FileDigest, OtherHdf5FilesHaveNone) {
   write("of-another/1", "other.h5"), write("remote-touch-trace/2", "ours.h5");
   EXPECT_EQ(file_digest_of(folder / "other.h5"), FileDigest::absent);
   const Hdf5Reader reader(folder / "other.h5");
-  EXPECT_HAS(refusal([&] { reader.require_schema("mine/1", "what I write"); }), "of-another/1");
+  EXPECT_HAS(refusal([&] { reader.require_kind("trace", "what I write"); }), "of-another/1");
   EXPECT_HAS(refusal([&] { Hdf5Reader{folder / "ours.h5"}; }), "seal is missing");
 }
 

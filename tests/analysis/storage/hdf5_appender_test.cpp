@@ -26,7 +26,7 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
   const auto file = folder / "grown.h5";
   {
     Hdf5Appender out(file);
-    out.attributes("/", {{"schema", "remote-touch-test/1"}, {"empty", ""}});
+    out.attributes("/", {{"schema", "remote-touch-test/2"}, {"empty", ""}});
     out.group("/a");
     out.dataset({"/a/x", "m", "lengths", Number::f64, {3}, 7});
     out.dataset({"/a/image", "1", "pixels", Number::u16, {2, 4}, 1});
@@ -46,7 +46,7 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
   EXPECT_EQ(file_digest_of(file), FileDigest::valid);
   EXPECT_EQ(files_in(folder), 1u);
   const Hdf5Reader in(file);
-  EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/1");
+  EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/2");
   const Column x = in.column("/a/x");
   EXPECT_EQ(x.width, 3);
   EXPECT_EQ(x.units, "m");
