@@ -162,11 +162,11 @@ std::vector<Panel> panels() {
       map,
       depth_panel("Irregular delay, 0.1 m/s, 50 ms", "jitter (ms)",
                   {{"jitter", "jitter", "all_early", CurveStyle::band, "bounds", 0, "all_late"},
-                   {"jitter", "jitter", "largest", CurveStyle::dots, "largest of 20 runs"},
+                   {"jitter", "jitter", "max", CurveStyle::dots, "maximum of 20 runs"},
                    {"jitter", "jitter", "mean", CurveStyle::line, "mean"},
                    {"jitter", "jitter", "with_prediction", CurveStyle::dashed, "slave sent ahead, settled"}}),
       depth_panel("Lost frames, 0.1 m/s, 50 ms", "share of frames lost",
-                  {{"drops", "drops", "largest", CurveStyle::dots, "largest of 20 runs"},
+                  {{"drops", "drops", "max", CurveStyle::dots, "maximum of 20 runs"},
                    {"drops", "drops", "mean", CurveStyle::line, "mean"},
                    {"drops", "drops", "with_prediction", CurveStyle::dashed, "slave sent ahead, settled"}}),
       depth_panel("Beating heart, sensor noise", "latency (ms)", {})};
@@ -203,8 +203,8 @@ double fraction_known(const Table& map) {
 // How far outside its bounds any jittered run is.
 double max_outside(const Table& jitter) {
   double max = 0;
-  for (std::size_t i = 0; i < numbers(jitter, "largest").size(); ++i)
-    max = std::max({max, numbers(jitter, "largest")[i] - numbers(jitter, "all_late")[i],
+  for (std::size_t i = 0; i < numbers(jitter, "max").size(); ++i)
+    max = std::max({max, numbers(jitter, "max")[i] - numbers(jitter, "all_late")[i],
                     numbers(jitter, "all_early")[i] - numbers(jitter, "mean")[i]});
   return max;
 }
