@@ -39,7 +39,7 @@ class WorkPool {
     const std::function<void(std::size_t)>& work;
     std::size_t count, job;
     std::size_t next = 0, at_work = 0;
-    std::vector<std::exception_ptr> failures;
+    std::vector<std::exception_ptr> failures = {};
   };
   void work();
   void do_job(std::unique_lock<std::mutex>& lock);
