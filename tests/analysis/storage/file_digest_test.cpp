@@ -52,7 +52,7 @@ TEST(FileDigest, OtherHdf5FilesHaveNone) {
   EXPECT_EQ(file_digest_of(folder / "other.h5"), FileDigest::absent);
   const Hdf5Reader reader(folder / "other.h5");
   EXPECT_HAS(refusal([&] { reader.require_kind("trace", "what I write"); }), "of-another/1");
-  EXPECT_HAS(refusal([&] { Hdf5Reader{folder / "ours.h5"}; }), "seal is missing");
+  EXPECT_HAS(refusal([&] { Hdf5Reader{folder / "ours.h5"}; }), "SHA-256 header is missing");
 }
 
 TEST(Sha256, KnownValues) {

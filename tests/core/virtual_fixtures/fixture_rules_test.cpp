@@ -167,7 +167,7 @@ TEST(NearPoint, APixelOutsideTheImageIsRefused) {
   EXPECT_EQ(why(wall(), 4, 0), "near-point: row, column: expected below 4 and 6");
   EXPECT_EQ(why(wall(), 0, 6), "near-point: row, column: expected below 4 and 6");
   EXPECT_EQ(why(wall(), 3, 5), "no InputError");
-  EXPECT_HAS(why(cloud_of({{0, 0, 0}}), 0, 0), "the frame is no image");
+  EXPECT_HAS(why(cloud_of({{0, 0, 0}}), 0, 0), "the frame is not an image");
 }
 
 TEST(NearPoint, ARowNeedsItsColumn) {

@@ -31,7 +31,7 @@ std::string poses(const std::string& rows) {
   return R"({"name": "poses", "poses": [)" + rows + "]}";
 }
 
-int max(const std::vector<std::int32_t>& column) {
+int max_count(const std::vector<std::int32_t>& column) {
   return *std::max_element(column.begin(), column.end());
 }
 int sum(const std::vector<std::int32_t>& column) {
@@ -230,7 +230,7 @@ TEST(ToolContact, TheBoxStopsTheTurnOfTheHusky) {
     }
     EXPECT_GT(max, 20.5) << rule;
     EXPECT_LT(max, 22.5) << rule;
-    EXPECT_LE(max(trace.active_constraints), 6);
+    EXPECT_LE(max_count(trace.active_constraints), 6);
     EXPECT_LT(deepest(trace), 5e-4) << rule;
   }
 }
