@@ -90,6 +90,7 @@ const std::vector<TraceColumn>& trace_columns() {
 void Trace::reserve(std::size_t ticks) {
 #define TRACE_COLUMN(member, Row, name, unit, part, ...) \
   if (TracePart::part == TracePart::always) member.reserve(ticks);
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 }
 
@@ -98,6 +99,7 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   const TraceTick t{time, device, out, truth, hand};
 #define TRACE_COLUMN(member, Row, name, unit, part, value, ...) \
   if (has(t, TracePart::part)) member.push_back(static_cast<Row>(value));
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 }
 

@@ -5,9 +5,9 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/deviation_figure.h"
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/shell_command.h"
 #include "runners/provenance/provenance.h"
 #include "runners/regression/comparison/comparison_report.h"
@@ -68,12 +68,10 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   for (const std::string& text : request.tolerances) add_tolerance(text, rules.tolerances);
   rules.paired = request.paired;
   rules.rule = {request.margin, request.shift_margin, request.alpha};
-  for (const std::string& file : {request.json, request.junit, request.plot}) {
-    if (file.empty()) continue;
-    for (const std::string& input : {request.baseline, request.candidate})
-      require_different_file(file, input);
-    require_writable(file);
-  }
+  const std::vector<std::string> inputs{request.baseline, request.candidate};
+  if (!request.json.empty()) require_report(line, request.json, inputs, kJsonReport);
+  if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
+  if (!request.plot.empty()) require_output(line, request.plot, inputs);
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
   require_plot_of_traces(request, comparison);
   print_comparison(comparison);

@@ -13,6 +13,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/figure_runs.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/cli/shell_command.h"
 #include "runners/provenance/input_hashes.h"
@@ -68,7 +69,7 @@ class Repro {
   void write_config(const std::string& target) const {
     if (kind_ == "figure")
       throw InputError("--config", "of a figure: expected with a trace, a sweep or hashes");
-    require_different_file(target, file_);
+    require_report(line_, target, {file_}, kConfiguration);
     const std::string text = of("config") + "\n";
     write_file_atomically(target, text.data(), text.size());
     std::printf("# configuration written to %s\n", target.c_str());

@@ -3,10 +3,10 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/measures/measures.h"
-#include "analysis/storage/atomic_file.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/geometry/rotation.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/cli/shell_command.h"
 #include "runners/experiment/experiment.h"
@@ -53,7 +53,7 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
 
 int command_run(const CommandLine& line, const RunRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
-  require_writable(request.output);
+  require_output(line, request.output, with_parts(request.experiment, experiment.inputs()));
   Progress progress(request.experiment, line.quiet);
   std::vector<double> durations;
   SimulationOptions options;

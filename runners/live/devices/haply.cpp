@@ -16,7 +16,7 @@ constexpr double kOpenWithin_s = 1;
 // told a fault.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
 constexpr double kLastAnswerWithin_s = 20e-3;
-constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kNap_ns = 100'000;
+constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kServicePoll_ns = 100'000;
 constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
@@ -233,7 +233,7 @@ void Haply::release() noexcept {
   const std::int64_t until_ns = clock().now_ns() + kTickEndsWithin_ns;
   bool is_mine = false;
   while (!(is_mine = !taken_.exchange(true)) && clock().now_ns() < until_ns)
-    clock().sleep_until_ns(clock().now_ns() + kNap_ns);
+    clock().sleep_until_ns(clock().now_ns() + kServicePoll_ns);
   if (is_mine) {
     const bool is_older_due = is_answer_due_;
     const double deadline_s = clock().now_s() + kLastAnswerWithin_s;

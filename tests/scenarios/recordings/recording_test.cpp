@@ -141,11 +141,11 @@ TEST_F(Recording, RefusesBadCameraFiles) {
   expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: expected");
   expect_camera_error("true", "1", "colour_registered = 1: expected true, false");
   expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": expected");
-  expect_camera_error("{", "", "is not JSON");
+  expect_camera_error("{", "", "expected JSON");
   folder_.write("camera.json", "[1]");
   expect_error("camera.json", "is of type array: expected object");
   folder_.write("camera.json", "");
-  expect_error("camera.json", "is not JSON");
+  expect_error("camera.json", "expected JSON");
 }
 
 TEST_F(Recording, RefusesImagesOfAnotherSize) {

@@ -140,7 +140,11 @@ cp "$made" "$2"
     return file.string();
   }
   static TextAttributes build(const std::string& compiler) {
-    return {{"config", "{}"}, {"version", "1"}, {"git_commit", "abc"}, {"compiler", compiler}};
+    return {{"config", "{}"},
+            {"version", "1"},
+            {"git_commit", "abc"},
+            {"source_digest", "01"},
+            {"compiler", compiler}};
   }
   void trace(
       const std::string& name, const TextAttributes& attributes,
@@ -229,7 +233,7 @@ TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
 
 TEST_F(MeasureSpread, AnotherSourceIsRefused) {
   const auto programs = two_programs();
-  for (const char* name : {"version", "git_commit", "config"}) {
+  for (const char* name : {"version", "git_commit", "source_digest", "config"}) {
     TextAttributes attributes = build("Clang 14");
     for (auto& [key, value] : attributes)
       if (key == name) value = "another";
