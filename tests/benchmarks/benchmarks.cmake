@@ -1,4 +1,5 @@
 # Included by tests/CMakeLists.txt: the paths are from there, and the programs beside the tests.
+set(CMAKE_UNITY_BUILD OFF)  # the naive versions have the names of what they stand beside
 find_package(benchmark REQUIRED)
 find_package(NLopt QUIET)
 add_executable(proxy_benchmark
@@ -25,7 +26,7 @@ add_executable(sphere_tree_benchmark
 target_link_libraries(sphere_tree_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(tracked_sheet_benchmark benchmarks/checked_benchmark.cpp benchmarks/tracked_sheet_benchmark.cpp)
-target_link_libraries(tracked_sheet_benchmark PRIVATE scenarios benchmark::benchmark)
+target_link_libraries(tracked_sheet_benchmark PRIVATE core scenarios benchmark::benchmark)
 
 add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)

@@ -48,7 +48,7 @@ TEST(ApplyOverride, IsUtf8) {
 TEST(ReadParameters, ATextHasNoZeroInIt) {
   std::string title;
   const auto read = [&](const char* json) {
-    return refusal([&] { read_parameters(Json::parse(json), {{"title", &title, 0, 0, ""}}, "", false); });
+    return refusal([&] { read_parameters(Json::parse(json), {{"title", &title, 0, 0, ""}}, ""); });
   };
   EXPECT_HAS(read(R"({"title": "a\u0000b"})"), R"(title = "a\u0000b": expected UTF-8 text)");
   EXPECT_EQ(read(R"({"title": "a b"})"), "no InputError");
@@ -58,7 +58,7 @@ TEST(ReadParameters, ATextHasNoZeroInIt) {
 TEST(ReadParameters, AKeyOfAnyBytesIsShown) {
   Json object = Json::object();
   object[std::string("a\0\xff", 3)] = 1;
-  EXPECT_HAS(refusal([&] { read_parameters(object, {}, "", false); }), "a\\x00\\xff: unknown");
+  EXPECT_HAS(refusal([&] { read_parameters(object, {}, ""); }), "a\\x00\\xff: unknown");
 }
 
 }  // namespace
