@@ -18,7 +18,7 @@ struct VendorDevice {
   const char* double_file;
   const char* variable;  // names the library
   const char* library;   // that is looked for without it
-  std::unique_ptr<HapticDevice> (*open)(const std::string& address, Clock& clock);
+  std::unique_ptr<HapticDevice> (*open)(const std::string& address);
   Availability (*availability)();
 
   Eigen::Matrix3d axes;  // takes ours to the vendor's
@@ -33,11 +33,10 @@ void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readabil
 
 extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
 
-// The library of the vendor is its double, freshly set, as long as this lives: on a simulated clock, or on
-// the steady one.
+// The library of the vendor is its double, freshly set, as long as this lives.
 class DoubleInstalled {
  public:
-  explicit DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock = nullptr);
+  explicit DoubleInstalled(const VendorDevice& vendor);
   ~DoubleInstalled();
   DoubleInstalled(const DoubleInstalled&) = delete;
   DoubleInstalled& operator=(const DoubleInstalled&) = delete;

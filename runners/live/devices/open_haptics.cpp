@@ -2,6 +2,9 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 
 #include "core/parameters/input_error.h"
 #include "runners/live/devices/gated_device.h"
@@ -14,7 +17,6 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMPerMm = 1e-3, kMmPerM = 1e3, kNmPerMNm = 1e-3, kMNmPerNm = 1e3;
-constexpr double kLook_s = 0.005, kLongestSilence_s = 1;
 
 constexpr std::array<KnownFault, 10> kHdFaults{{
     {0x0200, "OpenHaptics: the motors are warm"},
@@ -31,7 +33,7 @@ constexpr std::array<KnownFault, 10> kHdFaults{{
 
 class OpenHaptics : public GatedDevice {
  public:
-  OpenHaptics(const std::string& address, const std::string& subject, Clock& clock);
+  OpenHaptics(const std::string& address, const std::string& subject);
   ~OpenHaptics() override;
   OpenHaptics(const OpenHaptics&) = delete;
   OpenHaptics& operator=(const OpenHaptics&) = delete;
@@ -48,7 +50,8 @@ class OpenHaptics : public GatedDevice {
   void learn_traits();
   DeviceFault newest_error(const char* what) const noexcept;
   bool frame(DeviceCycle& cycle) noexcept;
-  bool is_scheduler_done() noexcept;
+  bool is_scheduler_done();
+  bool has_ended();
   static unsigned on_schedule(void* self) noexcept;
 
   HdLibrary hd_;
@@ -62,11 +65,13 @@ class OpenHaptics : public GatedDevice {
   DeviceFault scheduler_fault_;  // set while no callback can be
   DeviceCycle* cycle_ = nullptr;
   std::atomic<long> callbacks_{0};
-  std::atomic<bool> in_callback_{false}, has_ended_{false};
+  std::atomic<bool> in_callback_{false};
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
 };
 
-OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject, Clock& clock)
-    : GatedDevice(clock) {
+OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject) {
   const bool is_default = address.empty() || address == "Default Device";
   device_ = hd_.init_device(is_default ? nullptr : address.c_str());
   const HdLibrary::Error error = hd_.get_error();
@@ -181,22 +186,26 @@ unsigned OpenHaptics::on_schedule(void* self) noexcept {
   const bool continues = device.frame(*device.cycle_);
   device.in_callback_ = false;
   if (continues) return HdLibrary::callback_continue;
+  const std::lock_guard<std::mutex> lock(device.mutex_);
   device.has_ended_ = true;
+  device.ended_.notify_one();
   return HdLibrary::callback_done;
 }
 
 // True after the last tick; false when no callback came for long, though none is under way.
-bool OpenHaptics::is_scheduler_done() noexcept {
-  long before = -1;
-  for (double called_s = 0; !has_ended_; clock().sleep_s(kLook_s)) {
-    const double now_s = clock().now_s();
-    if (in_callback_ || callbacks_ != before) {
-      before = callbacks_, called_s = now_s;
-    } else if (now_s - called_s > kLongestSilence_s) {
-      return false;
-    }
+bool OpenHaptics::is_scheduler_done() {
+  constexpr std::chrono::seconds kMaxLength(1);
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    const long before = callbacks_;
+    if (ended_.wait_for(lock, kMaxLength, [this] { return has_ended_; })) return true;
+    if (callbacks_ == before && !in_callback_) return false;
   }
-  return true;
+}
+
+bool OpenHaptics::has_ended() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return has_ended_;
 }
 
 void OpenHaptics::run(DeviceCycle& cycle) {
@@ -210,7 +219,7 @@ void OpenHaptics::run(DeviceCycle& cycle) {
   const bool is_done = !fault && is_scheduler_done();
   if (!is_done) hd_.unschedule(callback);
   hd_.stop_scheduler();
-  if (is_done || has_ended_) return;
+  if (is_done || has_ended()) return;
   switch_off();
   scheduler_fault_ = fault ? fault : DeviceFault{"OpenHaptics: the scheduler has stopped calling", 0};
   HapticDevice::run(cycle);
@@ -218,9 +227,8 @@ void OpenHaptics::run(DeviceCycle& cycle) {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address, Clock& clock) {
-  return std::make_unique<OpenHaptics>(address, "touch:" + (address.empty() ? "Default Device" : address),
-                                       clock);
+std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address) {
+  return std::make_unique<OpenHaptics>(address, "touch:" + (address.empty() ? "Default Device" : address));
 }
 
 Availability open_haptics_availability() {

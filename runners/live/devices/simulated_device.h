@@ -11,13 +11,13 @@
 
 namespace remote_touch {
 
-// Follows its clock: where a tick was missed the hand has moved on all the same, by ticks of its own
+// Follows the steady clock: where a tick was missed the hand has moved on all the same, by ticks of its own
 // rate. Begins with run().
 class SimulatedDevice final : public HapticDevice {
  public:
   // placement: that of the loop, undone here.
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
-                  const DevicePlacement& placement, double rate_hz, Clock& clock);
+                  const DevicePlacement& placement, double rate_hz);
 
   const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override;

@@ -1,12 +1,20 @@
 #include "runners/live/loop/live_logger.h"
 
+#include <chrono>
 #include <exception>
 #include <utility>
 
 namespace remote_touch {
 
 LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder)
-    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {}
+    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveLogger::~LiveLogger() {
+  stop_.store(true);
+  if (thread_.joinable()) thread_.join();
+}
 
 bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
   if (!recorder_) return true;
@@ -40,26 +48,31 @@ void LiveLogger::take_frames() {
   }
 }
 
-// Where the disk is full it goes on without it, so that the log is whole.
-void LiveLogger::take_all() noexcept try {
-  take_rows();
-  take_frames();
-} catch (const std::exception& error) {
-  fail(error);
-}
-
-void LiveLogger::step() noexcept {
-  take_all();
-  try {
-    answer();
-  } catch (const std::exception&) {
-    // No memory for a report: the run is more important.
+void LiveLogger::run() {
+  const auto take = [this] {
+    try {
+      take_rows();
+      take_frames();
+    } catch (const std::exception& error) {  // the disk is full: go on without it, so that the log is whole
+      fail(error);
+    }
+  };
+  while (!stop_.load()) {
+    take();
+    try {
+      answer();
+    } catch (const std::exception&) {
+      // No memory for a report: the run is more important.
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  take();
 }
 
 // The log is worth having even where the disk is full.
 void LiveLogger::finish() try {
-  take_all();
+  stop_.store(true);
+  thread_.join();
   if (recorder_ && !failed_) recorder_->finish();
 } catch (const std::exception& error) {
   fail(error);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/cloud/point_cloud.h"
-#include "runners/live/timing/clock.h"
 
 namespace remote_touch {
 
@@ -21,7 +20,7 @@ struct SensorView {
 // Pixel (u, v) is number v * width + u.
 struct SensorFrame {
   int number = 0;                     // as the sensor counts, so that a gap shows
-  double captured_s = 0;              // of the host's clock, seconds
+  double captured_s = 0;              // of the steady clock
   std::vector<std::uint16_t> depth;   // along the optical axis, in units of the view; 0: nothing measured
   std::vector<std::uint32_t> colour;  // 0xRRGGBB, registered to the depth image; empty: none
 };

@@ -18,33 +18,31 @@ Availability always(const char* what) {
 }
 
 std::unique_ptr<DepthSource> open_simulated(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels, Clock& clock) {
+                                            const Kernels& kernels) {
   if (!address.empty())
     throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
-  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels), clock);
+  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels));
 }
 
 // Played at the rate of the recording, over and over, there and back.
 std::unique_ptr<DepthSource> open_recording(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels, Clock& clock) {
+                                            const Kernels& kernels) {
   RecordedScene::Settings settings;
   settings.path = address;
   settings.playback = RecordedScene::Playback::ping_pong;
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels), clock);
+      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels));
 }
 
 std::unique_ptr<DepthSource> open_session(const std::string& address, const Experiment& experiment,
-                                          const Kernels& kernels, Clock& clock) {
+                                          const Kernels& kernels) {
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels),
-      clock);
+      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels));
 }
 
-template <std::unique_ptr<DepthSource> (*open)(const std::string&, Clock&)>
-std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&,
-                                     Clock& clock) {
-  return open(address, clock);
+template <std::unique_ptr<DepthSource> (*open)(const std::string&)>
+std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&) {
+  return open(address);
 }
 
 constexpr SensorEntry kSensors[] = {
@@ -72,9 +70,9 @@ std::span<const SensorEntry> sensors() {
 }
 
 std::unique_ptr<DepthSource> open_sensor(const std::string& text, const Experiment& experiment,
-                                         const Kernels& kernels, Clock& clock) {
+                                         const Kernels& kernels) {
   const Uri uri = parse_uri("--depth", text);
-  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels, clock);
+  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels);
 }
 
 }  // namespace remote_touch

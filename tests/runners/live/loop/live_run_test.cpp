@@ -1,18 +1,15 @@
-// The live loop against simulated sensors and devices: what it leaves, and what a recording of it gives
-// again.
+// The live loop against simulated sensors and devices: what it leaves, what a recording of it gives again,
+// and what the device feels when something fails.
 #include "runners/live/loop/live_run.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <regex>
 #include <string>
 
 #include "analysis/storage/digest.h"
-#include "runners/live/devices/device_table.h"
 #include "runners/simulation/simulation.h"
-#include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -38,26 +35,6 @@ const char* const kTool = R"({
   "trajectory": {"name": "poses", "poses": [[0, 0.06, 0, 0, 0, 0, 0], [0, 0.01, 0, 0, 0, 0, 0.5],
                                             [0.05, 0.01, 0, 0, 0, 0, 1]]}})";
 
-SimulatedRun::DeviceOpener simulated_device() {
-  return [](const Experiment& experiment, Clock& clock) {
-    return open_device("sim:", experiment, scenes::kernels(), clock);
-  };
-}
-
-void expect_the_same_offline(const std::filesystem::path& session, const LiveResult& live) {
-  ASSERT_FALSE(live.failed) << live.ended;
-  ASSERT_GT(live.log.trace.length(), 100u);
-  ASSERT_GT(live.log.latency_s.size(), 2u) << "frames taken";
-  EXPECT_EQ(live.counts.rows_lost, 0);
-  EXPECT_EQ(live.log.reversed_frames, 0);
-  SimulationOptions offline;
-  offline.kernels = &scenes::kernels();
-  offline.hash_frames = true;
-  const Trace again = simulate(Experiment::load(session.string()), offline);
-  ASSERT_EQ(again.length(), live.log.trace.length());
-  EXPECT_EQ(digest(again.columns()), digest(live.log.trace.columns()));
-}
-
 TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
   const std::string tracked =
       std::regex_replace(std::string(kProxy), std::regex("\"proxy\""), "\"tracked-sheet\"");
@@ -66,62 +43,39 @@ TEST(LiveRun, ARecordingGivesTheSameDigestOffline) {
     std::string experiment;
   } cases[] = {
       {"3-DOF", kProxy}, {"tracked sheet", tracked}, {"6-DOF voxels", kTool}, {"sphere tree", "fig7.4"}};
-  for (const auto& [name, text] : cases) {
-    SCOPED_TRACE(name);
+  for (const auto& [name, experiment] : cases) {
     const TestFolder folder("live_run");
-    Experiment experiment =
-        text.front() == '{'
-            ? Experiment::from_json(text, name)
-            : Experiment::load(text, {"scenario.width=160", "scenario.height=120", "scenario.focal_px=131"});
-    SimulatedClock clock;
-    const std::string config = experiment.to_json();
-    SimulatedRun run(clock, std::move(experiment), simulated_device());
-    run.options.duration_s = 2.5;
-    run.options.record = folder / "session.h5";
-    run.options.provenance = {{"config", config}};
-    // The loop comes late now and then, and the numbers of its ticks have gaps.
-    clock.at(0.7005, [&] { clock.sleep_s(0.0042); });
-    const LiveResult result = run.run();
-    EXPECT_EQ(result.log.missed_ticks, 4);
-    EXPECT_EQ(result.log.trace.length(), 2496u);
-    expect_the_same_offline(run.options.record, result);
-  }
-}
+    const std::filesystem::path file = folder / "session.h5";
+    LiveOptions live = options(2.5);
+    live.record = file;
+    const Experiment run = experiment.front() == '{'
+                               ? Experiment::from_json(experiment, name)
+                               : Experiment::load(experiment, {"scenario.width=160", "scenario.height=120",
+                                                               "scenario.focal_px=131"});
+    live.provenance = {{"config", run.to_json()}};
+    const LiveResult result = run_live(run, live);
+    ASSERT_FALSE(result.failed) << name << ": " << result.ended;
+    ASSERT_GT(result.log.trace.length(), 100u) << name;
+    ASSERT_GT(result.log.latency_s.size(), 2u) << name << ": frames taken";
+    EXPECT_EQ(result.counts.rows_lost, 0) << name;
+    EXPECT_EQ(result.log.reversed_frames, 0) << name;
 
-// With threads, for as long as a busy machine needs to take some frames.
-TEST(LiveRun, ARecordingInRealTimeGivesTheSameDigestOffline) {
-  const TestFolder folder("live_run");
-  const Experiment experiment = Experiment::from_json(kProxy, "test");
-  LiveOptions live = options(2.5);
-  live.record = folder / "session.h5";
-  live.provenance = {{"config", experiment.to_json()}};
-  expect_the_same_offline(live.record, run_live(experiment, live));
+    SimulationOptions offline;
+    offline.kernels = &scenes::kernels();
+    offline.hash_frames = true;
+    const Trace again = simulate(Experiment::load(file.string()), offline);
+    ASSERT_EQ(again.length(), result.log.trace.length()) << name;
+    EXPECT_EQ(digest(again.columns()), digest(result.log.trace.columns())) << name;
+  }
 }
 
 TEST(LiveRun, FollowsItsDurationAndCountsEveryTick) {
-  SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
-  run.options.duration_s = 0.5;
-  const LiveResult result = run.run();
+  const LiveResult result = run_live(Experiment::from_json(kProxy, "test"), options(0.5));
   EXPECT_EQ(result.ended, "its duration is over");
-  ASSERT_EQ(result.log.trace.length(), 500u);
-  EXPECT_EQ(result.log.missed_ticks, 0);
-  for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(result.log.trace.time_s[i], static_cast<double>(i) / 1000);
-}
-
-// A frame is there in the first tick at or after its time, and rendering takes no time here.
-TEST(LiveRun, TellsHowLongAFrameTook) {
-  SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(kProxy, "test"), simulated_device());
-  run.options.duration_s = 1;
-  const LiveResult result = run.run();
-  ASSERT_EQ(result.log.latency_s.size(), 30u);
-  for (std::size_t i = 1; i < 30; ++i) {
-    const double captured_ms = static_cast<double>(i) * 1000 / 30;
-    EXPECT_NEAR(result.log.latency_s[i], 1e-3 * (std::ceil(captured_ms) - captured_ms), 1.1e-3) << i;
-  }
-  for (const double interval_s : result.log.interval_s) EXPECT_NEAR(interval_s, 1e-3, 1e-9);
-  EXPECT_EQ(result.counts.stalls, 0);
+  const auto ticks = static_cast<std::int64_t>(result.log.trace.length());
+  EXPECT_NEAR(static_cast<double>(ticks + result.log.missed_ticks), 500, 60);
+  for (std::size_t i = 1; i < result.log.trace.length(); ++i)
+    ASSERT_GT(result.log.trace.time_s[i], result.log.trace.time_s[i - 1]);
 }
 
 TEST(LiveRun, AScenarioWithoutDepthImagesIsRefused) {
