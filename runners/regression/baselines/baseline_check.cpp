@@ -74,7 +74,7 @@ BaselineCheck concluded(const Baseline& baseline, ResultComparison comparison) {
                                                            : State::not_comparable;
   if (check.state == State::same && !comparison.configuration.empty()) {
     check.state = State::changed;
-    check.text = "the numbers are equal, but the experiment differs:  " + comparison.configuration.front();
+    check.text = "the numbers are equal, but the experiment differs: " + comparison.configuration.front();
     comparison.outcome = Outcome::regressed, comparison.verdict = check.text;
   }
   check.comparison = std::move(comparison);

@@ -204,7 +204,7 @@ TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
   EXPECT_HAS(nearest("duration=3"), "duration: unknown; did you mean duration_s");
   EXPECT_HAS(nearest("sede=3"), "did you mean seed");
   // Sections stand beside the parameters of the run.
-  EXPECT_HAS(nearest("fixture=3"), "fixture: unknown; did you mean fixtures");
+  EXPECT_HAS(nearest("fixturs=3"), "fixturs: unknown; did you mean fixtures");
   EXPECT_HAS(nearest("saftey.ramp_s=3"), "did you mean safety");
   EXPECT_HAS(nearest("renderer.nam=proxy"), "did you mean renderer.name");
   EXPECT_HAS(nearest("run.seed=3"), "run: unknown");

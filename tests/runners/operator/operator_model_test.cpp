@@ -239,7 +239,7 @@ TEST(OperatorModel, RefusesWhatCannotBe) {
             "rotational_stiffness_Nm_per_rad = 40.000000: expected below 40.000000 for this inertia");
   s = {};
   s.grip = {0, 1.5};
-  EXPECT_EQ(validate(s), "grip: share 1.500000: expected 0 to 1");
+  EXPECT_EQ(validate(s), "grip: fraction 1.500000: expected 0 to 1");
   s.grip = {1, 0, 0.5, 1};
   EXPECT_EQ(validate(s), "grip: time 0.500000: expected no earlier than the row before");
   s = {};

@@ -328,7 +328,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
              (folder / "moon.json").string() + ": cannot be read");
   EXPECT_HAS(refused([](auto& b) { b.run = "mine.json"; }), "scenario: missing");
   EXPECT_HAS(refused([](auto& b) { b.run = "", b.sweep = "fig4.11"; }),
-             "fig4.11: cannot be read: expected a sweep's");
+             "fig4.11: cannot be read (No such file or directory): expected a sweep's");
   EXPECT_HAS(refused([](auto& b) { b.overrides = {"seeed=1"}; }), "seeed: unknown");
   EXPECT_HAS(refused([](auto& b) { b.overrides = {"seed"}; }), "--set seed: expected key=value");
   EXPECT_HAS(refused([](auto& b) { b.folder /= "mine.json"; }), "mine.json/manifest.json: cannot be written");

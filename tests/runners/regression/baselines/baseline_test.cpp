@@ -243,7 +243,7 @@ TEST_F(CheckBaseline, AFileThatIsNotTheStoredOne) {
   const Baseline run = stored_run(), sweep = stored_sweep();
   for (const Baseline& baseline : {run, sweep}) {
     const std::string name = baseline.name + ".h5", bytes = bytes_of(folder_ / name);
-    const std::string why = "SHA-256 is not that of the manifest";
+    const std::string why = "SHA-256 differs from the manifest";
     for (const std::size_t at :
          {std::size_t{0}, std::size_t{100}, std::size_t{520}, bytes.size() / 2, bytes.size() - 1}) {
       flip(folder_.path(), name, at);

@@ -120,7 +120,7 @@ TEST_F(CompareSweepFiles, OfAnotherSeedAreNoPairs) {
     rules.paired = in_pairs;
     const ResultComparison comparison = compare("a.h5", "b.h5", rules);
     EXPECT_EQ(comparison.outcome, Outcome::not_comparable);
-    EXPECT_HAS(comparison.verdict, "experiment.seed 1 against 5: the runs met other noise");
+    EXPECT_HAS(comparison.verdict, "experiment.seed 1 against 5: the runs had different noise");
     EXPECT_HAS(junit_of(comparison), counts(1, 0, 1));
   }
 }
