@@ -8,8 +8,8 @@
 
 #include "analysis/figures/figure.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "runners/figures/figures.h"
 #include "analysis/theory/pop_through_bound.h"
+#include "runners/figures/figures.h"
 
 namespace remote_touch {
 
