@@ -121,9 +121,9 @@ TriangleMesh mesh_in_child(const std::filesystem::path& file) {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const char* allowed = "expected an OBJ, PLY or STL file";
-  if (!is_mesh_file(file)) throw InputError(file.string(), std::string("not a mesh; ") + allowed);
+  if (!is_mesh_file(file)) throw InputError(file.string(), std::string("not a mesh: ") + allowed);
   if (!std::filesystem::is_regular_file(file))
-    throw InputError(file.string(), std::string("no such file; ") + allowed);
+    throw InputError(file.string(), std::string("no such file: ") + allowed);
   TriangleMesh mesh;
   try {
     if (ending_of(file) == ".ply")

@@ -75,7 +75,7 @@ TEST(ToolContact, ABarInASlotSinksBetweenColumnsByVoxels) {
 bool frame_correction(int thickness_mm, double speed_m_per_s, const std::string& rule) {
   const double rise = 0.08 + 0.006 * thickness_mm;
   const Trace trace =
-      run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.03, "wait_s": 0.1})",
+      run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_height_m": -0.03, "wait_s": 0.1})",
           tool("slab-" + std::to_string(thickness_mm), rule), poses("[0,0,0,0,0,0,0]"),
           {"scenario.speed_m_per_s=" + number(speed_m_per_s), "scenario.rise_height_m=" + number(rise),
            "duration_s=" + number(0.3 + rise / speed_m_per_s)});
@@ -107,7 +107,7 @@ TEST(ToolContact, TheVelocityEstimateCarriesASlabThatAccelerates) {
     for (const bool estimate : {true, false}) {
       const double a = 0.9 * bound, rise = 0.5;
       const Trace trace = run(
-          R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": -0.0048, "wait_s": 0.2, "speed_m_per_s": 0})",
+          R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_height_m": -0.0048, "wait_s": 0.2, "speed_m_per_s": 0})",
           tool("slab-10", rule), poses("[0,0,0,0,0,0,0]"),
           {"scenario.acceleration_m_per_s2=" + number(a), "scenario.rise_height_m=" + number(rise),
            "duration_s=" + number(0.5 + std::sqrt(2 * rise / a)),
@@ -167,7 +167,7 @@ TEST(ToolContact, ATouchFromBehindDoesNotCountForEver) {
   for (const char* displacement :
        {"[0,-0.05,0,0,0,0,0], [0,-0.009,0,0,0,0,0.3]", "[0,-0.05,0,0,0,0,0], [0,-0.03,0,0,0,0,0.3]"}) {
     const Trace trace = run(
-        R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_m": 0, "wait_s": 1.5, "speed_m_per_s": 0.3,
+        R"({"name": "moving-plane", "columns": 40, "rows": 40, "start_height_m": 0, "wait_s": 1.5, "speed_m_per_s": 0.3,
             "rise_height_m": 0.05})",
         tool("ball", "look-ahead"),
         poses(std::string(displacement) +

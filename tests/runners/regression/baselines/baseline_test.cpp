@@ -337,7 +337,7 @@ TEST_F(CheckBaseline, Sweeps) {
   const BaselineCheck other =
       check(stored_sweep(same, [](auto& config) { config["experiment"]["frame_latency_s"] = 0.5; }));
   EXPECT_EQ(other.state, State::changed);
-  EXPECT_HAS(other.text, "not the experiment: experiment.frame_latency_s 0.5 against 0");
+  EXPECT_HAS(other.text, "the experiment differs: experiment.frame_latency_s 0.5 against 0.0");
 
   const Baseline axes = stored_sweep();
   folder_.write("map.json", changed_config(kSweep, [](auto& json) { json["axes"][1]["values"] = {0, 5}; }));
