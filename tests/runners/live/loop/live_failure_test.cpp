@@ -151,7 +151,8 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
   const double limited_N = resting_N();
   const LiveResult limited = run_->ended_by_stop();
   EXPECT_EQ(limited.force_scale, kLimit_N_per_m / kRendered_N_per_m);
-  EXPECT_HAS(run_->told(), "the device takes 300 N/m at most: it gets 0.5 of every force and torque");
+  EXPECT_HAS(run_->told(),
+             "the maximum stiffness of the device is 300 N/m: forces and torques are scaled by 0.5");
   EXPECT_NEAR(limited_N, 0.5 * rendered_at_last_N(limited), 0.01 * limited_N);
   EXPECT_LT(limited.log.max_force_N, 0.5 * max_rendered_N(limited) * (1 + 1e-9));
 }
