@@ -13,10 +13,14 @@ else()
     set(dirty "no")
   endif()
 endif()
-# What the program was made from, committed or not: builds with equal SHA-256 are of equal sources.
-file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/core/*.h ${SOURCE}/core/*.cpp ${SOURCE}/scenarios/*.h
-  ${SOURCE}/scenarios/*.cpp ${SOURCE}/analysis/*.h ${SOURCE}/analysis/*.cpp ${SOURCE}/runners/*.h
-  ${SOURCE}/runners/*.cpp ${SOURCE}/data/experiments/*.json ${SOURCE}/data/sweeps/*.json)
+# What the program was made from, committed or not: builds with equal SHA-256 are of equal sources. Of data/ all but
+# what is made by the program and drawn from it is compiled in.
+set(patterns ${SOURCE}/scripts/cmake/*.cmake ${SOURCE}/data/*.json)
+foreach(folder core scenarios analysis runners)
+  list(APPEND patterns ${SOURCE}/${folder}/*.h ${SOURCE}/${folder}/*.cpp ${SOURCE}/${folder}/CMakeLists.txt)
+endforeach()
+file(GLOB_RECURSE files RELATIVE ${SOURCE} ${patterns})
+list(FILTER files EXCLUDE REGEX "^data/(baselines|pictures)/")
 list(SORT files)
 set(sums "")
 foreach(file ${files} CMakeLists.txt)

@@ -140,7 +140,11 @@ cp "$made" "$2"
     return file.string();
   }
   static TextAttributes build(const std::string& compiler) {
-    return {{"config", "{}"}, {"version", "1"}, {"git_commit", "abc"}, {"compiler", compiler}};
+    return {{"config", "{}"},
+            {"version", "1"},
+            {"git_commit", "abc"},
+            {"source_digest", "01"},
+            {"compiler", compiler}};
   }
   void trace(
       const std::string& name, const TextAttributes& attributes,
@@ -229,7 +233,7 @@ TEST_F(MeasureSpread, WhatHasNoToleranceIsRefused) {
 
 TEST_F(MeasureSpread, AnotherSourceIsRefused) {
   const auto programs = two_programs();
-  for (const char* name : {"version", "git_commit", "config"}) {
+  for (const char* name : {"version", "git_commit", "source_digest", "config"}) {
     TextAttributes attributes = build("Clang 14");
     for (auto& [key, value] : attributes)
       if (key == name) value = "another";
@@ -324,7 +328,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
              (folder / "moon.json").string() + ": cannot be read");
   EXPECT_HAS(refused([](auto& b) { b.run = "mine.json"; }), "scenario: missing");
   EXPECT_HAS(refused([](auto& b) { b.run = "", b.sweep = "fig4.11"; }),
-             "fig4.11: cannot be read: expected a sweep's");
+             "fig4.11: cannot be read (No such file or directory): expected a sweep's");
   EXPECT_HAS(refused([](auto& b) { b.overrides = {"seeed=1"}; }), "seeed: unknown");
   EXPECT_HAS(refused([](auto& b) { b.overrides = {"seed"}; }), "--set seed: expected key=value");
   EXPECT_HAS(refused([](auto& b) { b.folder /= "mine.json"; }), "mine.json/manifest.json: cannot be written");
