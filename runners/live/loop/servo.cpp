@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "runners/live/timing/steady_clock.h"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 bool is_released(const DeviceFault& fault) {
-  return fault.what == kReleased.what;
+  return fault && std::string_view(fault.what) == kReleased.what;
 }
 
 Wrench wrench_of(const RenderOutput& out) {
