@@ -79,6 +79,8 @@ class Figure:
 
     @property
     def heading(self):
+        if "heading" in self.attributes:  # of what is no figure
+            return self.attributes["heading"]
         name = self.attributes.get("figure") or self.name.removeprefix("fig")
         number = f"Equation {name[2:]}" if name.startswith("eq") else f"Figure {name}"
         title = self.attributes.get("title", "")

@@ -6,10 +6,11 @@ import signal
 import sys
 
 from plotting.claims import read_claims, verdict
-from plotting.figure_file import SCHEMA, PlotError, read_figure, schema_of
+from plotting.figure_file import SCHEMA, PlotError, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
 from plotting.progress import read_progress
+from plotting.results import read_drawable
 
 LOOK_EVERY_S = 0.5
 
@@ -29,7 +30,7 @@ def is_figure(path):
 
 def plot_file(path, png, titled=False):
     """One figure, in a process of its own. Returns what the page says about it, without the curves."""
-    figure = read_figure(path)
+    figure = read_drawable(path)
     if figure.panels:
         draw_figure(figure, png, titled)
     else:
