@@ -187,15 +187,18 @@ Figure figure_turbidity(const FigureContext& context) {
   for (const double per_m : kLevels_per_m) levels.push_back(measure_level(context, per_m));
   Figure figure{
       "turbidity", "Two valves found by hue in turbid water",
-      "A simulated camera looks at a red and a yellow valve, 0.9 m away in water whose every channel is "
-      "attenuated, red most of all, and veiled. Above: what it sees, cut out around the valves, and what "
-      "the rules of hue pick of it: red and yellow where they are right, magenta where a valve is missed, "
-      "white where something else is picked, black where there is no depth, so no point. Below: recall and "
-      "precision among the pixels with depth, and how many have one; the precision of 0 that yellow ends with "
-      "is of less than a pixel in a frame. Most of a valve is too narrow for the depth camera, which sees "
-      "nothing within two pixels of an edge. The water is a model with chosen "
-      "rates, so the turbidity at which a hue is lost is that model's; which is lost first, and how, is "
-      "what it shows."};
+      std::string(
+          "A simulated camera looks at a red and a yellow valve, 0.9 m away in water whose every channel is "
+          "attenuated, red most of all, and veiled. Above: what it sees, cut out around the valves, and what "
+          "the rules of hue pick of it: red and yellow where they are right, magenta where a valve is missed, "
+          "white where something else is picked, black where there is no depth, so no point. Below: recall and "
+          "precision among the pixels with depth, and how many have one; the precision of 0 that yellow ends with "
+          "is of less than a pixel in a frame. Most of a valve is too narrow for the depth camera, which sees "
+          "nothing within ") +
+          std::to_string(ValveTank::Settings{}.camera.hole_px) +
+          " px of an edge. The water is a model with chosen "
+          "rates, so the turbidity at which a hue is lost is that model's; which is lost first, and how, is "
+          "what it shows."};
   for (std::size_t k = 0; k < 2; ++k) figure.tables.push_back(score_table(levels, k));
   add_pictures(figure, levels);
   figure.panels.push_back(fraction_panel("Recall", "recall", 0));
