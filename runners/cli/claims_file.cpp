@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 bool is_judged(const Claim& claim) {
   return claim.verdict == Verdict::pass || claim.verdict == Verdict::fail;
@@ -35,8 +33,7 @@ ClaimsFile::ClaimsFile(std::filesystem::path file, std::vector<std::string> orde
     : file_(std::move(file)),
       order_(std::move(order)),
       claims_(std::make_unique<std::vector<Json>>(order_.size() + 1, Json::array())) {
-  std::ifstream in(file_);
-  const Json earlier = Json::parse(in, nullptr, false);  // absent or damaged: nothing to keep
+  const Json earlier = json_in_file(file_);  // absent or damaged: nothing to keep
   if (!earlier.is_array()) return;
   for (const auto& claim : earlier) {
     const auto name = claim.is_object() ? claim.find("figure") : claim.end();

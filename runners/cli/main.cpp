@@ -1,11 +1,12 @@
 // remote-touch: signals, the choice of kernels, errors.
 #include <malloc.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
+#include <stdexcept>
 
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
@@ -41,10 +42,13 @@ const Kernels& chosen_kernels() {
                    std::string("expected x86-64 up to ") + best.isa + " on this machine");
 }
 
-// One line, whatever the user's names contain.
-void complain(std::string problem) {
-  std::replace(problem.begin(), problem.end(), '\n', ' ');
-  std::fprintf(stderr, "remote-touch: %s\n", problem.c_str());
+void complain(const std::string& problem) {
+  std::fprintf(stderr, "remote-touch: %s\n", printable(problem).c_str());
+}
+
+int interrupted() {
+  complain("interrupted: no incomplete file is left");
+  return kInterrupted;
 }
 
 }  // namespace
@@ -68,9 +72,13 @@ int main(int argc, char** argv) {
       throw InputError("standard output", "cannot be written: expected a place with room");
     return code;
   } catch (const Interrupted&) {
-    complain("interrupted: no incomplete file is left");
-    return kInterrupted;
+    return interrupted();
+  } catch (const InputError& error) {
+    if (stop_requested) return interrupted();  // it ended the wait for a file
+    complain(error.what());
   } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::length_error&) {
     complain("out of memory");
   } catch (const std::exception& error) {
     complain(error.what());

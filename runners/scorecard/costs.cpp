@@ -1,7 +1,6 @@
 #include "runners/scorecard/costs.h"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -70,8 +69,7 @@ void write_costs(const std::filesystem::path& file, const std::vector<Cost>& cos
 }
 
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
-  std::ifstream in(file);
-  const Json all = Json::parse(in, nullptr, false);
+  const Json all = json_in_file(file);
   std::vector<Cost> costs;
   if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
   for (const char* name : {"source_digest", "isa", "cpu"})

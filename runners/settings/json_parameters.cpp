@@ -69,7 +69,7 @@ struct Reader {
   bool operator()(std::string* out) const {
     if (!json.is_string() || !is_utf8(json)) return false;
     *out = json.get<std::string>();
-    return true;
+    return out->find('\0') == std::string::npos;
   }
   bool operator()(Vec3* out) const {
     if (!json.is_array() || json.size() != 3) return false;
@@ -166,23 +166,6 @@ std::string meant(const std::string& key, const std::vector<std::string>& known)
                                                : "unknown; did you mean " + prefix + meant(key, known));
 }
 
-// As JSON, for a message: shortened, and safe to print whatever the value holds.
-std::string shown(const Json& value) {
-  constexpr std::size_t kMaxLength = 160;
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > kMaxLength) text.replace(kMaxLength, std::string::npos, "...");
-  return text;
-}
-
-// Throws Json::exception, or InputError for a value nested so deep that printing it would exhaust the stack.
-Json parse_shallow(const std::string& text, const std::string& label) {
-  const auto refuse_deep = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > 64) throw InputError(label, "nested too deep: expected 64 levels");
-    return true;
-  };
-  return Json::parse(text, refuse_deep);
-}
-
 }  // namespace
 
 std::string allowed(const Parameter& parameter) {
@@ -212,31 +195,14 @@ void write_parameters(const Parameters& parameters, Json& object) {
   for (const Parameter& p : parameters) object[p.name] = std::visit(Writer{}, p.value);
 }
 
-Json parse_json(const std::string& text, const std::string& label) {
-  try {
-    return parse_shallow(text, label);
-  } catch (const Json::exception& error) {
-    // "[json.exception...] parse error at line 3, column 4: ..." without the library's own prefix
-    std::string what = error.what();
-    if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    throw InputError(label, what + ": expected JSON with finite numbers");
-  }
-}
-
 void apply_override(Json& configuration, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError("--set " + assignment, "expected key=value, for example renderer.r1_m=0.004");
   const std::string text = assignment.substr(equals + 1);
-  Json value;
-  try {
-    value = parse_shallow(text, "--set " + assignment.substr(0, equals));
-  } catch (const Json::exception&) {
-    value = text;
-  }
-
-  set_value(configuration, assignment.substr(0, equals), value, "--set " + assignment);
+  if (!is_utf8(assignment)) throw InputError("--set " + assignment, "expected UTF-8");
+  const std::string path = assignment.substr(0, equals);
+  set_value(configuration, path, json_or_none(text, "--set " + path).value_or(text), "--set " + assignment);
 }
 
 namespace {
@@ -253,6 +219,9 @@ Json& element(Json& list, const std::string& key, const std::string& subject) {
 }  // namespace
 
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject) {
+  if (std::count(path.begin(), path.end(), '.') >= kMaxJsonDepth)
+    throw InputError(subject.substr(0, 64) + "...",
+                     "expected at most " + std::to_string(kMaxJsonDepth) + " levels");
   Json* place = &configuration;
   std::stringstream keys(path);
   for (std::string key; std::getline(keys, key, '.');) {

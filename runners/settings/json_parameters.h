@@ -1,15 +1,13 @@
 // Parameters from and to JSON, with the checks that every configuration shares.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "core/parameters/parameter.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
-
-using Json = nlohmann::ordered_json;
 
 // Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
 // one), a value of the wrong kind or one out of range; path is what the object is called, for example
@@ -23,9 +21,6 @@ void write_parameters(const Parameters& parameters, Json& object);
 // Range and present value as text, for help.
 std::string allowed(const Parameter& parameter);
 std::string value_text(const Parameter& parameter);
-
-// Parses a text that a user gave; label names it in the InputError.
-Json parse_json(const std::string& text, const std::string& label);
 
 // Sets what a path like "renderer.r1_m" or "axes.0.count" leads to; objects on the way are made. Throws
 // InputError, about the subject, where the path leads through a value or past the end of a list.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -14,6 +13,8 @@
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "scenarios/recordings/png/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"
+#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -37,57 +38,47 @@ struct CameraFile {
 constexpr CameraFile kTumCamera = {{640, 480, 525, 525, 319.5, 239.5}, 1.0 / 5000, true};
 
 // camera.json: an object with these keys only, so that a misspelt one is found.
-nlohmann::json parse_camera_file(const fs::path& file) {
-  static const nlohmann::json kKeys = {
-      "width", "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered"};
-  std::ifstream stream(file);
-  try {
-    // The keys hold plain values. Deeper nesting is no camera, and deep enough it would exhaust the stack.
-    const auto refuse_deep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-      if (depth > 4) refuse(file, "is nested too deep: expected an object of plain values");
-      return true;
-    };
-    nlohmann::json json = nlohmann::json::parse(stream, refuse_deep);
-    if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": expected object");
-    for (const auto& [key, value] : json.items()) {
-      if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
-      refuse(file, "key " + nlohmann::json(key).dump() + ": expected " + kKeys.dump());
-    }
-    return json;
-  } catch (const nlohmann::json::exception& error) {
-    refuse(file, std::string("is not JSON: ") + error.what());
+Json parse_camera_file(const fs::path& file) {
+  static const Json kKeys = {"width",         "height",           "fx", "fy", "cx", "cy", "depth_scale_m",
+                             "frame_rate_hz", "colour_registered"};
+  Json json = parse_json(read_text_file(file, "expected an object of plain values"), file.string());
+  if (!json.is_object()) refuse(file, std::string("is of type ") + json.type_name() + ": expected object");
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) continue;
+    refuse(file, "key " + shown(key) + ": expected " + kKeys.dump());
   }
+  return json;
 }
 
 // A finite number that must be there.
-double number(const fs::path& file, const nlohmann::json& json, const std::string& key, bool positive) {
+double number(const fs::path& file, const Json& json, const std::string& key, bool positive) {
   const auto found = json.find(key);
   if (found == json.end()) refuse(file, "has no key '" + key + "'");
   const double value = found->is_number() ? found->get<double>() : std::nan("");
   if (!std::isfinite(value) || (positive && value <= 0)) {
-    refuse(file, key + " = " + found->dump() + ": expected a number" + (positive ? " above 0" : ""));
+    refuse(file, key + " = " + shown(*found) + ": expected a number" + (positive ? " above 0" : ""));
   }
   return value;
 }
 
 // Up to 65535: more pixels a side than any depth camera has.
-int pixel_count(const fs::path& file, const nlohmann::json& json, const std::string& key) {
+int pixel_count(const fs::path& file, const Json& json, const std::string& key) {
   constexpr double kMaxCount = 65535;
   const double value = number(file, json, key, true);
   if (value == std::floor(value) && value <= kMaxCount) return static_cast<int>(value);
-  refuse(file, key + " = " + json[key].dump() + ": expected an integer from 1 to 65535");
+  refuse(file, key + " = " + shown(json[key]) + ": expected an integer from 1 to 65535");
 }
 
 // Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
-double frame_rate(const fs::path& file, const nlohmann::json& json) {
+double frame_rate(const fs::path& file, const Json& json) {
   constexpr double kMax_hz = 10000;
   const double value = number(file, json, "frame_rate_hz", true);
   if (value <= kMax_hz) return value;
-  refuse(file, "frame_rate_hz = " + json["frame_rate_hz"].dump() + ": expected above 0 to 10000");
+  refuse(file, "frame_rate_hz = " + shown(json["frame_rate_hz"]) + ": expected above 0 to 10000");
 }
 
 // The intrinsics and the scale, all needed; colour_registered is optional.
-CameraFile read_camera(const fs::path& file, const nlohmann::json& json) {
+CameraFile read_camera(const fs::path& file, const Json& json) {
   CameraFile result;
   CameraIntrinsics& camera = result.camera;
   camera.width = pixel_count(file, json, "width"), camera.height = pixel_count(file, json, "height");
@@ -96,7 +87,7 @@ CameraFile read_camera(const fs::path& file, const nlohmann::json& json) {
   result.metres_per_unit = number(file, json, "depth_scale_m", true);
   if (const auto found = json.find("colour_registered"); found != json.end()) {
     if (!found->is_boolean()) {
-      refuse(file, "colour_registered = " + found->dump() + ": expected true, false");
+      refuse(file, "colour_registered = " + shown(*found) + ": expected true, false");
     }
     result.colour_registered = found->get<bool>();
   }
@@ -163,7 +154,7 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
     refuse(camera_file,
            "is missing: depth images need {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}");
   }
-  const nlohmann::json json = parse_camera_file(camera_file);
+  const Json json = parse_camera_file(camera_file);
   const CameraFile camera = read_camera(camera_file, json);
   RecordingIndex index;
   index.texts = {camera_file};

@@ -2,11 +2,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -23,7 +23,7 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 }  // namespace
 
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
-  std::ifstream stream(list);
+  std::istringstream stream(read_text_file(list, "expected lines 'timestamp filename'"));
   std::vector<StampedFile> files;
   std::string line;
   // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.

@@ -1,13 +1,12 @@
 #include "runners/regression/baselines/manifest.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -51,14 +50,10 @@ const Baseline* Manifest::find(const std::string& name) const {
 
 Manifest read_manifest(const std::filesystem::path& folder) {
   const std::filesystem::path file = manifest_file(folder);
-  std::ifstream in(file, std::ios::binary);
-  std::error_code unreachable;
-  if (!in || std::filesystem::is_directory(file, unreachable))
-    throw InputError(
-        file.string(),
-        "cannot be read: expected a folder of baselines (--folder), or the project's root as working folder");
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const Json json = parse_json(text, file.string());
+  const Json json = parse_json(
+      read_text_file(file,
+                     "expected a folder of baselines (--folder), or the project's root as working folder"),
+      file.string());
   try {
     Manifest manifest{json.at("complete")};
     for (const Json& one : json.at("baselines")) manifest.baselines.push_back(baseline_of(one, file));

@@ -80,7 +80,7 @@ TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   }
   PointCloud no_image = image(3, 2);
   no_image.image.reset();
-  EXPECT_HAS(refusal([&] { weights(file, no_image); }), "image-mask: the frame is no image");
+  EXPECT_HAS(refusal([&] { weights(file, no_image); }), "image-mask: the frame is not an image");
 }
 
 TEST_F(ImageMasks, ThatCannotBeReadAreRefused) {

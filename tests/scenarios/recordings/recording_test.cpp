@@ -137,15 +137,15 @@ TEST_F(Recording, RefusesBadCameraFiles) {
   expect_camera_error(R"("fy": 20.5)", R"("fy": "20")", "fy = \"20\": expected a number above 0");
   expect_camera_error(R"("cx": 1)", R"("cx": [])", "cx = []: expected a number");
   expect_camera_error(R"("width": 3)", R"("width": 3.5)", "width = 3.5: expected an integer from 1 to 65535");
-  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: expected a whole");
+  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: expected an integer");
   expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: expected");
   expect_camera_error("true", "1", "colour_registered = 1: expected true, false");
   expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": expected");
-  expect_camera_error("{", "", "is not JSON");
+  expect_camera_error("{", "", "expected JSON");
   folder_.write("camera.json", "[1]");
   expect_error("camera.json", "is of type array: expected object");
   folder_.write("camera.json", "");
-  expect_error("camera.json", "is not JSON");
+  expect_error("camera.json", "expected JSON");
 }
 
 TEST_F(Recording, RefusesImagesOfAnotherSize) {

@@ -104,7 +104,8 @@ TEST(Manifest, DamagedOnesAreRefusedByName) {
 TEST(Manifest, PlacesThatCannotBeUsed) {
   const TestFolder folder("baseline_test");
   EXPECT_HAS(refusal([&] { read_manifest(folder.path()); }),
-             (folder / "manifest.json").string() + ": cannot be read: expected a folder of baselines");
+             (folder / "manifest.json").string() +
+                 ": cannot be read (No such file or directory): expected a folder of baselines");
   EXPECT_HAS(refusal([&] { write_manifest(folder / "nowhere", {}); }), "cannot be written");
   fs::create_directory(folder / "manifest.json");
   EXPECT_HAS(refusal([&] { read_manifest(folder.path()); }), "manifest.json: ");

@@ -1,0 +1,53 @@
+#include "core/parameters/input_error.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace remote_touch {
+
+namespace {
+
+// How many bytes the character at a place has, 0 where there is none (RFC 3629: no surrogates, none longer
+// than it needs to be).
+std::size_t character_at(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> std::uint32_t {
+    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0;
+  };
+  const std::uint32_t first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t size = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  const std::uint32_t second = byte(1);
+  if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
+      (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F))
+    return 0;
+  return size;
+}
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+}
+
+}  // namespace
+
+std::string printable(const std::string& text) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = character_at(text, at);
+    const char c = text[at];
+    if (c == '\n' || c == '\t' || c == '\r') {
+      line += ' ', ++at;
+    } else if (size == 0 || is_control(c)) {
+      const auto byte = static_cast<unsigned char>(c);
+      line.append("\\x") += kDigits[byte >> 4];
+      line += kDigits[byte & 15], ++at;
+    } else {
+      line.append(text, at, size), at += size;
+    }
+  }
+  return line;
+}
+
+}  // namespace remote_touch

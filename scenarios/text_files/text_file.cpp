@@ -1,0 +1,59 @@
+#include "scenarios/text_files/text_file.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+class OpenFile {
+ public:
+  // Without waiting for one who writes into a pipe: a signal would not end that.
+  explicit OpenFile(const std::filesystem::path& file)
+      : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  // What there is, up to size bytes; 0 at the end, -1 with errno set when it cannot be read.
+  ssize_t read(char* to, std::size_t size) const {
+    if (file_ < 0) return -1;
+    pollfd wait{file_, POLLIN, 0};
+    if (::poll(&wait, 1, -1) < 0) return -1;
+    return ::read(file_, to, size);
+  }
+
+ private:
+  int file_;
+};
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file, const std::string& expected) {
+  const OpenFile open(file);
+  std::string text;
+  std::array<char, 65536> piece;
+  for (;;) {
+    const ssize_t size = open.read(piece.data(), piece.size());
+    if (size < 0)
+      throw InputError(file.string(),
+                       std::string("cannot be read (") + std::strerror(errno) + "): " + expected);
+    if (size == 0) return text;
+    text.append(piece.data(), static_cast<std::size_t>(size));
+    if (text.size() > kMaxTextBytes)
+      throw InputError(file.string(),
+                       "is longer than " + std::to_string(kMaxTextBytes >> 20) + " MiB: " + expected);
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,42 @@
+#include "core/parameters/input_error.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace remote_touch::input_error_test {
+namespace {
+
+TEST(Printable, LeavesTextAsItIs) {
+  for (const char* text :
+       {"", "renderer.r1_m = 3: expected 0 to 1", "grün", "€", "\xF0\x9F\x98\x80", "\\x00"})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, IsOneLine) {
+  EXPECT_EQ(printable("a\nb\tc\r\nd"), "a b c  d");
+}
+
+TEST(Printable, ShowsWhatNobodyCanRead) {
+  EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
+}
+
+TEST(Printable, ShowsBytesThatAreNoUtf8) {
+  EXPECT_EQ(printable("\xff"), "\\xff");
+  EXPECT_EQ(printable("gr\xfcn"), "gr\\xfcn");
+  EXPECT_EQ(printable("\xc3"), "\\xc3");                             // cut
+  EXPECT_EQ(printable("\xc0\x80"), "\\xc0\\x80");                    // longer than it needs to be
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair of UTF-16
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond Unicode
+  EXPECT_EQ(printable("\xe2\x82x"), "\\xe2\\x82x");
+}
+
+// A message is C's: a zero would end it.
+TEST(InputErrorTest, KeepsItsWholeMessage) {
+  EXPECT_STREQ(InputError(std::string("a\0b", 3), "expected c").what(), "a\\x00b: expected c");
+  EXPECT_STREQ(InputError("a\xff: expected\nb").what(), "a\\xff: expected b");
+}
+
+}  // namespace
+}  // namespace remote_touch::input_error_test
