@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
@@ -50,6 +51,17 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
   const FrameRange frames = frames_of(input_files(settings), recording_);
   first_ = frames.first, count_ = frames.last - frames.first + 1;
   rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
+  require_points();
+}
+
+// What shows nothing from the beginning on is a mistake: another unit, another limit, a file of nothing.
+void RecordedScene::require_points() const {
+  const PointCloud first = cloud(0);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (first.point(i).allFinite()) return;
+  throw InputError(settings_.path, "its first frame has no point within scenario.max_depth_m = " +
+                                       std::to_string(settings_.max_depth_m) +
+                                       ": expected a frame of measured points, in metres");
 }
 
 int RecordedScene::frame_count() const {
@@ -125,30 +137,32 @@ PointCloud RecordedScene::cloud(int frame) const {
 namespace {
 
 // The plane through the pixels of a window: mean of all points, and a normal from the differences between
-// opposite halves. Unusable when a pixel is missing or the depths differ by more than the window is wide: an
-// edge.
+// opposite halves. Unusable when a pixel is missing or the depths in the camera differ by more than the
+// window is wide: an edge.
 struct Patch {
   Vec3 mean = Vec3::Zero(), normal = Vec3::Zero();
   bool usable = false;
 };
 
-Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int u, int v, int half,
+Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, int v, int half,
                    double max_width_m) {
+  const CameraIntrinsics& camera = cloud.image->camera;
   Patch patch;
   if (u < half || v < half || u + half >= camera.width || v + half >= camera.height) return patch;
   Vec3 across = Vec3::Zero(), down = Vec3::Zero();
-  double nearest = std::numeric_limits<double>::infinity(), max_distance = 0;
+  double min_depth = std::numeric_limits<double>::infinity(), max_depth = -min_depth;
   for (int y = -half; y <= half; ++y) {
     for (int x = -half; x <= half; ++x) {
       const Vec3 p = cloud.point(static_cast<std::size_t>(v + y) * camera.width + (u + x));
       if (!p.allFinite()) return patch;
       patch.mean += p, across += x * p, down += y * p;
-      nearest = std::min(nearest, p.z()), max_distance = std::max(max_distance, p.z());
+      const double depth = (X_CW * p).z();
+      min_depth = std::min(min_depth, depth), max_depth = std::max(max_depth, depth);
     }
   }
   patch.mean /= (2 * half + 1) * (2 * half + 1);
   patch.normal = down.cross(across).normalized();  // towards the camera: x right, y down, z forward
-  patch.usable = max_distance - nearest <= max_width_m && patch.normal.allFinite();
+  patch.usable = max_depth - min_depth <= max_width_m && patch.normal.allFinite();
   return patch;
 }
 
@@ -156,7 +170,8 @@ Patch patch_around(const PointCloud& cloud, const CameraIntrinsics& camera, int 
 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const Vec3 p_C = X_WC_.inverse() * p_W;
+  const RigidTransform X_CW = X_WC_.inverse();
+  const Vec3 p_C = X_CW * p_W;
   if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
   const auto points = measured(newest_frame(time_s));
   const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
@@ -165,9 +180,9 @@ double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
   const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
   if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
-  const int half = std::max(1, static_cast<int>(camera.fx * settings_.truth_radius_m / p_C.z()));
-  const Patch patch = patch_around(cloud, camera, static_cast<int>(u), static_cast<int>(v), half,
-                                   4 * settings_.truth_radius_m);
+  const double half = std::clamp(camera.fx * settings_.truth_radius_m / p_C.z(), 1.0, 1.0 * camera.width);
+  const Patch patch = patch_around(cloud, X_CW, static_cast<int>(u), static_cast<int>(v),
+                                   static_cast<int>(half), 4 * settings_.truth_radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
 }
 

@@ -41,6 +41,7 @@ class RecordedScene final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override;
 
  private:
+  void require_points() const;
   std::size_t source_frame(int frame) const;
   PointCloud registered(std::size_t source) const;
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
