@@ -41,6 +41,10 @@ struct GodObjectParameters {
 Parameters parameters(GodObjectParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const GodObjectParameters& p);
+// No pose makes the force grow faster with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const GodObjectParameters& p) {
+  return p.stiffness_N_per_m;
+}
 
 class GodObjectRenderer final : public RivalRenderer {
  public:

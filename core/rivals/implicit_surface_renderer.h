@@ -36,6 +36,10 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
+// No pose makes the force grow faster with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
+  return p.stiffness_N_per_m;
+}
 inline std::string validate(const ImplicitSurfaceParameters&) {
   return {};
 }

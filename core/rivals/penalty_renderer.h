@@ -32,6 +32,10 @@ struct PenaltyParameters {
 Parameters parameters(PenaltyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const PenaltyParameters& p);
+// No pose makes the force grow faster with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const PenaltyParameters& p) {
+  return p.stiffness_N_per_m;
+}
 
 class PenaltyRenderer final : public RivalRenderer {
  public:

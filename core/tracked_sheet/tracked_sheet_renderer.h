@@ -22,6 +22,10 @@ struct TrackedSheetParameters {
 
 Parameters parameters(TrackedSheetParameters& p);
 std::string validate(const TrackedSheetParameters& p);
+// No pose makes the force grow faster with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const TrackedSheetParameters& p) {
+  return max_stiffness_N_per_m(p.proxy);
+}
 
 class TrackedSheetRenderer final : public Renderer {
  public:

@@ -56,8 +56,9 @@ FixtureEntry fixture(const char* name, const char* summary) {
 }
 
 template <class Product>
-TrajectoryEntry trajectory(const char* name, const char* summary) {
-  return {name, summary, factory<Product, typename Product::Settings, Trajectory, const Scenario&>};
+TrajectoryEntry trajectory(const char* name, const char* summary, bool has_buttons = false) {
+  return {{name, summary, factory<Product, typename Product::Settings, Trajectory, const Scenario&>},
+          has_buttons};
 }
 
 template <class Product, class Settings>
@@ -102,7 +103,7 @@ const FixtureEntry kFixtures[] = {
 const TrajectoryEntry kTrajectories[] = {
     trajectory<Waypoints>("waypoints", "listed points, each with its speed"),
     trajectory<Poses>("poses", "listed poses of six degrees of freedom, each with the time of the way there"),
-    trajectory<SessionHand>("live-session", "the hand of a recorded live session, tick for tick"),
+    trajectory<SessionHand>("live-session", "the hand of a recorded live session, tick for tick", true),
     trajectory<RandomWalk>("random-walk", "a smooth random motion of six degrees of freedom"),
     trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
     trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/storage/file_digest.h"
 #include "runners/experiment/sections.h"
 #include "runners/live/loop/session_scene.h"
 #include "runners/settings/embedded_data.h"
@@ -83,10 +84,7 @@ SimulatedHand Experiment::build_hand() const {
 }
 
 double Experiment::max_stiffness_N_per_m() const {
-  double holds = 0, pulls = 0;
-  for (const Parameter& p : configuration_.renderer.factory->settings())
-    if (const auto* const value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
-      holds = **value;
+  double holds = configuration_.renderer.factory->stiffness_N_per_m(), pulls = 0;
   for (const FixtureValues& v : configuration_.fixture_values()) {
     if (v.role == FixtureRole::forbidden)
       holds = std::max(holds, v.stiffness_N_per_m);

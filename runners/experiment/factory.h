@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,11 +31,14 @@ template <class Seam, class... Arguments>
 class Factory : public Configurable {
  public:
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
+  // Of a renderer: no pose makes its force grow faster with the device's displacement. 0 for all others.
+  virtual double stiffness_N_per_m() const = 0;
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
 // For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
-// validate(Settings); and input_files(Settings) where the settings name files.
+// validate(Settings); max_stiffness_N_per_m(Settings) of every renderer; and input_files(Settings) where the
+// settings name files.
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -48,6 +52,12 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
       return {input_files(values_)};
     else
       return {};
+  }
+  double stiffness_N_per_m() const override {
+    if constexpr (std::is_base_of_v<Renderer, Product>)
+      return max_stiffness_N_per_m(values_);
+    else
+      return 0;
   }
   std::unique_ptr<Seam> build(Arguments... arguments) const override {
     return std::make_unique<Product>(values_, arguments...);
@@ -66,7 +76,10 @@ struct CatalogEntry {
 
 using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
 using FixtureEntry = CatalogEntry<FixtureRule>;
-using TrajectoryEntry = CatalogEntry<Trajectory, const Scenario&>;
+
+struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
+  bool has_buttons = false;  // the hand presses those of the device that it was recorded with
+};
 
 // Of the hand that a renderer is for: six where its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };

@@ -9,7 +9,8 @@ namespace {
 // A simulated device has no other buttons than those that the operator's settings press.
 bool can_be_pressed(const ExperimentConfiguration& configuration, const SequenceStep& step) {
   if (step.start != StepStart::button && step.done != StepEnd::button) return true;
-  if (configuration.live || configuration.trajectory.name == "live-session")
+  const std::string& hand = configuration.trajectory.name;
+  if (configuration.live || find_entry(trajectories(), hand, "trajectory.name").has_buttons)
     return true;  // the device has its own
   if (!configuration.operator_settings) return false;
   const std::vector<double>& presses = configuration.operator_settings->presses;

@@ -1,5 +1,6 @@
 #include "runners/experiment/sections.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -65,7 +66,7 @@ std::vector<SectionEntry> catalog_entries(std::span<const Entry> catalog) {
 template <class Entry>
 Part<Entry> read_part(const Json& json, std::span<const Entry> catalog, const std::string& path) {
   if (json.is_object() && json.contains("name") && !json["name"].is_string())
-    throw InputError(path + ".name = " + json["name"].dump(), "expected a name from `remote-touch list`");
+    throw InputError(path + ".name = " + shown(json["name"]), "expected a name from `remote-touch list`");
   if (!json.is_object() || !json.contains("name"))
     throw InputError(path, "missing: expected {\"name\": ..., parameters}");
   Part<Entry> part;
@@ -121,6 +122,32 @@ using Rule = void (*)(Configuration&);
 template <auto kMember>
 using Member = std::remove_cvref_t<decltype(std::declval<Configuration>().*kMember)>;
 
+bool has(const Parameters& parameters, const std::string& name) {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const Parameter& p) { return p.name == name; });
+}
+
+// Whether the section, as it is in the configuration, has a parameter of that name.
+bool has(const Section& section, const Json& whole, const std::string& parameter) {
+  const Json& own = given(whole, section.key);
+  if (!own.is_object()) return false;
+  for (const SectionEntry& entry : section.entries())
+    if (entry.name.empty() || own.value("name", Json()) == entry.name)
+      if (has(entry.make()->settings(), parameter)) return true;
+  return false;
+}
+
+// A key of a section that was given without it is told where it belongs.
+void refuse_misplaced(const Json& whole, const Parameters& own, const std::vector<std::string>& sections) {
+  for (const auto& item : whole.items()) {
+    const bool is_section = std::find(sections.begin(), sections.end(), item.key()) != sections.end();
+    if (is_section || has(own, item.key())) continue;
+    for (const Section& section : experiment_sections())
+      if (!section.is_top_level && has(section, whole, item.key()))
+        throw InputError(item.key(), std::string("unknown; did you mean ") + section.key + "." + item.key());
+  }
+}
+
 // Parameters that stand beside the sections. What is no section is one of them, or unknown.
 template <auto kMember>
 Section top_level(const char* key, const char* summary) {
@@ -131,6 +158,7 @@ Section top_level(const char* key, const char* summary) {
     std::vector<std::string> sections;
     for (const Section& section : experiment_sections())
       if (!section.is_top_level) sections.push_back(section.key);
+    refuse_misplaced(whole, parameters(configuration.*kMember), sections);
     read_parameters(whole, parameters(configuration.*kMember), "", sections);
   };
   s.write = [](const Section&, const Configuration& configuration, Json& whole) {

@@ -37,5 +37,8 @@ class LoadedSpheres final : public Renderer {
 Parameters parameters(LoadedSpheres::Settings& s);
 std::string validate(const LoadedSpheres::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
+inline double max_stiffness_N_per_m(const LoadedSpheres::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
 
 }  // namespace remote_touch

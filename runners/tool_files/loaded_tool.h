@@ -31,5 +31,8 @@ class LoadedTool final : public Renderer {
 Parameters parameters(LoadedTool::Settings& s);
 std::string validate(const LoadedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
+inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
 
 }  // namespace remote_touch

@@ -238,5 +238,14 @@ TEST(Experiments, AreLoadedByNameOrFile) {
   EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
 }
 
+TEST(Experiment, AKeyWithoutItsSectionIsToldWhereItBelongs) {
+  const auto refused = [](const std::string& assignment) {
+    return refusal([&] { Experiment::load("fig4.12", {assignment}); });
+  };
+  EXPECT_HAS(refused("noise_sigma_m=0.001"), "noise_sigma_m: unknown; did you mean scenario.noise_sigma_m");
+  EXPECT_HAS(refused("r1_m=0.001"), "r1_m: unknown; did you mean renderer.r1_m");
+  EXPECT_HAS(refused("duration_ms=1"), "duration_ms: unknown; did you mean duration_s");
+}
+
 }  // namespace
 }  // namespace remote_touch::experiment_test

@@ -69,6 +69,30 @@ TEST(RendererContract, PushesTheHandOutOfTheSurface) {
   }
 }
 
+// Where the HIP rests at a height above a flat cloud, until the force does too.
+double resting_force(Renderer& renderer, double height, double start_s) {
+  RenderOutput out;
+  for (int tick = 0; tick < 300; ++tick) out = renderer.step({Vec3(0, height, 0)}, start_s + 0.001 * tick);
+  return out.force_N.y();
+}
+
+// The gate of a device scales forces by it: a spring that is stiffer than its renderer says is unstable.
+TEST(RendererContract, IsAsStiffAsItSays) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto factory = entry.make();
+    const double said = factory->stiffness_N_per_m();
+    const auto renderer = factory->build(1000, scenes::kernels());
+    renderer->on_frame(scenes::frame(grid_for(entry, 60)));
+    resting_force(*renderer, 0.02, 0);
+    const double high = entry.contact_model == ContactModel::nothing ? 0.003 : -0.008, deeper = 0.001;
+    const double before = resting_force(*renderer, high, 0.3);
+    const double stiffness = (resting_force(*renderer, high - deeper, 0.6) - before) / deeper;
+    EXPECT_GT(before, 0) << entry.name;
+    EXPECT_LT(stiffness, 1.02 * said) << entry.name;
+    EXPECT_GT(stiffness, 0.9 * said) << entry.name;
+  }
+}
+
 TEST(RendererContract, SameInputSameBits) {
   for (const RendererEntry& entry : renderers()) {
     const auto first = build(entry), second = build(entry);
