@@ -1,7 +1,9 @@
 #include "runners/scorecard/benchmark.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -9,6 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/settings/embedded_data.h"
 #include "runners/settings/json_parameters.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -45,7 +48,7 @@ Better better_of(const Json& word, const std::string& label) {
   if (word == "smaller") return Better::smaller;
   if (word == "near_zero") return Better::near_zero;
   if (word == "reported") return Better::reported;
-  throw InputError(label + " = " + word.dump(), "expected larger, smaller, near_zero, reported");
+  throw InputError(label + " = " + shown(word), "expected larger, smaller, near_zero, reported");
 }
 
 Bound bound_of(const Json& json, const std::string& label) {
@@ -58,21 +61,40 @@ Bound bound_of(const Json& json, const std::string& label) {
   return bound;
 }
 
+// What a file is called in a scorecard, whose results are files of that name.
+std::string name_in(const std::string& file, const char* kind) {
+  const std::string name = std::filesystem::path(file).stem().string();
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), is_plain))
+    throw InputError(std::string(kind) + " " + file,
+                     "expected letters, digits, '-', '_' and '.' for its name");
+  return name;
+}
+
+// Name and JSON of one that is embedded, or of a file.
+std::pair<std::string, std::string> found(std::span<const EmbeddedText> stored, const std::string& name,
+                                          const char* kind) {
+  std::string known;
+  for (const EmbeddedText& text : stored) {
+    if (name == text.name) return {name, text.json};
+    known.append(known.empty() ? "" : ", ").append(text.name);
+  }
+  const std::string expected = "expected " + known + ", or a JSON file";
+  if (!name.ends_with(".json")) throw InputError(std::string(kind) + " " + name, "unknown: " + expected);
+  return {name_in(name, kind), read_text_file(name, expected)};
+}
+
 // Of data/, or of a table in a test.
 template <class Item, class Read>
 std::vector<Item> chosen(std::span<const EmbeddedText> stored, const std::vector<std::string>& names,
                          const char* kind, Read&& read) {
-  std::string known;
-  for (const EmbeddedText& text : stored) known.append(known.empty() ? "" : ", ").append(text.name);
   std::vector<Item> items;
   std::set<std::string> taken;
-  for (const std::string& name : names) {
-    const auto found = std::find_if(stored.begin(), stored.end(),
-                                    [&](const EmbeddedText& text) { return name == text.name; });
-    if (found == stored.end()) throw InputError(std::string(kind) + " " + name, "unknown: expected " + known);
+  for (const std::string& wanted : names) {
+    const auto [name, json] = found(stored, wanted, kind);
     if (!taken.insert(name).second)
       throw InputError(std::string(kind) + " " + name, "comes twice: expected once");
-    items.push_back(read(name, found->json));
+    items.push_back(read(name, json));
   }
   if (!names.empty()) return items;
   for (const EmbeddedText& text : stored) items.push_back(read(text.name, text.json));

@@ -51,8 +51,9 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
 Method read_method(const std::string& name, const std::string& json);
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
 
-// Those of these names, in the order of the names; none: all, in the order of data/. Throws InputError for a
-// name that is unknown, with those that are allowed, or comes twice.
+// Those of these names or JSON files, in their order; none: all of data/. A file is called by its name
+// without folder and ending. Throws InputError for a name that is unknown, with those that are allowed, or
+// comes twice.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names);
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
 
