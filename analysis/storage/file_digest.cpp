@@ -36,6 +36,14 @@ void write_file_digest(const std::filesystem::path& file) {
   if (!stream) throw InputError(file.string(), "cannot be sealed: expected a writable place");
 }
 
+bool has_result_header(const std::filesystem::path& file) {
+  std::error_code unreachable;  // a pipe would lose what is read of it
+  if (!std::filesystem::is_regular_file(file, unreachable)) return false;
+  std::string opening(kResultOpening.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(opening.data(), static_cast<std::streamsize>(opening.size()));
+  return opening == kResultOpening;
+}
+
 FileDigest file_digest_of(const std::filesystem::path& file) {
   std::string found(kDigestBlockSize, '\0');
   std::ifstream(file, std::ios::binary).read(found.data(), kDigestBlockSize);

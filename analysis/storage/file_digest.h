@@ -22,6 +22,9 @@ std::vector<char> with_file_digest(const std::vector<char>& image);
 // it cannot be read or written.
 void write_file_digest(const std::filesystem::path& file);
 
+// Whether it is a file that begins as a finished result does; the rest of it is not read.
+bool has_result_header(const std::filesystem::path& file);
+
 enum class FileDigest { valid, absent, broken };
 // Throws InputError when the file cannot be read.
 FileDigest file_digest_of(const std::filesystem::path& file);

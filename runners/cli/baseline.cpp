@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/regression/baselines/baseline_bless.h"
 #include "runners/regression/baselines/baseline_check.h"
@@ -86,8 +86,8 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
 
 int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request) {
   const Manifest manifest = read_manifest(request.folder);
-  for (const std::string& file : {request.json, request.junit})
-    if (!file.empty()) require_writable(file);
+  if (!request.json.empty()) require_report(line, request.json, {}, kJsonReports);
+  if (!request.junit.empty()) require_report(line, request.junit, {}, kJunitReport);
   const std::vector<Baseline> list = chosen(manifest, request);
   std::vector<BaselineCheck> checks;
   Progress progress("baselines", line.quiet);

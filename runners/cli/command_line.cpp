@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <sstream>
 
 #include "core/parameters/input_error.h"
+#include "runners/cli/other_kinds.h"
 #include "runners/provenance/provenance.h"
 
 namespace remote_touch {
@@ -29,8 +31,36 @@ struct Subcommands {
   }
 };
 
+// As CLI::Range, which lets NaN through.
+std::string not_between(double low, double high, const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+  std::ostringstream problem;
+  problem << "Value " << text << " not in range [" << low << " - " << high << "]";
+  return problem.str();
+}
+CLI::Validator between(double low, double high) {
+  return {[=](const std::string& text) { return not_between(low, high, text); }, "NUMBER"};
+}
+
 void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning) {
   command->add_option("--set", overrides, meaning)->allow_extra_args(false);
+}
+
+void require_own_kind(const std::string& name, const char* command) {
+  if (const std::string other = other_kind(name, command); !other.empty()) throw InputError(name, other);
+}
+int run_experiment(const CommandLine& line, const RunRequest& request) {
+  require_own_kind(request.experiment, "run");
+  return command_run(line, request);
+}
+int run_sweep(const CommandLine& line, const SweepRequest& request) {
+  require_own_kind(request.sweep, "sweep");
+  return command_sweep(line, request);
+}
+int make_figures(const CommandLine& line, const FigureRequest& request) {
+  for (const std::string& name : request.names) require_own_kind(name, "figure");
+  return command_figure(line, request);
 }
 
 void add_lists(Subcommands& commands) {
@@ -45,7 +75,7 @@ void add_lists(Subcommands& commands) {
 }
 
 void add_run(Subcommands& commands) {
-  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", run_experiment);
   command
       ->add_option("experiment", run->experiment,
                    "a name from `remote-touch list`, a JSON file, or a recorded live session")
@@ -57,7 +87,7 @@ void add_run(Subcommands& commands) {
 
 void add_sweep(Subcommands& commands) {
   auto [command, sweep] = commands.add(
-      "sweep", "run an experiment over a grid of parameters; the same command resumes it", command_sweep);
+      "sweep", "run an experiment over a grid of parameters; the same command resumes it", run_sweep);
   command->add_option("sweep", sweep->sweep, "a name from `remote-touch list`, or a JSON file")->required();
   add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
   command->add_option("-o,--output", sweep->output,
@@ -84,7 +114,7 @@ void add_merge_and_replay(Subcommands& commands) {
 }
 
 void add_figure(Subcommands& commands) {
-  auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", command_figure);
+  auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", make_figures);
   command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
   command
@@ -124,18 +154,18 @@ void add_compare(Subcommands& commands) {
                     "compare sweeps by paired tests over regions; single runs may differ");
   command
       ->add_option("--margin", compare->margin, "maximum change of a fraction of runs that counts as equal")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->capture_default_str();
   command
       ->add_option(
           "--shift-margin", compare->shift_margin,
           "the same for measures that are not events: runs that increased minus runs that decreased, and change of the mean")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->capture_default_str();
   command
       ->add_option("--alpha", compare->alpha,
                    "significance level: probability of reporting a change where there is none")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->capture_default_str();
   command->add_option("--json", compare->json, "also write everything to this file");
   command->add_option("--junit", compare->junit, "also write JUnit's XML");
@@ -203,7 +233,7 @@ void add_live(Subcommands& commands) {
   command->add_option("--depth", live->depth, "SCHEME:ADDRESS, see remote-touch devices")
       ->capture_default_str();
   command->add_option("--duration", live->duration_s, "seconds (default: until SIGINT)")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(between(1e-3, 1e6));
   command->add_option("--record", live->record, "record device and sensor to this HDF5 file");
   command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
   command->add_option(
@@ -214,10 +244,10 @@ void add_live(Subcommands& commands) {
   auto [other, jitter] =
       commands.add("jitter", "measure the timing of the haptic loop on this machine", command_jitter);
   other->add_option("--duration", jitter->duration_s, "seconds")
-      ->check(CLI::Range(0.01, 86400.0))
+      ->check(between(0.01, 86400.0))
       ->capture_default_str();
   other->add_option("--rate", jitter->rate_hz, "ticks a second")
-      ->check(CLI::Range(1.0, 100000.0))
+      ->check(between(1.0, 100000.0))
       ->capture_default_str();
 }
 
@@ -242,6 +272,8 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.set_version_flag("--version", "remote-touch " + version());
   app.fallthrough();
   app.add_flag("-q,--quiet", line.quiet, "no progress");
+  app.add_flag("--force", line.force,
+               "write over a file that is no result of this program; never over an input");
   std::function<int()> act;
   Subcommands commands{app, line, act};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,

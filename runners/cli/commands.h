@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3 };
 // What every command shares.
 struct CommandLine {
   bool quiet = false;
+  bool force = false;  // write over files that are no results of this program
   const Kernels* kernels = nullptr;
   const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
   // Set by SIGUSR1 and SIGUSR2; who answers sets them back.
@@ -129,7 +131,7 @@ struct LiveRequest {
   std::vector<std::string> overrides;
   std::string device = "sim:", depth = "sim:";
   std::string record, output, report;  // files to write; empty: none
-  double duration_s = 0;
+  std::optional<double> duration_s;    // none: until a signal comes
 };
 int command_live(const CommandLine& line, const LiveRequest& request);
 

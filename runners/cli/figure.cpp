@@ -71,6 +71,11 @@ Figure made_or_not_run(const FigureEntry& entry, const FigureContext& context) {
   }
 }
 
+bool was_made(const Figure& figure) {
+  return std::none_of(figure.claims.begin(), figure.claims.end(),
+                      [](const Claim& claim) { return claim.verdict == Verdict::not_run; });
+}
+
 // A folder that figures are written into.
 class FigureFolder {
  public:
@@ -88,15 +93,19 @@ class FigureFolder {
   }
 
   void finish(std::size_t run, const FigureContext& context, Figure figure) {
-    std::string command = "remote-touch figure " + figure.name;
+    Recipe recipe{"figure", figure.name};
     if (context.made_runs_of_maps() < context.runs_of_maps()) {
       leave_unjudged(figure, context, runs_[run].coarse);
-      command += " --coarse " + std::to_string(runs_[run].coarse);
+      recipe.coarse = runs_[run].coarse;
     }
     const fs::path file = folder_ / ("fig" + figure.name + ".h5");
     write_figure(file, figure,
-                 provenance(context.configurations(), command, line_.kernels->isa, context.inputs()));
+                 provenance(context.configurations(), recipe, line_.kernels->isa, context.inputs()));
     claims_.replace(figure.name, figure.claims);
+    if (was_made(figure))
+      ++made_;
+    else
+      not_made_ += "remote-touch: figure " + figure.name + ": " + figure.caption + "\n";
     printed_[run] = "figure " + figure.name + " -> " + file.string() + "\n";
     for (const Claim& claim : figure.claims) {
       printed_[run] += line_of(claim);
@@ -113,7 +122,11 @@ class FigureFolder {
     write_progress(progress);
     shown.update(words(runs_, progress));
   }
-  bool all_hold() const { return all_hold_; }
+  // What was not made is said on the standard error too; where that is all, nothing was done.
+  int exit_code() const {
+    std::fputs(not_made_.c_str(), stderr);
+    return made_ == 0 ? kBadInput : all_hold_ ? kDone : kCheckFailed;
+  }
 
  private:
   static fs::path make(const fs::path& folder) {
@@ -158,6 +171,8 @@ class FigureFolder {
   std::vector<std::string> printed_;
   std::size_t next_ = 0;
   bool all_hold_ = true;
+  int made_ = 0;
+  std::string not_made_;
   std::string written_;
 };
 
@@ -173,7 +188,8 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
         folder.finish(run, context, std::move(figure));
       },
       [&](const FigureProgress& progress) { folder.report(progress, shown); });
-  return folder.all_hold() ? kDone : kCheckFailed;
+  shown.clear();
+  return folder.exit_code();
 }
 
 }  // namespace remote_touch

@@ -3,16 +3,15 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/tick_hashes.h"
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 
 namespace remote_touch {
 
-int command_hashes(const CommandLine&, const HashesRequest& request) {
+int command_hashes(const CommandLine& line, const HashesRequest& request) {
   if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
-  require_different_file(request.output, request.trace);
-  require_writable(request.output);
+  require_output(line, request.output, {request.trace});
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);
   write_hashes(request.output, hashes, provenance_of(trace.attributes()));

@@ -5,12 +5,12 @@
 #include <exception>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "runners/cli/commands.h"
-#include "runners/cli/shell_command.h"
+#include "runners/cli/outputs.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
+#include "runners/provenance/shell_command.h"
 
 namespace remote_touch {
 
@@ -49,10 +49,10 @@ void report_now(const LiveReport& report, const std::string& file, const TextAtt
 int command_live(const CommandLine& line, const LiveRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
   for (const std::string& file : {request.record, request.output, request.report})
-    if (!file.empty()) require_writable(file);
+    if (!file.empty()) require_output(line, file, with_parts(request.experiment, experiment.inputs()));
   LiveOptions options;
   options.device = request.device, options.depth = request.depth;
-  options.duration_s = request.duration_s;
+  options.duration_s = request.duration_s.value_or(0);
   options.record = request.record;
   options.kernels = line.kernels;
   options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;

@@ -7,6 +7,32 @@
 
 namespace remote_touch {
 
+namespace {
+
+template <class... Values>
+std::string filled(const char* form, Values... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, form, values...);
+  return text;
+}
+
+}  // namespace
+
+std::string progress_text(double fraction, double elapsed_s) {
+  const std::string done = filled("%3.0f %%", 100 * fraction);
+  if (!(fraction > 0 && elapsed_s > 0)) return done;
+  return done +
+         filled(", %.1f %%/s, %.0f s left", 100 * fraction / elapsed_s, elapsed_s / fraction - elapsed_s);
+}
+
+std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
+                          double elapsed_s) {
+  const std::string counted = filled("%zu of %zu %s", done, total, things);
+  if (!(done > earlier && elapsed_s > 0)) return counted;
+  const double rate = static_cast<double>(done - earlier) / elapsed_s;
+  return counted + filled(", %.4g/s, %.0f s left", rate, static_cast<double>(total - done) / rate);
+}
+
 Progress::Progress(std::string what, bool quiet)
     : what_(std::move(what)),
       quiet_(quiet),
@@ -43,22 +69,11 @@ void Progress::update(const std::string& text) {
 }
 
 void Progress::update(double fraction) {
-  if (!is_due()) return;
-  const double elapsed = std::chrono::duration<double>(last_ - start_).count();
-  char text[100];
-  std::snprintf(text, sizeof text, "%3.0f %%, %.1f %%/s, %.0f s left", 100 * fraction,
-                elapsed > 0 ? 100 * fraction / elapsed : 0, fraction > 0 ? elapsed / fraction - elapsed : 0);
-  show(text);
+  if (is_due()) show(progress_text(fraction, elapsed_s()));
 }
 
 void Progress::update(std::size_t done, std::size_t total, std::size_t earlier, const char* things) {
-  if (!is_due()) return;
-  const double elapsed = std::chrono::duration<double>(last_ - start_).count();
-  const double rate = static_cast<double>(done - earlier) / elapsed;
-  char text[160];
-  std::snprintf(text, sizeof text, "%zu of %zu %s, %.4g/s, %.0f s left", done, total, things, rate,
-                rate > 0 ? static_cast<double>(total - done) / rate : 0);
-  show(text);
+  if (is_due()) show(progress_text(done, total, earlier, things, elapsed_s()));
 }
 
 }  // namespace remote_touch

@@ -2,9 +2,16 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 namespace remote_touch {
+
+// "25 %, 2.5 %/s, 30 s left"; how long it takes is not told before anything is done.
+std::string progress_text(double fraction, double elapsed_s);
+// Counted things, earlier ones of them done before this program began: "30 of 100 runs, 2/s, 35 s left".
+std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
+                          double elapsed_s);
 
 // A line that is overwritten on a terminal, and a line every ten seconds elsewhere. Not for use from several
 // threads at once.
@@ -15,11 +22,11 @@ class Progress {
   void update(double fraction);  // 0 to 1
   void update(const std::string& text);
   void clear();  // before something else is printed
-  // Counted things, earlier ones of them done before this program began.
   void update(std::size_t done, std::size_t total, std::size_t earlier, const char* things);
 
  private:
   bool is_due();
+  double elapsed_s() const { return std::chrono::duration<double>(last_ - start_).count(); }
   void show(const std::string& text);
   std::string what_;
   bool quiet_, terminal_, shown_ = false;

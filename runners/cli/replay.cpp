@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/sweep/sweep_replay.h"
@@ -66,7 +66,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
-  require_different_file(request.output, request.map);
+  require_output(line, request.output, {request.map});
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
   const SweepResult& result = stored.result;
@@ -77,7 +77,6 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   if (request.replicate < 0 || request.replicate >= result.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
                      "expected 0 to " + std::to_string(result.replicates - 1));
-  require_writable(request.output);
 
   Progress progress("replay", line.quiet);
   SimulationOptions options;

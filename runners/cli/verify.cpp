@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <map>
 
-#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
 #include "runners/experiment/catalog.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/verification/metamorphic_checks.h"
@@ -62,7 +62,7 @@ ReportSuite suite_of(const std::string& renderer, const std::vector<CheckResult>
 }  // namespace
 
 int command_verify(const CommandLine& line, const VerifyRequest& request) {
-  if (!request.junit.empty()) require_writable(request.junit);
+  if (!request.junit.empty()) require_report(line, request.junit, {}, kJunitReport);
   std::vector<const RendererEntry*> chosen;
   for (const std::string& name : request.renderers)
     chosen.push_back(&find_entry(renderers(), name, "renderer"));

@@ -1,10 +1,8 @@
 #include "runners/live/loop/session_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/file_digest.h"
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
@@ -162,12 +160,6 @@ SensorFrame SessionReader::frame(std::size_t i) const {
   read("/frames/depth", frame.depth);
   if (view_.has_colour) read("/frames/colour", frame.colour);
   return frame;
-}
-
-bool has_result_header(const std::filesystem::path& file) {
-  std::string opening(kResultOpening.size(), '\0');
-  std::ifstream(file, std::ios::binary).read(opening.data(), static_cast<std::streamsize>(opening.size()));
-  return opening == kResultOpening;
 }
 
 }  // namespace remote_touch

@@ -71,7 +71,4 @@ class SessionReader {
   std::vector<std::int32_t> frame_number_, taken_, buttons_;
 };
 
-// Whether the file begins as one of this program's HDF5 files, which an experiment's JSON does not.
-bool has_result_header(const std::filesystem::path& file);
-
 }  // namespace remote_touch

@@ -1,0 +1,53 @@
+#include "runners/cli/outputs.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_digest.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Of a device there is nothing to lose.
+bool holds_something(const std::string& file) {
+  std::error_code absent;
+  return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
+}
+
+bool begins_with(const std::string& file, const std::string& opening) {
+  std::string found(opening.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(found.data(), static_cast<std::streamsize>(found.size()));
+  return found == opening;
+}
+
+void require(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
+             bool is_ours, const char* kind) {
+  for (const std::string& input : inputs) require_different_file(output, input);
+  if (!line.force && !is_ours && holds_something(output))
+    throw InputError(output, std::string("is there already and is no ") + kind +
+                                 " of this program: expected another file, or --force");
+  require_writable(output);
+}
+
+}  // namespace
+
+void require_output(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs) {
+  require(line, output, inputs, has_result_header(output), "result");
+}
+
+void require_report(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs, const std::string& opening) {
+  require(line, output, inputs, begins_with(output, opening), "report");
+}
+
+std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts) {
+  std::vector<std::string> files{subject};
+  for (const RecordingPart& part : parts) files.push_back(part.path);
+  return files;
+}
+
+}  // namespace remote_touch

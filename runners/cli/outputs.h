@@ -1,0 +1,30 @@
+// What a command may write over.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "runners/cli/commands.h"
+#include "scenarios/recordings/recording_part.h"
+
+namespace remote_touch {
+
+// Throws InputError, before any work is done for it, unless the result can be written there: in a writable
+// folder, over none of the inputs, and over nothing but a result of this program, an empty file or a device,
+// or with --force.
+void require_output(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs);
+// The same of a text that begins like one of the openings where one is replaced.
+void require_report(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs, const std::string& opening);
+
+inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
+inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
+inline constexpr const char* kConfiguration = "{\"title\":";  // as it is written, in one line
+inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+
+// The files that an experiment is made of and reads.
+std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts);
+
+}  // namespace remote_touch
