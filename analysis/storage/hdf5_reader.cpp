@@ -97,7 +97,7 @@ void Hdf5Reader::require_kind(const std::string& kind, const std::string& made_b
 // Columns and keys have other names in other versions: nothing of such a file can be used.
 void Hdf5Reader::require_version() const {
   const std::string schema = attribute(attributes_, "schema");
-  const std::string current = "/" + std::to_string(kSchemaVersion);
+  const std::string current = std::string(1, '/') + std::to_string(kSchemaVersion);
   if (!schema.starts_with(kSchemaPrefix) || schema.ends_with(current)) return;
   const std::string readable = schema.substr(0, schema.rfind('/')) + current;
   if (schema.ends_with("/1"))

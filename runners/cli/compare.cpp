@@ -8,7 +8,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
-#include "runners/cli/shell_command.h"
 #include "runners/provenance/provenance.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/comparison/comparison_text.h"
@@ -40,12 +39,10 @@ void add_tolerance(const std::string& text, Tolerances& tolerances) {
   tolerances[text.substr(0, equals)] = tolerance;
 }
 
-// What makes the plot again.
-std::string normalised(const CompareRequest& request) {
-  std::vector<std::string> words = {"remote-touch", "compare", request.baseline, request.candidate};
-  for (const std::string& tolerance : request.tolerances)
-    words.insert(words.end(), {"--tolerance", tolerance});
-  return shell_command(words);
+Recipe recipe(const CompareRequest& request) {
+  Recipe recipe{"compare", request.baseline};
+  recipe.candidate = request.candidate, recipe.tolerances = request.tolerances;
+  return recipe;
 }
 
 void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
@@ -58,7 +55,7 @@ void write_plot(const CommandLine& line, const CompareRequest& request, const Re
   const Json config = {{"baseline_digest", attribute(baseline.attributes(), "digest")},
                        {"candidate_digest", attribute(candidate.attributes(), "digest")}};
   write_figure(request.plot, deviation_figure(baseline, candidate, *comparison.columns),
-               provenance(config.dump(), normalised(request), line.kernels->isa));
+               provenance(config.dump(), recipe(request), line.kernels->isa));
 }
 
 }  // namespace

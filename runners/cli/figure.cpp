@@ -93,14 +93,14 @@ class FigureFolder {
   }
 
   void finish(std::size_t run, const FigureContext& context, Figure figure) {
-    std::string command = "remote-touch figure " + figure.name;
+    Recipe recipe{"figure", figure.name};
     if (context.made_runs_of_maps() < context.runs_of_maps()) {
       leave_unjudged(figure, context, runs_[run].coarse);
-      command += " --coarse " + std::to_string(runs_[run].coarse);
+      recipe.coarse = runs_[run].coarse;
     }
     const fs::path file = folder_ / ("fig" + figure.name + ".h5");
     write_figure(file, figure,
-                 provenance(context.configurations(), command, line_.kernels->isa, context.inputs()));
+                 provenance(context.configurations(), recipe, line_.kernels->isa, context.inputs()));
     claims_.replace(figure.name, figure.claims);
     if (was_made(figure))
       ++made_;

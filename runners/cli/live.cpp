@@ -8,9 +8,9 @@
 #include "analysis/storage/digest.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
-#include "runners/cli/shell_command.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
+#include "runners/provenance/shell_command.h"
 
 namespace remote_touch {
 

@@ -41,7 +41,8 @@ void require_same_origin(const ShardFile& part, const ShardFile& first) {
   const TextAttributes &ours = part.stored.attributes, &theirs = first.stored.attributes;
   for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
     for (const auto& [name, value] : *attributes)
-      if (name != "input_digests" && name != "command" &&  // the way to one file may be written differently
+      // The way to one file may be written differently.
+      if (name != "input_digests" && name != "command" && name != kRecipe &&
           attribute(ours, name) != attribute(theirs, name))
         throw InputError(part.file, "has another " + name + " than " + first.file +
                                         ": expected shards of one sweep, made by one build");

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <sstream>
+#include <optional>
 
 #include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_source.h"
@@ -15,9 +14,9 @@
 #include "runners/cli/figure_runs.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/shell_command.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
+#include "runners/provenance/shell_command.h"
 #include "runners/regression/comparison/comparison_text.h"
 #include "runners/settings/configuration_difference.h"
 #include "runners/sweep/sweep_run.h"
@@ -31,15 +30,6 @@ void comment(const std::string& text) {
   std::string lines = "# ";
   for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
   std::printf("%s\n", lines.c_str());
-}
-
-// "3,4"; anything else gives a place that no sweep has.
-std::vector<std::size_t> place_of(const std::string& cell) {
-  std::vector<std::size_t> place;
-  std::istringstream in(cell);
-  for (std::string number; std::getline(in, number, ',');)
-    place.push_back(std::strtoull(number.c_str(), nullptr, 10));
-  return place;
 }
 
 // A stored result, and the program's own build to hold against it.
@@ -88,7 +78,11 @@ class Repro {
 
  private:
   Repro(const CommandLine& line, const Hdf5Reader& result)
-      : line_(line), file_(result.file()), kind_(kind_of(result)), attributes_(result.attributes()) {
+      : line_(line),
+        file_(result.file()),
+        kind_(kind_of(result)),
+        attributes_(result.attributes()),
+        recipe_(recipe_of(attributes_)) {
     if (kind_ == "figure" && of("figure") == kScorecardFigure)
       throw InputError(file_, "is a scorecard, which " + of("command") +
                                   " -o FOLDER makes again: expected a file of its runs/");
@@ -96,7 +90,7 @@ class Repro {
 
   // A replay's command is that of its sweep, and then its own.
   void print_command() const {
-    auto all = commands_of(of("command"));
+    auto all = commands(*recipe_);
     all[0].insert(all[0].end(), {"-o", all.size() > 1 ? "map.h5" : "again.h5"});
     add_shard(all[0]);
     std::printf("%s\n", shell_command(all[0]).c_str());
@@ -107,10 +101,10 @@ class Repro {
   }
 
   void print_figure_command() const {
-    std::vector<std::string> words = words_of(of("command"));
-    if (words.size() < 3 || words[0] != "remote-touch" || (words[1] != "figure" && words[1] != "compare"))
+    if (!recipe_ || (recipe_->action != "figure" && recipe_->action != "compare"))
       return comment("not made by a command of this program");
-    const bool is_plot = words[1] == "compare";
+    const bool is_plot = recipe_->action == "compare";
+    std::vector<std::string> words = commands(*recipe_).front();
     words.insert(words.end(), {is_plot ? "--plot" : "-o", is_plot ? "again.h5" : "again"});
     std::printf("%s\n", shell_command(words).c_str());
   }
@@ -132,36 +126,28 @@ class Repro {
   }
 
   bool command_makes_it() const {
-    const auto all = commands_of(of("command"));
     try {
-      const std::string now = configuration_of(all);
+      const std::string now = recipe_ ? configuration_of(*recipe_) : std::string();
       return !now.empty() && configuration_differences(of("config"), now).empty();
     } catch (const InputError&) {
       return false;
     }
   }
-  // What the commands would make now; empty for other commands than
-  //   remote-touch run|sweep SUBJECT --set a=b ...
-  //   remote-touch sweep SUBJECT --set a=b ...; remote-touch replay --cell 3,4 --replicate 0
-  static std::string configuration_of(const std::vector<std::vector<std::string>>& commands) {
-    const std::vector<std::string>& words = commands.front();
-    if (words.size() < 3 || words[0] != "remote-touch") return {};
-    std::vector<std::string> overrides;
-    for (std::size_t i = 4; i < words.size(); i += 2) overrides.push_back(words[i]);
-    if (commands.size() == 1 && words[1] == "run") return Experiment::load(words[2], overrides).to_json();
-    if (words[1] != "sweep") return {};
-    const Sweep sweep = Sweep::load(words[2], overrides);
-    return commands.size() == 1 ? sweep.to_json() : configuration_of(sweep, commands[1]);
+  // What the recipe would make now; empty for what has no configuration of its own.
+  static std::string configuration_of(const Recipe& recipe) {
+    if (recipe.action == "run") return Experiment::load(recipe.subject, recipe.overrides).to_json();
+    if (recipe.action != "sweep" && recipe.action != "replay") return {};
+    const Sweep sweep = Sweep::load(recipe.subject, recipe.overrides);
+    return recipe.action == "sweep" ? sweep.to_json() : configuration_of(sweep, recipe);
   }
-  static std::string configuration_of(const Sweep& sweep, const std::vector<std::string>& replay) {
-    if (replay.size() != 6 || replay[0] != "remote-touch" || replay[1] != "replay") return {};
+  static std::string configuration_of(const Sweep& sweep, const Recipe& replay) {
     const SweepResult plan = sweep.plan();
-    const std::vector<std::size_t> place = place_of(replay[3]);
-    const int replicate = std::atoi(replay[5].c_str());
-    if (place.size() != plan.axes.size() || replicate < 0 || replicate >= plan.replicates) return {};
+    const std::vector<std::size_t>& place = replay.cell;
+    if (place.size() != plan.axes.size() || replay.replicate < 0 || replay.replicate >= plan.replicates)
+      return {};
     for (std::size_t i = 0; i < place.size(); ++i)
       if (place[i] >= plan.axes[i].length()) return {};
-    return sweep.experiment(plan.cell_at(place), replicate).to_json();
+    return sweep.experiment(plan.cell_at(place), replay.replicate).to_json();
   }
 
   std::vector<Column> columns_again(const Experiment& experiment, Progress& progress) const {
@@ -202,19 +188,12 @@ class Repro {
     return compare_sweep(stored.result, stored.attributes, run_sweep(sweep, options),
                          ours(sweep.to_json(), input_hashes(sweep.inputs())), {});
   }
-  // That the figure's command asked for.
-  int coarse() const {
-    const std::vector<std::string> words = words_of(of("command"));
-    const auto option = std::find(words.begin(), words.end(), "--coarse");
-    return option == words.end() || option + 1 == words.end() ? 1
-                                                              : std::max(1, std::atoi((option + 1)->c_str()));
-  }
   ResultComparison figure_again(Progress& progress) const {
     const auto is_it = [&](const FigureEntry& entry) { return entry.name == of("figure"); };
     const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
     if (entry == figures().end())
       throw InputError(file_, "is figure " + of("figure") + ", which this program does not know");
-    const std::vector<FigureRun> runs = {{&*entry, coarse()}};
+    const std::vector<FigureRun> runs = {{&*entry, recipe_ ? std::max(1, recipe_->coarse) : 1}};
     std::vector<Column> columns;
     make_figures(
         line_, runs, [](const FigureEntry& made, const FigureContext& context) { return made.make(context); },
@@ -232,6 +211,7 @@ class Repro {
   const CommandLine& line_;
   std::string file_, kind_;
   TextAttributes attributes_;
+  std::optional<Recipe> recipe_;
 };
 
 }  // namespace

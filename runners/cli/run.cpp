@@ -8,7 +8,6 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/shell_command.h"
 #include "runners/experiment/experiment.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -17,13 +16,6 @@
 namespace remote_touch {
 
 namespace {
-
-// What makes the result again: no output path, no verbosity.
-std::string normalised(const RunRequest& request) {
-  std::vector<std::string> words = {"remote-touch", "run", request.experiment};
-  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
-  return shell_command(words);
-}
 
 // The log of a task: a line for every step.
 void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
@@ -62,8 +54,9 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.hash_frames = true;
   options.progress = [&](double fraction) { progress.update(fraction); };
   if (request.timing) options.step_duration_s = &durations;
-  const TextAttributes origin = provenance(experiment.to_json(), normalised(request), line.kernels->isa,
-                                           input_hashes(experiment.inputs()));
+  const TextAttributes origin =
+      provenance(experiment.to_json(), Recipe{"run", request.experiment, request.overrides},
+                 line.kernels->isa, input_hashes(experiment.inputs()));
   const Trace trace = simulate(experiment, options);
   const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());

@@ -8,7 +8,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
-#include "runners/cli/shell_command.h"
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -25,13 +24,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What makes the result again: no output path, threads or shard.
-std::string normalised(const SweepRequest& request) {
-  std::vector<std::string> words = {"remote-touch", "sweep", request.sweep};
-  for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
-  return shell_command(words);
-}
-
 std::string with_shard(std::string output, const Shard& shard) {
   const std::string mark = "{shard}";
   if (const auto at = output.find(mark); at != std::string::npos)
@@ -40,7 +32,8 @@ std::string with_shard(std::string output, const Shard& shard) {
 }
 
 TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, const Shard& shard) {
-  TextAttributes list = provenance(sweep.to_json(), normalised(request), "", input_hashes(sweep.inputs()));
+  TextAttributes list = provenance(sweep.to_json(), Recipe{"sweep", request.sweep, request.overrides}, "",
+                                   input_hashes(sweep.inputs()));
   if (shard.count > 1) list.emplace_back("shard", shard.text());
   return list;
 }

@@ -130,8 +130,9 @@ bool has(const Parameters& parameters, const std::string& name) {
 // Whether the section, as it is in the configuration, has a parameter of that name.
 bool has(const Section& section, const Json& whole, const std::string& parameter) {
   const Json& own = given(whole, section.key);
+  if (!own.is_object()) return false;
   for (const SectionEntry& entry : section.entries())
-    if (entry.name.empty() || (own.is_object() && own.value("name", Json()) == entry.name))
+    if (entry.name.empty() || own.value("name", Json()) == entry.name)
       if (has(entry.make()->settings(), parameter)) return true;
   return false;
 }

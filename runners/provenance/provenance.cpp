@@ -34,4 +34,11 @@ TextAttributes provenance(const std::string& config, const std::string& command,
   return list;
 }
 
+TextAttributes provenance(const std::string& config, const Recipe& recipe, const std::string& isa,
+                          const std::string& inputs) {
+  TextAttributes list = provenance(config, command_text(recipe), isa, inputs);
+  list.insert(list.begin() + 2, {kRecipe, to_json(recipe)});
+  return list;
+}
+
 }  // namespace remote_touch

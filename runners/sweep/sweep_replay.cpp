@@ -14,6 +14,24 @@ std::string cell_text(const SweepResult& result, std::size_t cell) {
   return text;
 }
 
+namespace {
+
+// By the recipe of its sweep; where that has none, by what is said of it.
+TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay& replay, int replicate,
+                      const std::string& isa, const std::string& inputs) {
+  const std::string config = replay.experiment.to_json();
+  if (std::optional<Recipe> recipe = recipe_of(stored.attributes)) {
+    recipe->action = "replay";
+    recipe->cell = stored.result.place(cell), recipe->replicate = replicate;
+    return provenance(config, *recipe, isa, inputs);
+  }
+  const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
+                              cell_text(stored.result, cell) + " --replicate " + std::to_string(replicate);
+  return provenance(config, command, isa, inputs);
+}
+
+}  // namespace
+
 Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
                   const std::filesystem::path& output) {
   const std::size_t cell = stored.result.cell_of(run);
@@ -22,11 +40,8 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   options.hash_frames = true;
   const std::string inputs = input_hashes(replay.experiment.inputs());
   replay.trace = simulate(replay.experiment, options);
-  const std::string command = attribute(stored.attributes, "command") + "; remote-touch replay --cell " +
-                              cell_text(stored.result, cell) + " --replicate " + std::to_string(replicate);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
-  replay.digest =
-      write_trace(output, replay.trace, provenance(replay.experiment.to_json(), command, isa, inputs), {});
+  replay.digest = write_trace(output, replay.trace, origin(stored, cell, replay, replicate, isa, inputs), {});
   return replay;
 }
 

@@ -84,6 +84,16 @@ TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   const auto two = chosen_methods({"tracked-sheet", "proxy"});
   EXPECT_EQ(two[0].name, "tracked-sheet");
   EXPECT_EQ(two[1].name, "proxy");
+  const TestFolder folder("benchmark_plan_test");
+  const std::string mine =
+      folder.write("mine.json", R"({"title": "my own", "renderer": {"name": "penalty"}})").string();
+  const auto own = chosen_methods({mine, "proxy"});
+  EXPECT_EQ(own.front().name, "mine");
+  EXPECT_EQ(own.front().title, "my own");
+  EXPECT_HAS(refusal([&] { chosen_methods({mine, mine}); }), "method mine: comes twice");
+  EXPECT_HAS(refusal([&] { chosen_methods({folder.write("a b.json", "{}").string()}); }), "expected letters");
+  EXPECT_HAS(refusal([&] { chosen_methods({folder.write("bad.json", "[").string()}); }), "expected JSON");
+  EXPECT_HAS(refusal([] { chosen_scenes({"none.json"}); }), "none.json: cannot be read");
   EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected god-object, ");
   EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
   EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");

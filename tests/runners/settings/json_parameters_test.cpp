@@ -30,9 +30,9 @@ TEST(ApplyOverride, SetsWhatAPathLeadsTo) {
 // Each level is one call of what prints or destroys the value: 60000 of them exhausted the stack.
 TEST(ApplyOverride, APathHasSoManyLevels) {
   const auto path = [](int levels) {
-    std::string path = "title";
-    for (int i = 1; i < levels; ++i) path += ".a";
-    return path + "=1";
+    std::string keys = "title";
+    for (int i = 1; i < levels; ++i) keys += ".a";
+    return keys + "=1";
   };
   EXPECT_EQ(refused(R"({"title": null})", path(64)), "no InputError");
   EXPECT_HAS(refused(R"({"title": null})", path(65)), "expected at most 64 levels");

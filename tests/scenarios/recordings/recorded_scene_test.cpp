@@ -25,7 +25,7 @@ RecordedScene::Settings two_walls(const TestFolder& folder) {
                                   "depth_scale_m": 0.001, "frame_rate_hz": 20})");
   RecordedScene::Settings settings;
   settings.path = folder.path().string();
-  settings.truth_radius_m = 0.01;
+  settings.truth_radius_m = 0.0105;
   return settings;
 }
 

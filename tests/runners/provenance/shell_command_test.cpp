@@ -1,5 +1,5 @@
-// Commands that are stored in results can be typed, and read back word by word.
-#include "runners/cli/shell_command.h"
+// Commands that are stored in results can be typed.
+#include "runners/provenance/shell_command.h"
 
 #include <gtest/gtest.h>
 
@@ -29,11 +29,6 @@ const Words kAwkward[] = {
     {"-", "--", "-n", "%s", "%", "@", "+", ":", "1/2"},
 };
 
-TEST(ShellCommand, WordsComeBack) {
-  for (const Words& words : kAwkward)
-    EXPECT_EQ(words_of(shell_command(words)), words) << shell_command(words);
-}
-
 TEST(ShellCommand, PlainWordsStayAsTheyAre) {
   EXPECT_EQ(shell_command({"remote-touch", "run", "a/b_c-1.json", "--set", "axes.0.to=1e-3,5:6+7%8@9"}),
             "remote-touch run a/b_c-1.json --set axes.0.to=1e-3,5:6+7%8@9");
@@ -55,26 +50,6 @@ TEST(ShellCommand, AShellTakesTheSameWords) {
     std::string want;
     for (const std::string& word : words) command.push_back(word), want += word + "\n";
     EXPECT_EQ(said_by_shell(shell_command(command)), want) << shell_command(command);
-  }
-}
-
-TEST(ShellCommand, CommandsOneAfterTheOther) {
-  using Commands = std::vector<Words>;
-  EXPECT_EQ(commands_of("remote-touch sweep x"), (Commands{{"remote-touch", "sweep", "x"}}));
-  EXPECT_EQ(commands_of("a b; c d"), (Commands{{"a", "b"}, {"c", "d"}}));
-  EXPECT_EQ(commands_of("a 'b; c' d"), (Commands{{"a", "b; c", "d"}}));
-  EXPECT_EQ(commands_of(""), (Commands{{""}}));
-  Commands all(std::begin(kAwkward), std::end(kAwkward));
-  std::string text;
-  for (const Words& words : all) text += (text.empty() ? "" : "; ") + shell_command(words);
-  EXPECT_EQ(commands_of(text), all);
-}
-
-// Whatever a file says in place of a command, reading it comes to an end.
-TEST(ShellCommand, OtherTextsAreReadWithoutHarm) {
-  for (const char* text : {"'", "\\", "a'b", "; ", ";", "a; ", " ", "'a\\", "a\\"}) {
-    EXPECT_FALSE(words_of(text).empty()) << text;
-    EXPECT_FALSE(commands_of(text).back().empty()) << text;
   }
 }
 
