@@ -5,11 +5,12 @@
 
 #include "runners/cli/commands.h"
 #include "runners/live/loop/live_report.h"
+#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
 int command_jitter(const CommandLine& line, const JitterRequest& request) {
-  Jitter jitter = measure_jitter(request.duration_s, request.rate_hz, line.stop);
+  Jitter jitter = measure_jitter(request.duration_s, request.rate_hz, line.stop, steady_clock());
   std::printf("%zu ticks at %g Hz: %s\n", jitter.late_s.size(), request.rate_hz, jitter.real_time.c_str());
   std::fputs(histogram(jitter.late_s).c_str(), stdout);
   std::sort(jitter.late_s.begin(), jitter.late_s.end());

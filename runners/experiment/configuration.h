@@ -9,9 +9,9 @@
 #include "core/guidance/guided_renderer.h"
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/frame_stream.h"
-#include "runners/live/devices/safety_gate.h"
-#include "runners/live/loop/live_settings.h"
 #include "runners/operator/simulated_hand.h"
+#include "runners/sessions/live_settings.h"
+#include "runners/sessions/safety_limits.h"
 #include "scenarios/faults/sensor_faults.h"
 
 namespace remote_touch {

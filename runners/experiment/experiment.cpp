@@ -6,7 +6,7 @@
 
 #include "analysis/storage/file_digest.h"
 #include "runners/experiment/sections.h"
-#include "runners/live/loop/session_scene.h"
+#include "runners/sessions/session_scene.h"
 #include "runners/settings/embedded_data.h"
 #include "runners/settings/json_parameters.h"
 

@@ -83,3 +83,12 @@ if(BULLET_FOUND AND fcl_FOUND AND octomap_FOUND)
 else()
   peers_missing(peer_tool_benchmark "libbullet-dev, libfcl-dev and liboctomap-dev")
 endif()
+
+# How punctual the live loop is: nothing in it passes or fails.
+add_executable(live_benchmark benchmarks/live_benchmark.cpp)
+target_link_libraries(live_benchmark PRIVATE test_support)
+vendor_devices(live_benchmark)
+if(TARGET haply_service)
+  target_link_libraries(live_benchmark PRIVATE haply_service)
+  target_compile_definitions(live_benchmark PRIVATE REMOTE_TOUCH_HAPLY_SERVICE)
+endif()

@@ -8,14 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch {
 
@@ -40,7 +39,7 @@ class DeviceDouble {
   };
 
   struct Event {
-    double at_s;
+    std::int64_t at_ns;
     std::array<double, 6> told;  // the last force and torque that the library was told
     bool has_motors_on;
 
@@ -49,6 +48,8 @@ class DeviceDouble {
   };
 
   // --- for tests ---
+  // From now on what waits and what is remembered keeps to this clock; null: the steady one.
+  void follow(SimulatedClock* clock) { simulated_ = clock; }
   void reset() {
     const std::lock_guard<std::mutex> lock(mutex_);
     state_ = {}, told_ = {}, events_ = {};
@@ -77,7 +78,7 @@ class DeviceDouble {
   }
   Event now() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return {steady_s(), told_, has_motors_on_};
+    return {clock().now_ns(), told_, has_motors_on_};
   }
   bool is_open() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -85,6 +86,8 @@ class DeviceDouble {
   }
 
   // --- for the library ---
+  SimulatedClock* simulated() const { return simulated_; }
+  Clock& clock() const { return simulated_ ? *simulated_ : steady_clock(); }
   State state() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return state_;
@@ -105,12 +108,13 @@ class DeviceDouble {
   }
   void enter(Call call) {
     if (!hang_next_.compare_exchange_strong(call, none)) return;
-    while (hangs_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (hangs_) clock().sleep_s(1e-3);
   }
 
  private:
-  void remember() { events_[count_++ % events_.size()] = {steady_s(), told_, has_motors_on_}; }
+  void remember() { events_[count_++ % events_.size()] = {clock().now_ns(), told_, has_motors_on_}; }
 
+  SimulatedClock* simulated_ = nullptr;
   mutable std::mutex mutex_;
   State state_;
   std::array<double, 6> told_{};

@@ -1,8 +1,8 @@
 // A test double of OpenHaptics' HD library: it has the vendor's signatures and none of its behaviour, but for
 // a thread that calls a thousand times a second, and the rule that a force counts at the end of its frame.
-#include <chrono>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include "tests/doubles/device_double.h"
 
@@ -25,19 +25,36 @@ constexpr unsigned kBadHandle = 0x0104, kCommunication = 0x0302, kIllegalBegin =
 thread_local bool is_in_frame = false;
 thread_local std::array<double, 6> told{};
 
+constexpr double kPeriod_s = 1e-3;
 std::thread scheduler;
+int simulated_scheduler = 0;
 std::atomic<bool> is_scheduling{false};
 unsigned (*callback)(void*) = nullptr;
 void* callback_data = nullptr;
 
+void call() {
+  if (callback != nullptr && !device.state().is_scheduler_silent && callback(callback_data) == 0)
+    callback = nullptr;
+}
+
 void call_every_millisecond() {
-  auto due = std::chrono::steady_clock::now();
-  while (is_scheduling) {
-    if (callback != nullptr && !device.state().is_scheduler_silent && callback(callback_data) == 0)
-      callback = nullptr;
-    due = std::max(due + std::chrono::milliseconds(1), std::chrono::steady_clock::now());
-    std::this_thread::sleep_until(due);
-  }
+  for (; is_scheduling; device.clock().sleep_s(kPeriod_s)) call();
+}
+
+void start_scheduler() {
+  if (is_scheduling.exchange(true)) return;
+  if (remote_touch::SimulatedClock* const clock = device.simulated())
+    simulated_scheduler = clock->every(kPeriod_s, clock->now_s(), call);
+  else
+    scheduler = std::thread(call_every_millisecond);
+}
+
+void stop_scheduler() {
+  if (!is_scheduling.exchange(false)) return;
+  if (device.simulated())
+    device.simulated()->cancel(simulated_scheduler);
+  else
+    scheduler.join();
 }
 
 void keep(int error) {
@@ -158,12 +175,12 @@ void hdUnschedule(unsigned long) {}
 
 void hdStartScheduler() {
   const int error = device.state().scheduler_error;
-  if (error == 0 && !is_scheduling.exchange(true)) scheduler = std::thread(call_every_millisecond);
+  if (error == 0) start_scheduler();
   keep(error);
 }
 
 void hdStopScheduler() {
-  if (is_scheduling.exchange(false)) scheduler.join();
+  stop_scheduler();
   callback = nullptr;
 }
 // NOLINTEND(readability-identifier-naming)

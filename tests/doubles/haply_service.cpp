@@ -16,11 +16,8 @@
 #include <condition_variable>
 #include <csignal>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
-
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -28,58 +25,8 @@ namespace {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
-using nlohmann::json;
 namespace beast = boost::beast;
 using Web = beast::websocket::stream<tcp::socket, false>;
-
-json vector_of(const Vec3& v) {
-  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
-}
-
-json orientation_of(const Eigen::Quaterniond& q) {
-  return {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}};
-}
-
-json device_of(const HaplyWorld& world, const std::string& id, const Vec3& given_N, bool with_config) {
-  const json zeros = {{"a0", 0.0}, {"a1", 0.0}, {"a2", 0.0}};
-  // The cursor is the first device's; another stands elsewhere.
-  const Vec3 at = id == world.devices.front() ? world.position_m : Vec3(9, 9, 9);
-  json device = {{"device_id", id},
-                 {"state",
-                  {{"angular_position", zeros},
-                   {"angular_velocity", zeros},
-                   {"body_orientation", orientation_of(Eigen::Quaterniond::Identity())},
-                   {"control_domain", "cartesian"},
-                   {"control_mode", "force"},
-                   {"current_cursor_position", vector_of(Vec3(7, 7, 7))},
-                   {"cursor_position", vector_of(at)},
-                   {"cursor_velocity", vector_of(world.velocity_m_per_s)}}},
-                 {"status", {{"calibrated", true}, {"in_use", true}, {"ready", true}}}};
-  if (world.reports_force) device["state"]["current_cursor_force"] = vector_of(given_N);
-  if (with_config)
-    device["config"] = {{"type", "inverse3"},
-                        {"basis", {{"permutation", world.basis}}},
-                        {"handedness", "right"},
-                        {"filters", {{"force_gate", {{"gain", 0.3}}}}}};
-  return device;
-}
-
-std::string message_of(const HaplyWorld& world, const Vec3& given_N, bool is_inventory) {
-  json message = {{"inverse3", json::array()}};
-  if (is_inventory) message["session_id"] = 7;
-  for (const std::string& id : world.devices)
-    message["inverse3"].push_back(device_of(world, id, given_N, is_inventory));
-  if (world.has_handle) {
-    json state = {{"orientation", orientation_of(world.orientation)}, {"hall", 0}};
-    if (world.is_handle_wired)
-      state["button"] = world.a;
-    else
-      state["buttons"] = {{"a", world.a}, {"b", world.b}, {"c", world.c}};
-    message[world.is_handle_wired ? "verse_grip" : "wireless_verse_grip"] = {
-        {{"device_id", "61548"}, {"state", state}, {"status", {{"error", 0}}}}};
-  }
-  return message.dump();
-}
 
 }  // namespace
 
@@ -93,7 +40,7 @@ struct HaplyService::Inside {
   mutable std::mutex mutex;
   std::condition_variable changed;
   HaplyWorld world;
-  std::vector<Command> commands;
+  std::vector<HaplyCommand> commands;
   Vec3 given_N = Vec3::Zero();
   int connection = -1, connections = 0;
   enum class Mood { answers, hangs, hangs_in_the_middle, pings, is_dead } mood = Mood::answers;
@@ -104,6 +51,7 @@ struct HaplyService::Inside {
   void note(const std::string& text);
   void set_mood(Mood next);
   bool is(Mood asked);
+  bool misbehaves = false;
   std::string answer(bool is_inventory);
 };
 
@@ -130,45 +78,45 @@ void HaplyService::Inside::talk(Web& web) {
   error_code ec;
   web.accept(ec);
   web.text(true);
-  for (bool is_inventory = true; !ec; is_inventory = false) {
+  if (!ec) web.write(boost::asio::buffer(answer(true)), ec);
+  while (!ec) {
     beast::flat_buffer command;
-    if (!is_inventory) {
-      web.read(command, ec);
-      if (ec) return;
-      note(beast::buffers_to_string(command.data()));
+    web.read(command, ec);
+    if (ec) return;
+    note(beast::buffers_to_string(command.data()));
+    const std::string text = answer(false);
+    while (!ec && is(Mood::pings)) {
+      web.ping({}, ec);
+      const std::lock_guard<std::mutex> lock(mutex);
+      misbehaves = true;
     }
-    const std::string text = answer(is_inventory);
-    while (!ec && is(Mood::pings)) web.ping({}, ec);
     std::unique_lock<std::mutex> lock(mutex);
-    if (mood == Mood::hangs_in_the_middle) {
+    const bool has_to_wait = mood == Mood::hangs_in_the_middle;
+    if (has_to_wait) {
       // A text frame of 100 bytes, of which five come.
       const unsigned char half[] = {0x81, 100, '{', '"', 'i', 'n', 'v'};
       boost::asio::write(web.next_layer(), boost::asio::buffer(half), ec);
+      misbehaves = true;
     }
-    const bool had_to_wait = mood == Mood::hangs_in_the_middle;
     changed.wait(lock, [&] { return mood == Mood::answers || mood == Mood::is_dead; });
-    if (mood == Mood::is_dead || had_to_wait) return;
+    if (mood == Mood::is_dead || has_to_wait) return;
     lock.unlock();
     web.write(boost::asio::buffer(text), ec);
   }
 }
 
 void HaplyService::Inside::note(const std::string& text) {
-  const double now_s = steady_s();
-  const json message = json::parse(text);
+  const std::vector<HaplyCommand> sent = haply_commands(text);
   const std::lock_guard<std::mutex> lock(mutex);
-  for (const json& device : message.at("inverse3"))
-    for (const auto& [key, force] : device.at("commands").at("set_cursor_force").items()) {
-      const Vec3 force_N(force.at("x"), force.at("y"), force.at("z"));
-      commands.push_back({now_s, device.at("device_id"), key, force_N});
-      given_N = (key == world.force_key ? world.gate : 0) * force_N + world.other_N;
-    }
+  for (const HaplyCommand& command : sent) {
+    commands.push_back(command);
+    given_N = given_force_N(world, command);
+  }
 }
 
 std::string HaplyService::Inside::answer(bool is_inventory) {
   const std::lock_guard<std::mutex> lock(mutex);
-  const std::string& instead = is_inventory ? world.inventory : world.answer;
-  return instead.empty() ? message_of(world, given_N, is_inventory) : instead;
+  return is_inventory ? haply_inventory(world, given_N) : haply_state(world, given_N);
 }
 
 bool HaplyService::Inside::is(Mood asked) {
@@ -228,7 +176,12 @@ void HaplyService::die() {
   inside_->set_mood(Inside::Mood::is_dead);
 }
 
-std::vector<HaplyService::Command> HaplyService::commands() const {
+bool HaplyService::misbehaves() const {
+  const std::lock_guard<std::mutex> lock(inside_->mutex);
+  return inside_->misbehaves;
+}
+
+std::vector<HaplyCommand> HaplyService::commands() const {
   const std::lock_guard<std::mutex> lock(inside_->mutex);
   return inside_->commands;
 }

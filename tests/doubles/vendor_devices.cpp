@@ -77,16 +77,19 @@ void PrintTo(const VendorDevice* vendor, std::ostream* out) {
   *out << vendor->name;
 }
 
-DoubleInstalled::DoubleInstalled(const VendorDevice& vendor) : variable_(vendor.variable) {
+DoubleInstalled::DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock)
+    : variable_(vendor.variable) {
   void* library = dlopen(vendor.double_file, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto access = reinterpret_cast<DeviceDouble* (*)()>(dlsym(library, "device_double"));
   device_ = access();
   device_->reset();
+  device_->follow(clock);
   setenv(variable_, vendor.double_file, 1);
 }
 
 DoubleInstalled::~DoubleInstalled() {
+  device_->follow(nullptr);
   unsetenv(variable_);
 }
 

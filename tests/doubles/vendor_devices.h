@@ -18,7 +18,7 @@ struct VendorDevice {
   const char* double_file;
   const char* variable;  // names the library
   const char* library;   // that is looked for without it
-  std::unique_ptr<HapticDevice> (*open)(const std::string& address);
+  std::unique_ptr<HapticDevice> (*open)(const std::string& address, Clock& clock);
   Availability (*availability)();
 
   Eigen::Matrix3d axes;  // takes ours to the vendor's
@@ -33,10 +33,11 @@ void PrintTo(const VendorDevice* vendor, std::ostream* out);  // NOLINT(readabil
 
 extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
 
-// The library of the vendor is its double, freshly set, as long as this lives.
+// The library of the vendor is its double, freshly set, as long as this lives: on a simulated clock, or on
+// the steady one.
 class DoubleInstalled {
  public:
-  explicit DoubleInstalled(const VendorDevice& vendor);
+  explicit DoubleInstalled(const VendorDevice& vendor, SimulatedClock* clock = nullptr);
   ~DoubleInstalled();
   DoubleInstalled(const DoubleInstalled&) = delete;
   DoubleInstalled& operator=(const DoubleInstalled&) = delete;

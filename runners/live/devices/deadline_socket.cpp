@@ -15,8 +15,6 @@
 #include <memory>
 #include <utility>
 
-#include "runners/live/timing/steady_clock.h"
-
 namespace remote_touch {
 
 namespace {
@@ -32,9 +30,11 @@ DeadlineSocket::~DeadlineSocket() {
   close();
 }
 
-DeadlineSocket::DeadlineSocket(DeadlineSocket&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+DeadlineSocket::DeadlineSocket(DeadlineSocket&& other) noexcept
+    : clock_(other.clock_), handle_(std::exchange(other.handle_, -1)) {}
 
 DeadlineSocket& DeadlineSocket::operator=(DeadlineSocket&& other) noexcept {
+  std::swap(clock_, other.clock_);
   std::swap(handle_, other.handle_);
   return *this;
 }
@@ -96,7 +96,7 @@ int DeadlineSocket::connect_within(const void* address, unsigned size, double de
 // Looks once also after the deadline: a thread that was not running meanwhile finds what has come.
 int DeadlineSocket::wait(short events, double deadline_s) noexcept {
   for (;;) {
-    const double remaining_s = std::max(0.0, deadline_s - steady_s());
+    const double remaining_s = std::max(0.0, deadline_s - clock_->now_s());
     timespec left{};
     left.tv_sec = static_cast<time_t>(remaining_s);
     left.tv_nsec = static_cast<long>(1e9 * (remaining_s - std::floor(remaining_s)));

@@ -1,9 +1,11 @@
-// A connected stream socket on which no call waits beyond a deadline, a moment of steady_s(); what is
-// possible without waiting is done after it too.
+// A connected stream socket on which no call waits beyond a deadline, a moment of its clock in seconds; what
+// is possible without waiting is done after it too. The waiting itself is the system's.
 #pragma once
 
 #include <cstddef>
 #include <string>
+
+#include "runners/live/timing/clock.h"
 
 namespace remote_touch {
 
@@ -14,7 +16,7 @@ class DeadlineSocket {
     int error = 0;  // of errno; ETIMEDOUT at the deadline, ECONNRESET when the peer has closed
   };
 
-  DeadlineSocket() = default;
+  explicit DeadlineSocket(const Clock& clock) : clock_(&clock) {}
   ~DeadlineSocket();
   DeadlineSocket(DeadlineSocket&& other) noexcept;
   DeadlineSocket& operator=(DeadlineSocket&& other) noexcept;
@@ -40,6 +42,7 @@ class DeadlineSocket {
   int connect_within(const void* address, unsigned size, double deadline_s) noexcept;
   void close() noexcept;
 
+  const Clock* clock_;
   int handle_ = -1;
 };
 

@@ -9,36 +9,42 @@
 #include "runners/live/devices/simulated_device.h"
 #include "runners/live/devices/spacenav.h"
 #include "runners/live/devices/uri.h"
-#include "runners/live/loop/session_scene.h"
+#include "runners/live/timing/steady_clock.h"
+#include "runners/sessions/session_scene.h"
 
 namespace remote_touch {
 
 namespace {
 
 std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const Experiment& experiment,
-                                             const Kernels& kernels) {
+                                             const Kernels& kernels, Clock& clock) {
   if (!address.empty())
     throw InputError("--device sim:" + address,
                      "expected sim:, for the experiment's trajectory and operator");
   auto script = experiment.build_trajectory(*experiment.build_scenario(kernels));
   return std::make_unique<SimulatedDevice>(std::move(script), experiment.build_hand(),
                                            DevicePlacement(experiment.live()),
-                                           experiment.settings().haptic_rate_hz);
+                                           experiment.settings().haptic_rate_hz, clock);
+}
+
+std::unique_ptr<HapticDevice> open_haply_service(const std::string& address, Clock& clock) {
+  return open_haply(address, clock);
 }
 
 // The recorded hand, in real time; it feels nothing.
 std::unique_ptr<HapticDevice> open_session(const std::string& address, const Experiment& experiment,
-                                           const Kernels& kernels) {
+                                           const Kernels& kernels, Clock& clock) {
   const auto scenario = experiment.build_scenario(kernels);
   const double rate_hz = experiment.settings().haptic_rate_hz;
   return std::make_unique<SimulatedDevice>(
       std::make_unique<SessionHand>(SessionHand::Settings{address}, *scenario),
-      SimulatedHand({}, {}, 1 / rate_hz), DevicePlacement(experiment.live()), rate_hz);
+      SimulatedHand({}, {}, 1 / rate_hz), DevicePlacement(experiment.live()), rate_hz, clock);
 }
 
-template <std::unique_ptr<HapticDevice> (*open)(const std::string&)>
-std::unique_ptr<HapticDevice> open_at(const std::string& address, const Experiment&, const Kernels&) {
-  return open(address);
+template <std::unique_ptr<HapticDevice> (*open)(const std::string&, Clock&)>
+std::unique_ptr<HapticDevice> open_at(const std::string& address, const Experiment&, const Kernels&,
+                                      Clock& clock) {
+  return open(address, clock);
 }
 
 constexpr DeviceEntry kDevices[] = {
@@ -53,9 +59,9 @@ constexpr DeviceEntry kDevices[] = {
      open_haptics_availability},
     {"entact", "entact:IP", "Entact W5D and W7D", open_at<open_entact>, entact_availability},
     {"haply", "haply:ws://127.0.0.1:10001", "Haply Inverse3, by the WebSocket of its service",
-     open_at<open_haply>, haply_availability},
+     open_at<open_haply_service>, [] { return haply_availability(steady_clock()); }},
     {"spnav", "spnav:PATH", "3Dconnexion SpaceMouse, by spacenavd; input only", open_at<open_spacenav>,
-     [] { return spacenav_availability(); }},
+     [] { return spacenav_availability("", steady_clock()); }},
     {"replay", "replay:FILE", "the hand of a recorded live session; no hardware", open_session,
      [] {
        return Availability{true, true, "reads files"};
@@ -69,9 +75,9 @@ std::span<const DeviceEntry> devices() {
 }
 
 std::unique_ptr<HapticDevice> open_device(const std::string& text, const Experiment& experiment,
-                                          const Kernels& kernels) {
+                                          const Kernels& kernels, Clock& clock) {
   const Uri uri = parse_uri("--device", text);
-  return find_scheme(devices(), "--device", uri).open(uri.address, experiment, kernels);
+  return find_scheme(devices(), "--device", uri).open(uri.address, experiment, kernels, clock);
 }
 
 }  // namespace remote_touch

@@ -16,7 +16,7 @@ struct DeviceEntry {
   const char* example;
   const char* summary;
   std::unique_ptr<HapticDevice> (*open)(const std::string& address, const Experiment& experiment,
-                                        const Kernels& kernels);
+                                        const Kernels& kernels, Clock& clock);
   Availability (*availability)();
 };
 
@@ -24,6 +24,6 @@ std::span<const DeviceEntry> devices();
 
 // Throws InputError when the device cannot be opened.
 std::unique_ptr<HapticDevice> open_device(const std::string& uri, const Experiment& experiment,
-                                          const Kernels& kernels);
+                                          const Kernels& kernels, Clock& clock);
 
 }  // namespace remote_touch

@@ -55,7 +55,7 @@ constexpr double kMetrePerMm = 1e-3, kNmmPerNm = 1e3;
 
 class Entact : public GatedDevice {
  public:
-  Entact(const std::string& address, const std::string& subject);
+  Entact(const std::string& address, const std::string& subject, Clock& clock);
   ~Entact() override;
   Entact(const Entact&) = delete;
   Entact& operator=(const Entact&) = delete;
@@ -79,7 +79,7 @@ class Entact : public GatedDevice {
   std::atomic<bool> has_motors_on_{false};
 };
 
-Entact::Entact(const std::string& address, const std::string& subject) {
+Entact::Entact(const std::string& address, const std::string& subject, Clock& clock) : GatedDevice(clock) {
   try {
     connect(address, subject);
     home(subject);
@@ -178,8 +178,8 @@ void Entact::switch_off() noexcept {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_entact(const std::string& address) {
-  return std::make_unique<Entact>(address, address.empty() ? "entact" : "entact:" + address);
+std::unique_ptr<HapticDevice> open_entact(const std::string& address, Clock& clock) {
+  return std::make_unique<Entact>(address, address.empty() ? "entact" : "entact:" + address, clock);
 }
 
 Availability entact_availability() {

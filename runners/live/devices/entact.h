@@ -16,7 +16,7 @@ namespace remote_touch {
 
 // address: that of the device in the network, "192.168.1.144"; "" asks the network and takes the first that
 // answers. A device that is not homed must be held in its calibration position.
-std::unique_ptr<HapticDevice> open_entact(const std::string& address);
+std::unique_ptr<HapticDevice> open_entact(const std::string& address, Clock& clock);
 
 // Only of the library: devices are looked for when one is opened.
 Availability entact_availability();

@@ -75,7 +75,7 @@ constexpr std::array<KnownFault, 5> kDhdFaults{{
 
 class ForceDimension : public GatedDevice {
  public:
-  ForceDimension(int number, const std::string& subject);
+  ForceDimension(int number, const std::string& subject, Clock& clock);
   ~ForceDimension() override;
   ForceDimension(const ForceDimension&) = delete;
   ForceDimension& operator=(const ForceDimension&) = delete;
@@ -97,7 +97,7 @@ class ForceDimension : public GatedDevice {
   DeviceTraits traits_;
 };
 
-ForceDimension::ForceDimension(int number, const std::string& subject) {
+ForceDimension::ForceDimension(int number, const std::string& subject, Clock& clock) : GatedDevice(clock) {
   const int count = dhd_.get_device_count();
   if (count <= 0)
     throw InputError(
@@ -191,9 +191,9 @@ int device_number(const std::string& address, const std::string& subject) {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address) {
+std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address, Clock& clock) {
   const std::string subject = "fd:" + (address.empty() ? "0" : address);
-  return std::make_unique<ForceDimension>(device_number(address, subject), subject);
+  return std::make_unique<ForceDimension>(device_number(address, subject), subject, clock);
 }
 
 Availability force_dimension_availability() {

@@ -11,7 +11,7 @@
 namespace remote_touch {
 
 // address: the number of the device among those connected; "" is 0.
-std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address);
+std::unique_ptr<HapticDevice> open_force_dimension(const std::string& address, Clock& clock);
 
 Availability force_dimension_availability();
 

@@ -1,14 +1,10 @@
 #include "runners/live/devices/gated_device.h"
 
-#include <time.h>
-
-#include "runners/live/timing/steady_clock.h"
-
 namespace remote_touch {
 
 namespace {
 
-constexpr double kPatience_s = 5e-3;
+constexpr std::int64_t kPatience_ns = 5'000'000, kNap_ns = 100'000;
 
 bool is_finite(const DeviceReading& r) {
   return r.position_m.allFinite() && r.orientation.coeffs().allFinite() && r.velocity_m_per_s.allFinite() &&
@@ -55,9 +51,8 @@ DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
 // take.
 void GatedDevice::release() noexcept {
   released_ = true;
-  const timespec nap{0, 100'000};
-  for (const double until_s = steady_s() + kPatience_s; in_vendor_ && steady_s() < until_s;)
-    nanosleep(&nap, nullptr);
+  const std::int64_t until_ns = clock().now_ns() + kPatience_ns;
+  while (in_vendor_ && clock().now_ns() < until_ns) clock().sleep_until_ns(clock().now_ns() + kNap_ns);
   switch_off();
 }
 

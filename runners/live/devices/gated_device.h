@@ -11,6 +11,7 @@ namespace remote_touch {
 // An adapter's destructor calls release() before it closes.
 class GatedDevice : public HapticDevice {
  public:
+  using HapticDevice::HapticDevice;
   DeviceFault read(DeviceReading& reading) noexcept final;
   DeviceFault write(const Wrench& wrench) noexcept final;
   void release() noexcept final;

@@ -1,15 +1,11 @@
 #include "runners/live/devices/haply.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "runners/live/devices/device_address.h"
-#include "runners/live/devices/haply_link.h"
 #include "runners/live/devices/haply_messages.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -19,7 +15,8 @@ constexpr double kOpenWithin_s = 1;
 // Together, with 1 ms for the rest of a message that has begun, below the 10 ms after which a tick must have
 // told a fault.
 constexpr double kReadWithin_s = 6e-3, kWriteWithin_s = 1.5e-3;
-constexpr double kTickEndsWithin_s = 5e-3, kLastAnswerWithin_s = 20e-3;
+constexpr double kLastAnswerWithin_s = 20e-3;
+constexpr std::int64_t kTickEndsWithin_ns = 5'000'000, kTurnNap_ns = 100'000;
 constexpr double kStateLasts_s = 20e-3;  // longer without a command, and the state is asked for again
 constexpr double kUnfollowed_s = 50e-3;
 constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1;
@@ -45,6 +42,7 @@ Vec3 to_service(const Vec3& v) {
 // same service may change it much; what is found is a force that does not come at all, and one from nowhere.
 class ForceCheck {
  public:
+  explicit ForceCheck(double now_s) : followed_s_(now_s) {}
   DeviceFault operator()(const Vec3& sent, const Vec3& given, HaplyForceKey key, double now_s) {
     const bool is_missing =
         sent.norm() > kMinCheckedForce_N && given.dot(sent) < kMinFraction * sent.dot(sent);
@@ -56,7 +54,7 @@ class ForceCheck {
   }
 
  private:
-  double followed_s_ = steady_s();
+  double followed_s_;
 };
 
 DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading& reading) {
@@ -81,8 +79,10 @@ struct Opened {
 };
 
 // Connects and takes the inventory; nothing is commanded.
-Opened open_service(const DeviceAddress& address, double deadline_s) {
-  Opened opened{open_haply_link(address, deadline_s), "", ""};
+Opened open_service(const DeviceAddress& address, const Clock& clock, double time_s,
+                    const HaplyLinkOpener& open_link) {
+  const double deadline_s = clock.now_s() + time_s;
+  Opened opened{open_link(address, clock, deadline_s), "", ""};
   std::string_view text;
   const DeviceFault fault = opened.link->receive(text, deadline_s);
   if (fault)
@@ -112,12 +112,13 @@ DeviceAddress haply_address(const std::string& address) {
 
 class Haply final : public HapticDevice {
  public:
-  explicit Haply(const DeviceAddress& address) {
+  Haply(const DeviceAddress& address, Clock& clock, const HaplyLinkOpener& open_link)
+      : HapticDevice(clock), check_(clock.now_s()) {
     key_ = address.choice("force", {"vector", "values"}) == "vector" ? HaplyForceKey::vector
                                                                      : HaplyForceKey::values;
     is_checked_ = address.choice("check", {"on", "off"}) == "on";
     traits_.tick_rate_hz = address.number("rate", 1000, 100, 8000);
-    opened_ = open_service(address, steady_s() + kOpenWithin_s);
+    opened_ = open_service(address, clock, kOpenWithin_s, open_link);
     if (!command_.set_device(opened_.device_id, key_))
       throw address.refusal("the name of the device cannot be sent back; name another with device=ID");
     traits_.name = "Haply Inverse3 " + opened_.device_id;
@@ -174,7 +175,7 @@ DeviceFault Haply::send(const Vec3& force_N, double deadline_s) noexcept {
   const DeviceFault fault = opened_.link->send(command_.text(force_N), deadline_s);
   if (fault) return fault;
   sent_N_ = force_N;
-  sent_s_ = steady_s();
+  sent_s_ = clock().now_s();
   is_answer_due_ = true;
   return {};
 }
@@ -188,7 +189,7 @@ DeviceFault Haply::drain(std::string_view& text, double deadline_s) noexcept {
 
 // The answer to the last command; when that was long ago, or there was none, to one without force.
 DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
-  const bool is_old = !is_answer_due_ || steady_s() - sent_s_ > kStateLasts_s;
+  const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
   if (const DeviceFault fault = drain(text, deadline_s)) return fault;
   if (!is_old) return {};
   if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
@@ -197,13 +198,14 @@ DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
 
 DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
   std::string_view text;
-  if (const DeviceFault fault = newest(text, steady_s() + time_s)) return fault;
+  if (const DeviceFault fault = newest(text, clock().now_s() + time_s)) return fault;
   HaplyMessage message;
   if (!read_haply_message(text, opened_.device_id, opened_.handle_id, message)) return kNoState;
   DeviceReading found;
   if (const DeviceFault fault = convert(message, !opened_.handle_id.empty(), found)) return fault;
   if (is_checked_ && message.device->has_force)
-    if (const DeviceFault fault = check_(sent_N_, message.device->force_N, key_, steady_s())) return fault;
+    if (const DeviceFault fault = check_(sent_N_, message.device->force_N, key_, clock().now_s()))
+      return fault;
   reading = found;
   return {};
 }
@@ -218,7 +220,7 @@ DeviceFault Haply::write(const Wrench& wrench) noexcept {
   const TickGuard turn(taken_);
   if (!turn) return kReleased;
   const bool is_force = wrench.force_N.allFinite();
-  const double deadline_s = steady_s() + kWriteWithin_s;
+  const double deadline_s = clock().now_s() + kWriteWithin_s;
   // With a second command under way the answers would stay one behind. What is not sent lets the device idle.
   std::string_view late;
   if (const DeviceFault fault = drain(late, deadline_s)) return fault;
@@ -228,15 +230,13 @@ DeviceFault Haply::write(const Wrench& wrench) noexcept {
 
 void Haply::release() noexcept {
   if (is_released_.exchange(true)) return;
-  const double until_s = steady_s() + kTickEndsWithin_s;
+  const std::int64_t until_ns = clock().now_ns() + kTickEndsWithin_ns;
   bool is_mine = false;
-  while (!(is_mine = !taken_.exchange(true)) && steady_s() < until_s) {
-    const timespec pause{0, 100'000};
-    ::nanosleep(&pause, nullptr);
-  }
+  while (!(is_mine = !taken_.exchange(true)) && clock().now_ns() < until_ns)
+    clock().sleep_until_ns(clock().now_ns() + kTurnNap_ns);
   if (is_mine) {
     const bool is_older_due = is_answer_due_;
-    const double deadline_s = steady_s() + kLastAnswerWithin_s;
+    const double deadline_s = clock().now_s() + kLastAnswerWithin_s;
     // The answers are waited for: a connection that ends with unread bytes can lose the command.
     std::string_view text;
     if (!send(Vec3::Zero(), deadline_s) && !drain(text, deadline_s) && is_older_due)
@@ -247,15 +247,16 @@ void Haply::release() noexcept {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_haply(const std::string& address) {
-  return std::make_unique<Haply>(haply_address(address));
+std::unique_ptr<HapticDevice> open_haply(const std::string& address, Clock& clock,
+                                         const HaplyLinkOpener& open_link) {
+  return std::make_unique<Haply>(haply_address(address), clock, open_link);
 }
 
-Availability haply_availability() {
+Availability haply_availability(const Clock& clock) {
   Availability availability;
   availability.compiled_in = haply_link_is_compiled_in();
   try {
-    const Opened opened = open_service(haply_address(""), steady_s() + 0.3);
+    const Opened opened = open_service(haply_address(""), clock, 0.3, open_haply_link);
     availability.found = true;
     availability.detail =
         "Inverse3 " + opened.device_id +

@@ -19,13 +19,18 @@
 // answers; other faults of the connection stay, and the device is to be opened anew.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "runners/live/devices/availability.h"
+#include "runners/live/devices/haply_link.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {
+
+using HaplyLinkOpener =
+    std::function<std::unique_ptr<HaplyLink>(const DeviceAddress&, const Clock&, double deadline_s)>;
 
 // Throws InputError. For a first state it sends a command without force.
 //
@@ -33,9 +38,10 @@ namespace remote_touch {
 // waits 10 ms at most, waits 20 ms at most for the answer, and ends the connection in either case: from then
 // on no command of this process reaches the service. That the service lets the device idle when commands stop
 // is its documentation's word.
-std::unique_ptr<HapticDevice> open_haply(const std::string& address);
+std::unique_ptr<HapticDevice> open_haply(const std::string& address, Clock& clock,
+                                         const HaplyLinkOpener& open_link = open_haply_link);
 
 // Asks the service at the default address, 0.3 s at most.
-Availability haply_availability();
+Availability haply_availability(const Clock& clock);
 
 }  // namespace remote_touch

@@ -11,7 +11,6 @@
 #include <cerrno>
 
 #include "runners/live/devices/deadline_socket.h"
-#include "runners/live/timing/steady_clock.h"
 #endif
 
 namespace remote_touch {
@@ -22,7 +21,7 @@ bool haply_link_is_compiled_in() {
   return false;
 }
 
-std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double) {
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, const Clock&, double) {
   throw address.refusal("not compiled in; install libboost-dev and build again");
 }
 
@@ -49,7 +48,8 @@ class DeadlineStream {
  public:
   using executor_type = boost::asio::io_context::executor_type;
 
-  explicit DeadlineStream(boost::asio::io_context& context) : context_(context) {}
+  DeadlineStream(boost::asio::io_context& context, const Clock& clock)
+      : socket(clock), context_(context), clock_(clock) {}
   executor_type get_executor() noexcept { return context_.get_executor(); }
 
   template <class Buffers>
@@ -92,13 +92,14 @@ class DeadlineStream {
   DeadlineSocket socket;
 
  private:
-  bool is_over() { return ++parts_ > kMaxParts && steady_s() > deadline_s_; }
+  bool is_over() { return ++parts_ > kMaxParts && clock_.now_s() > deadline_s_; }
   static std::size_t result(DeadlineSocket::Transfer transfer, error_code& ec) {
     ec = error_code(transfer.error, boost::system::system_category());
     return transfer.bytes;
   }
 
   boost::asio::io_context& context_;
+  const Clock& clock_;
   double deadline_s_ = 0;
   int parts_ = 0;
 };
@@ -122,8 +123,9 @@ DeviceFault fault_of(const error_code& ec) {
 
 class BeastLink final : public HaplyLink {
  public:
-  BeastLink(const std::string& host, const std::string& port, const std::string& target, double deadline_s)
-      : web_(context_) {
+  BeastLink(const std::string& host, const std::string& port, const std::string& target, const Clock& clock,
+            double deadline_s)
+      : clock_(clock), web_(context_, clock) {
     DeadlineStream& stream = web_.next_layer();
     stream.begin(deadline_s);
     const std::string problem = stream.socket.connect_to_host(host, port, deadline_s);
@@ -149,7 +151,7 @@ class BeastLink final : public HaplyLink {
         return {"the Haply service does not answer", error};
     has_first_ = true;
     message_.clear();
-    const double rest_s = std::max(deadline_s, steady_s() + kRestWithin_s);
+    const double rest_s = std::max(deadline_s, clock_.now_s() + kRestWithin_s);
     const DeviceFault fault = within(rest_s, [&](error_code& ec) { web_.read(message_, ec); });
     text = {static_cast<const char*>(message_.data().data()), message_.size()};
     return fault;
@@ -173,6 +175,7 @@ class BeastLink final : public HaplyLink {
     return lost_;
   }
 
+  const Clock& clock_;
   boost::asio::io_context context_;  // for Beast's timers, which are never set; it is not run
   websocket::stream<DeadlineStream, false> web_;
   beast::flat_static_buffer<kMaxMessage> message_;
@@ -213,10 +216,11 @@ bool haply_link_is_compiled_in() {
   return true;
 }
 
-std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double deadline_s) {
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, const Clock& clock,
+                                           double deadline_s) {
   const Place place = place_of(address);
   try {
-    return std::make_unique<BeastLink>(place.host, place.port, place.target, deadline_s);
+    return std::make_unique<BeastLink>(place.host, place.port, place.target, clock, deadline_s);
   } catch (const std::exception& error) {
     throw address.refusal("no Haply service at ws://" + place.host + ":" + place.port + place.target + " (" +
                           error.what() + "); start the Inverse service, or name where it runs");

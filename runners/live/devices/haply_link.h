@@ -15,7 +15,7 @@ class HaplyLink {
  public:
   virtual ~HaplyLink() = default;
 
-  // Both end by the deadline, a moment of steady_s(), receive() 1 ms later when a message has begun by then.
+  // Both end by the deadline, a moment of the clock, receive() 1 ms later when a message has begun by then.
   // They allocate nothing once the first command has been sent. When the service is merely late, the next
   // receive() may get the message; after any other fault the link is of no more use.
   virtual DeviceFault send(std::string_view text, double deadline_s) noexcept = 0;
@@ -29,6 +29,7 @@ class HaplyLink {
 bool haply_link_is_compiled_in();
 
 // place of the address: ws://HOST[:PORT][/PATH], by default ws://127.0.0.1:10001. Throws InputError.
-std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, double deadline_s);
+std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, const Clock& clock,
+                                           double deadline_s);
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 
 #include "core/geometry/vector.h"
 #include "core/tool/dynamics/wrench_coupling.h"
+#include "runners/live/timing/clock.h"
 
 namespace remote_touch {
 
@@ -53,12 +54,13 @@ class DeviceCycle {
 // with what is absent and what would help; the force is off until the first write().
 class HapticDevice {
  public:
+  explicit HapticDevice(Clock& clock) : clock_(clock) {}
   virtual ~HapticDevice() = default;  // release() and closed
 
   virtual const DeviceTraits& traits() const = 0;
 
-  // Calls tick() at the device's rate until it is told to stop; by default every millisecond of the steady
-  // clock. A tick that is late is not made up for.
+  // Calls tick() at the device's rate until it is told to stop; by default every millisecond of its clock. A
+  // tick that is late is not made up for.
   virtual void run(DeviceCycle& cycle);
 
   // Both within a tick; no allocation, no lock, no wait beyond what the vendor's call takes.
@@ -72,6 +74,12 @@ class HapticDevice {
   // Called from a tick: undoes release() if the device can exert forces again. False: the device has to be
   // opened again.
   virtual bool rearm() noexcept { return false; }
+
+ protected:
+  Clock& clock() const noexcept { return clock_; }
+
+ private:
+  Clock& clock_;
 };
 
 }  // namespace remote_touch

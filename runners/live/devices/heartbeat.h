@@ -2,9 +2,7 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <cstdint>
 
 #include "runners/live/devices/haptic_device.h"
 
@@ -12,29 +10,29 @@ namespace remote_touch {
 
 class Heartbeat {
  public:
-  // Checks every fifth of max_s; a device without a beat for that long is released at the next check.
   Heartbeat(HapticDevice& device, double max_s);
-  ~Heartbeat();
 
   // From the loop, at the begin of every tick. The first one starts the watch. False: the device was let go
   // since the last beat.
-  bool beat(double now_s) noexcept;
+  bool beat(std::int64_t now_ns) noexcept;
   // After the last beat: no more are expected.
-  void rest() noexcept { last_s_.store(-1, std::memory_order_release); }
+  void rest() noexcept { last_ns_.store(kNone, std::memory_order_release); }
+
+  // From a thread that does not depend on the loop, every period_s() or so: lets the device go when there was
+  // no beat for longer than max_s.
+  void check(std::int64_t now_ns) noexcept;
+  double period_s() const { return 1e-9 * static_cast<double>(longest_ns_) / 5; }
   int stalls() const { return stalls_.load(std::memory_order_relaxed); }
 
  private:
-  void watch();
+  static constexpr std::int64_t kNone = -1;
 
   HapticDevice& device_;
-  const double max_s_;
-  std::atomic<double> last_s_ = -1;  // of the steady clock; -1: none yet
+  const std::int64_t longest_ns_;
+  std::atomic<std::int64_t> last_ns_ = kNone;
+  std::int64_t stalled_at_ns_ = kNone;  // of check() alone
   std::atomic<bool> released_ = false;
   std::atomic<int> stalls_ = 0;
-  std::mutex mutex_;
-  std::condition_variable stopping_;
-  bool stop_ = false;
-  std::thread thread_;
 };
 
 }  // namespace remote_touch

@@ -2,9 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
 
 #include "core/parameters/input_error.h"
 #include "runners/live/devices/gated_device.h"
@@ -17,6 +14,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMPerMm = 1e-3, kMmPerM = 1e3, kNmPerMNm = 1e-3, kMNmPerNm = 1e3;
+constexpr double kCheckPeriod_s = 0.005, kMaxSilence_s = 1;
 
 constexpr std::array<KnownFault, 10> kHdFaults{{
     {0x0200, "OpenHaptics: the motors are warm"},
@@ -33,7 +31,7 @@ constexpr std::array<KnownFault, 10> kHdFaults{{
 
 class OpenHaptics : public GatedDevice {
  public:
-  OpenHaptics(const std::string& address, const std::string& subject);
+  OpenHaptics(const std::string& address, const std::string& subject, Clock& clock);
   ~OpenHaptics() override;
   OpenHaptics(const OpenHaptics&) = delete;
   OpenHaptics& operator=(const OpenHaptics&) = delete;
@@ -50,8 +48,7 @@ class OpenHaptics : public GatedDevice {
   void learn_traits();
   DeviceFault newest_error(const char* what) const noexcept;
   bool frame(DeviceCycle& cycle) noexcept;
-  bool is_scheduler_done();
-  bool has_ended();
+  bool is_scheduler_done() noexcept;
   static unsigned on_schedule(void* self) noexcept;
 
   HdLibrary hd_;
@@ -65,13 +62,11 @@ class OpenHaptics : public GatedDevice {
   DeviceFault scheduler_fault_;  // set while no callback can be
   DeviceCycle* cycle_ = nullptr;
   std::atomic<long> callbacks_{0};
-  std::atomic<bool> in_callback_{false};
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool has_ended_ = false;
+  std::atomic<bool> in_callback_{false}, has_ended_{false};
 };
 
-OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject) {
+OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject, Clock& clock)
+    : GatedDevice(clock) {
   const bool is_default = address.empty() || address == "Default Device";
   device_ = hd_.init_device(is_default ? nullptr : address.c_str());
   const HdLibrary::Error error = hd_.get_error();
@@ -186,26 +181,22 @@ unsigned OpenHaptics::on_schedule(void* self) noexcept {
   const bool continues = device.frame(*device.cycle_);
   device.in_callback_ = false;
   if (continues) return HdLibrary::callback_continue;
-  const std::lock_guard<std::mutex> lock(device.mutex_);
   device.has_ended_ = true;
-  device.ended_.notify_one();
   return HdLibrary::callback_done;
 }
 
 // True after the last tick; false when no callback came for long, though none is under way.
-bool OpenHaptics::is_scheduler_done() {
-  constexpr std::chrono::seconds kMaxLength(1);
-  std::unique_lock<std::mutex> lock(mutex_);
-  for (;;) {
-    const long before = callbacks_;
-    if (ended_.wait_for(lock, kMaxLength, [this] { return has_ended_; })) return true;
-    if (callbacks_ == before && !in_callback_) return false;
+bool OpenHaptics::is_scheduler_done() noexcept {
+  long before = -1;
+  for (double called_s = 0; !has_ended_; clock().sleep_s(kCheckPeriod_s)) {
+    const double now_s = clock().now_s();
+    if (in_callback_ || callbacks_ != before) {
+      before = callbacks_, called_s = now_s;
+    } else if (now_s - called_s > kMaxSilence_s) {
+      return false;
+    }
   }
-}
-
-bool OpenHaptics::has_ended() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return has_ended_;
+  return true;
 }
 
 void OpenHaptics::run(DeviceCycle& cycle) {
@@ -219,7 +210,7 @@ void OpenHaptics::run(DeviceCycle& cycle) {
   const bool is_done = !fault && is_scheduler_done();
   if (!is_done) hd_.unschedule(callback);
   hd_.stop_scheduler();
-  if (is_done || has_ended()) return;
+  if (is_done || has_ended_) return;
   switch_off();
   scheduler_fault_ = fault ? fault : DeviceFault{"OpenHaptics: the scheduler has stopped calling", 0};
   HapticDevice::run(cycle);
@@ -227,8 +218,9 @@ void OpenHaptics::run(DeviceCycle& cycle) {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address) {
-  return std::make_unique<OpenHaptics>(address, "touch:" + (address.empty() ? "Default Device" : address));
+std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address, Clock& clock) {
+  return std::make_unique<OpenHaptics>(address, "touch:" + (address.empty() ? "Default Device" : address),
+                                       clock);
 }
 
 Availability open_haptics_availability() {

@@ -14,7 +14,7 @@
 namespace remote_touch {
 
 // address: the name that the device has in the vendor's setup; "" is "Default Device".
-std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address);
+std::unique_ptr<HapticDevice> open_open_haptics(const std::string& address, Clock& clock);
 
 // Only of the library: it tells of a device when one is opened.
 Availability open_haptics_availability();

@@ -8,8 +8,6 @@ namespace {
 
 // Of what the vendor names as the most.
 constexpr double kDeviceFraction = 0.9;
-// Whatever the largest force, it has to be gone in this time.
-constexpr double kMaxRampDown_s = 0.01;
 
 Vec3 cut(const Vec3& v, double max_length) {
   const double length = v.norm();
@@ -20,40 +18,7 @@ Vec3 towards(const Vec3& from, const Vec3& to, double max_length) {
   return from + cut(to - from, max_length);
 }
 
-std::string too_slow(const char* slew, const char* max, double value, double min) {
-  if (value >= min) return {};
-  return std::string(slew) + " = " + std::to_string(value) + ": expected " + max +
-         " / 0.01 s = " + std::to_string(min) + " or more, so that the device is let go in that time";
-}
-
 }  // namespace
-
-Parameters parameters(SafetyLimits& s) {
-  return {
-      {"max_force_N", &s.max_force_N, 0, 100,
-       "maximum force; also limited to 0.9 of the maximum of the device"},
-      {"max_torque_Nm", &s.max_torque_Nm, 0, 10,
-       "maximum torque; also limited to 0.9 of the maximum of the device"},
-      {"force_slew_N_per_s", &s.force_slew_N_per_s, 1, 1e5, "maximum rate of change of the force"},
-      {"torque_slew_Nm_per_s", &s.torque_slew_Nm_per_s, 0.01, 1e4, "maximum rate of change of the torque"},
-      {"max_speed_m_per_s", &s.max_speed_m_per_s, 0.01, 100,
-       "maximum speed of the hand; above it the force is latched off"},
-      {"max_angular_speed_rad_per_s", &s.max_angular_speed_rad_per_s, 0.1, 1000,
-       "maximum angular speed of the handle; above it the force is latched off"},
-      {"engage_force_N", &s.engage_force_N, 1e-3, 10,
-       "force starts only when the commanded force is below this"},
-      {"ramp_s", &s.ramp_s, 0, 10, "then the force is ramped up linearly over this time"},
-      {"max_command_age_s", &s.max_command_age_s, 0.002, 1, "commands older than this are ignored"},
-  };
-}
-
-std::string validate(const SafetyLimits& s) {
-  const std::string force =
-      too_slow("force_slew_N_per_s", "max_force_N", s.force_slew_N_per_s, s.max_force_N / kMaxRampDown_s);
-  if (!force.empty()) return force;
-  return too_slow("torque_slew_Nm_per_s", "max_torque_Nm", s.torque_slew_Nm_per_s,
-                  s.max_torque_Nm / kMaxRampDown_s);
-}
 
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits) {
   SafetyLimits all = limits;

@@ -2,27 +2,11 @@
 #pragma once
 
 #include <atomic>
-#include <string>
 
-#include "core/parameters/parameter.h"
 #include "runners/live/devices/haptic_device.h"
+#include "runners/sessions/safety_limits.h"
 
 namespace remote_touch {
-
-struct SafetyLimits {
-  double max_force_N = 5;
-  double max_torque_Nm = 0.2;
-  double force_slew_N_per_s = 1000;
-  double torque_slew_Nm_per_s = 40;
-  double max_speed_m_per_s = 3;
-  double max_angular_speed_rad_per_s = 40;
-  double engage_force_N = 0.3;
-  double ramp_s = 0.5;
-  double max_command_age_s = 0.02;
-};
-
-Parameters parameters(SafetyLimits& s);
-std::string validate(const SafetyLimits& s);
 
 // No more than 0.9 of what the device can do.
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits);

@@ -3,24 +3,23 @@
 #include <algorithm>
 #include <utility>
 
-#include "runners/live/timing/steady_clock.h"
-
 namespace remote_touch {
 
 SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
-                                 const DevicePlacement& placement, double rate_hz)
-    : script_(std::move(script)),
+                                 const DevicePlacement& placement, double rate_hz, Clock& clock)
+    : HapticDevice(clock),
+      script_(std::move(script)),
       hand_(hand),
       placement_(placement),
       traits_{.name = "simulated device", .sensed_axes = 6, .actuated_axes = 6, .tick_rate_hz = rate_hz} {}
 
 void SimulatedDevice::run(DeviceCycle& cycle) {
-  start_s_ = steady_s();
+  start_s_ = clock().now_s();
   HapticDevice::run(cycle);
 }
 
 DeviceFault SimulatedDevice::read(DeviceReading& reading) noexcept {
-  const auto now = static_cast<long long>((steady_s() - start_s_) * traits_.tick_rate_hz);
+  const auto now = static_cast<long long>((clock().now_s() - start_s_) * traits_.tick_rate_hz);
   const long long first = ticks_;
   ticks_ = std::max(ticks_ + 1, now);
   for (long long tick = std::max(first + 1, ticks_ - kMaxTicksAtOnce); tick <= ticks_; ++tick) {

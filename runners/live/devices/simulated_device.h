@@ -4,20 +4,20 @@
 #include <atomic>
 #include <memory>
 
+#include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/loop/live_settings.h"
 #include "runners/operator/simulated_hand.h"
 #include "runners/trajectories/trajectory.h"
 
 namespace remote_touch {
 
-// Follows the steady clock: where a tick was missed the hand has moved on all the same, by ticks of its own
+// Follows its clock: where a tick was missed the hand has moved on all the same, by ticks of its own
 // rate. Begins with run().
 class SimulatedDevice final : public HapticDevice {
  public:
   // placement: that of the loop, undone here.
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
-                  const DevicePlacement& placement, double rate_hz);
+                  const DevicePlacement& placement, double rate_hz, Clock& clock);
 
   const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override;

@@ -9,7 +9,6 @@
 
 #include "runners/live/devices/deadline_socket.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -33,10 +32,10 @@ std::string socket_of(const DeviceAddress& address) {
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
 }
 
-DeadlineSocket connect(const DeviceAddress& address) {
-  DeadlineSocket socket;
+DeadlineSocket connect(const DeviceAddress& address, const Clock& clock) {
+  DeadlineSocket socket(clock);
   const std::string path = socket_of(address);
-  const std::string problem = socket.connect_to_path(path, steady_s() + kConnectWithin_s);
+  const std::string problem = socket.connect_to_path(path, clock.now_s() + kConnectWithin_s);
   if (!problem.empty())
     throw address.refusal("no spacenavd at " + path + " (" + problem +
                           "); install and start spacenavd, or name its socket");
@@ -49,11 +48,13 @@ DeviceAddress spacenav_address(const std::string& address) {
 
 class Spacenav final : public HapticDevice {
  public:
-  explicit Spacenav(const DeviceAddress& address)
-      : speed_(address.number("speed", 5e-4, 1e-6, 0.1)),
+  Spacenav(const DeviceAddress& address, Clock& clock)
+      : HapticDevice(clock),
+        speed_(address.number("speed", 5e-4, 1e-6, 0.1)),
         angular_velocity_(address.number("turning", 3e-3, 1e-6, 1)),
         box_m_(address.number("box", 0.15, 1e-3, 10)),
-        socket_(connect(address)) {
+        socket_(connect(address, clock)),
+        moved_s_(clock.now_s()) {
     traits_.name = "spacenavd " + socket_of(address);
     traits_.sensed_axes = 6;
     traits_.actuated_axes = 0;
@@ -62,7 +63,7 @@ class Spacenav final : public HapticDevice {
   const DeviceTraits& traits() const override { return traits_; }
 
   DeviceFault read(DeviceReading& reading) noexcept override {
-    const double now_s = steady_s();
+    const double now_s = clock().now_s();
     if (!fault_) fault_ = take_frames(now_s);
     if (fault_) return fault_;
     if (now_s - reported_s_ > kHolds_s) counts_.fill(0);
@@ -89,7 +90,7 @@ class Spacenav final : public HapticDevice {
   std::array<char, sizeof(Frame)> bytes_{};  // of a frame that has begun
   std::size_t filled_ = 0;
   std::array<std::int32_t, 6> counts_{};  // the last deflection told
-  double reported_s_ = 0, moved_s_ = steady_s();
+  double reported_s_ = 0, moved_s_;
   DeviceReading pose_;
 };
 
@@ -142,15 +143,15 @@ void Spacenav::move(double step_s) noexcept {
 
 }  // namespace
 
-std::unique_ptr<HapticDevice> open_spacenav(const std::string& address) {
-  return std::make_unique<Spacenav>(spacenav_address(address));
+std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& clock) {
+  return std::make_unique<Spacenav>(spacenav_address(address), clock);
 }
 
-Availability spacenav_availability(const std::string& address) {
+Availability spacenav_availability(const std::string& address, const Clock& clock) {
   Availability availability;
   try {
     const DeviceAddress parsed = spacenav_address(address);
-    connect(parsed);
+    connect(parsed, clock);
     availability.found = true;
     availability.detail = "spacenavd at " + socket_of(parsed);
   } catch (const InputError& error) {

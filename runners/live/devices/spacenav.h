@@ -26,9 +26,9 @@ namespace remote_touch {
 
 // Throws InputError. read() takes what is there and does not wait; when the daemon has gone it tells a fault,
 // and the device is to be opened anew. write() is accepted and does nothing, and so does release().
-std::unique_ptr<HapticDevice> open_spacenav(const std::string& address);
+std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& clock);
 
 // Whether the daemon answers; it is not told which mouse it has, if any.
-Availability spacenav_availability(const std::string& address = "");
+Availability spacenav_availability(const std::string& address, const Clock& clock);
 
 }  // namespace remote_touch

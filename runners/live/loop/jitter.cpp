@@ -8,7 +8,6 @@
 
 #include "runners/live/devices/haptic_device.h"
 #include "runners/live/timing/real_time.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -16,7 +15,7 @@ namespace {
 
 class NoDevice final : public HapticDevice {
  public:
-  explicit NoDevice(double rate_hz) { traits_.tick_rate_hz = rate_hz; }
+  NoDevice(double rate_hz, Clock& clock) : HapticDevice(clock) { traits_.tick_rate_hz = rate_hz; }
   const DeviceTraits& traits() const override { return traits_; }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }
@@ -29,13 +28,13 @@ class NoDevice final : public HapticDevice {
 // Lateness against the grid of the first tick; the loop keeps to a grid of its own.
 class Watch final : public DeviceCycle {
  public:
-  Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop)
-      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), max_(duration_s * rate_hz) {
+  Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop, const Clock& clock)
+      : jitter_(jitter), rate_hz_(rate_hz), stop_(stop), clock_(clock), max_(duration_s * rate_hz) {
     jitter_.late_s.reserve(static_cast<std::size_t>(max_) + 1);
   }
 
   bool tick() noexcept override {
-    const double now_s = steady_s();
+    const double now_s = clock_.now_s();
     if (number_ < 0) start_s_ = now_s;
     const auto number = static_cast<long long>((now_s - start_s_) * rate_hz_);
     if (static_cast<double>(number) >= max_ || (stop_ && *stop_)) return false;
@@ -49,6 +48,7 @@ class Watch final : public DeviceCycle {
   Jitter& jitter_;
   const double rate_hz_;
   const std::atomic<bool>* const stop_;
+  const Clock& clock_;
   const double max_;
   long long number_ = -1;
   double start_s_ = 0;
@@ -56,10 +56,10 @@ class Watch final : public DeviceCycle {
 
 }  // namespace
 
-Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop) {
+Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock) {
   Jitter jitter;
-  NoDevice device(rate_hz);
-  Watch watch(jitter, duration_s, rate_hz, stop);
+  NoDevice device(rate_hz, clock);
+  Watch watch(jitter, duration_s, rate_hz, stop, clock);
   std::thread loop([&] {
     jitter.real_time = become_real_time();
     device.run(watch);

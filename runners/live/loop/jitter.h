@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "runners/live/timing/clock.h"
+
 namespace remote_touch {
 
 struct Jitter {
@@ -14,7 +16,7 @@ struct Jitter {
 };
 
 // With the loop that devices without one of their own have. stop: ends it early.
-Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop);
+Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock);
 
 // Rows of "from to count bar", each twice as wide as the one before.
 std::string histogram(const std::vector<double>& late_s);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "runners/live/loop/camera_thread.h"
+#include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/servo.h"
 
 namespace remote_touch {

@@ -1,20 +1,12 @@
 #include "runners/live/loop/live_logger.h"
 
-#include <chrono>
 #include <exception>
 #include <utility>
 
 namespace remote_touch {
 
 LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder)
-    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {
-  thread_ = std::thread([this] { run(); });
-}
-
-LiveLogger::~LiveLogger() {
-  stop_.store(true);
-  if (thread_.joinable()) thread_.join();
-}
+    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {}
 
 bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
   if (!recorder_) return true;
@@ -26,7 +18,8 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
 
 void LiveLogger::take_rows() {
   while (const LiveTick* row = rows_.oldest()) {
-    if (recorder_ && !failed_) recorder_->append(*row);
+    if (recorder_ && !failed_)
+      recorder_->append({row->number, row->device, row->taken, row->written, static_cast<int>(row->gate)});
     if (!log_is_full_) {
       log_is_full_ = true;  // unless this succeeds: half a row would be worse than none
       log_.append(*row, haptic_rate_hz_);
@@ -48,31 +41,26 @@ void LiveLogger::take_frames() {
   }
 }
 
-void LiveLogger::run() {
-  const auto take = [this] {
-    try {
-      take_rows();
-      take_frames();
-    } catch (const std::exception& error) {  // the disk is full: go on without it, so that the log is whole
-      fail(error);
-    }
-  };
-  while (!stop_.load()) {
-    take();
-    try {
-      answer();
-    } catch (const std::exception&) {
-      // No memory for a report: the run is more important.
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+// Where the disk is full it goes on without it, so that the log is whole.
+void LiveLogger::take_all() noexcept try {
+  take_rows();
+  take_frames();
+} catch (const std::exception& error) {
+  fail(error);
+}
+
+void LiveLogger::step() noexcept {
+  take_all();
+  try {
+    answer();
+  } catch (const std::exception&) {
+    // No memory for a report: the run is more important.
   }
-  take();
 }
 
 // The log is worth having even where the disk is full.
 void LiveLogger::finish() try {
-  stop_.store(true);
-  thread_.join();
+  take_all();
   if (recorder_ && !failed_) recorder_->finish();
 } catch (const std::exception& error) {
   fail(error);

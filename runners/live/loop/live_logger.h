@@ -1,5 +1,4 @@
-// Takes what the servo and the camera thread leave, in a thread of its own: into the log, and on disk where a
-// session is recorded.
+// Takes what the servo and the camera leave: into the log, and on disk where a session is recorded.
 #pragma once
 
 #include <atomic>
@@ -9,11 +8,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "runners/live/loop/live_log.h"
-#include "runners/live/loop/session_file.h"
+#include "runners/sessions/session_file.h"
 
 namespace remote_touch {
 
@@ -21,16 +19,20 @@ class LiveLogger {
  public:
   // recorder: null where nothing is recorded.
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
-  ~LiveLogger();
 
-  // For the camera thread: false where the disk is behind by kMaxFrames.
-  bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // Takes all that is left and finishes the file; the servo and the camera have stopped.
+  // Takes what is there and answers who has asked; every kPeriod_s or so.
+  void step() noexcept;
+  static constexpr double kPeriod_s = 0.005;
+  // Takes all that is left and finishes the file; the servo and the camera have stopped, and nobody calls
+  // step().
   void finish();
+
+  // For the camera: false where the disk is behind by kMaxFrames.
+  bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   // For other threads: why nothing can be recorded or logged any more.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
-  // While running: calls once, in the logger's thread, with the log as it is then.
+  // Calls once, in a step, with the log as it is then.
   void ask(std::function<void(const LiveLog&)> question);
 
  private:
@@ -40,7 +42,7 @@ class LiveLogger {
     double captured_s;
     std::uint64_t fixtures_off;
   };
-  void run();
+  void take_all() noexcept;
   void take_rows();
   void take_frames();
   void answer();
@@ -55,9 +57,8 @@ class LiveLogger {
   std::function<void(const LiveLog&)> question_;
   std::mutex frames_mutex_;
   std::deque<Recorded> frames_;
-  std::atomic<bool> stop_ = false, failed_ = false;
+  std::atomic<bool> failed_ = false;
   std::string why_;
-  std::thread thread_;
 };
 
 }  // namespace remote_touch

@@ -16,10 +16,11 @@ namespace remote_touch {
 
 struct LiveOptions {
   std::string device = "sim:", depth = "sim:";
-  double duration_s = 0;         // 0: until told to stop
-  std::filesystem::path record;  // empty: nothing is recorded
-  TextAttributes provenance;     // of the recording
-  const Kernels* kernels = nullptr;
+  double duration_s = 0;                                // 0: until told to stop
+  std::filesystem::path record;                         // empty: nothing is recorded
+  TextAttributes provenance;                            // of the recording
+  double stall_s = 0.01;                                // without a tick for longer the device is let go
+  const Kernels* kernels = nullptr;                     // required
   const std::atomic<bool>* stop = nullptr;              // SIGINT and SIGTERM
   std::atomic<bool>* report = nullptr;                  // SIGUSR1: on_report now; set back
   std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: after a latch; set back

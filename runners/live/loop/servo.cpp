@@ -5,8 +5,6 @@
 #include <limits>
 #include <string_view>
 
-#include "runners/live/timing/steady_clock.h"
-
 namespace remote_touch {
 
 namespace {
@@ -24,16 +22,17 @@ Wrench wrench_of(const RenderOutput& out) {
 }  // namespace
 
 Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits,
-             double rate_hz, double start_s, double stall_s)
+             double rate_hz, std::int64_t start_ns, double stall_s)
     : links_(links),
       placement_(placement),
       rate_hz_(rate_hz),
-      start_s_(start_s),
+      start_ns_(start_ns),
       gate_(limits),
       heartbeat_(links.device, stall_s) {}
 
-std::int64_t Servo::next_number(double now_s) {
-  const auto by_clock = static_cast<std::int64_t>(std::ceil((now_s - start_s_) * rate_hz_));
+std::int64_t Servo::next_number(std::int64_t now_ns) {
+  const auto since_ns = static_cast<double>(now_ns - start_ns_);
+  const auto by_clock = static_cast<std::int64_t>(std::ceil(since_ns * rate_hz_ / 1e9));
   return last_number_ = std::max(last_number_ + 1, by_clock);
 }
 
@@ -49,7 +48,7 @@ void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
   if (!links_.frames.take()) return;
   LiveFrame& taken = links_.frames.front();
-  row.waited_s = static_cast<float>(steady_s() - taken.ready_s);
+  row.waited_s = static_cast<float>(links_.clock.now_s() - taken.ready_s);
   move_on_to(taken.frame.captured_s, row);
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
@@ -65,7 +64,8 @@ void Servo::note(const DeviceFault& fault, bool of_device) noexcept {
 
 bool Servo::is_over() const noexcept {
   return links_.stop.load(std::memory_order_relaxed) ||
-         (links_.signal && links_.signal->load(std::memory_order_relaxed)) || steady_s() >= links_.ends_s;
+         (links_.signal && links_.signal->load(std::memory_order_relaxed)) ||
+         links_.clock.now_ns() >= links_.ends_ns;
 }
 
 bool Servo::tick() noexcept try {
@@ -84,15 +84,16 @@ bool Servo::tick() noexcept try {
 }
 
 void Servo::one_tick() {
-  const double begin_s = steady_s();
-  if (!heartbeat_.beat(begin_s)) {
+  const std::int64_t begin_ns = links_.clock.now_ns();
+  if (!heartbeat_.beat(begin_ns)) {
     gate_.restart();
     if (has_failed() || !links_.device.rearm())
       note({"the haptic loop hung, and the device was let go"}, true);
   }
-  row_.since_last_tick_s = last_number_ < 0 ? 0 : static_cast<float>(begin_s - last_tick_s_);
-  last_tick_s_ = begin_s;
-  row_.number = next_number(begin_s);
+  row_.since_last_tick_s =
+      last_number_ < 0 ? 0 : static_cast<float>(1e-9 * static_cast<double>(begin_ns - last_tick_ns_));
+  last_tick_ns_ = begin_ns;
+  row_.number = next_number(begin_ns);
 
   DeviceReading reading;
   DeviceFault fault = links_.device.read(reading);
@@ -101,14 +102,14 @@ void Servo::one_tick() {
   if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer holds still and lets go
   row_.device = placement_.in_world(reading);
 
-  const double read_s = steady_s();
+  const double read_s = links_.clock.now_s();
   take_frame(row_);
   row_.out = links_.renderer.step(row_.device, static_cast<double>(row_.number) / rate_hz_);
-  const double command_time_s = steady_s();
+  const double command_time_s = links_.clock.now_s();
   row_.step_s = static_cast<float>(command_time_s - read_s);
 
-  row_.written =
-      gate_.pass(command_time_s, reading, fault, placement_.to_device(wrench_of(row_.out)), begin_s);
+  row_.written = gate_.pass(command_time_s, reading, fault, placement_.to_device(wrench_of(row_.out)),
+                            1e-9 * static_cast<double>(begin_ns));
   const DeviceFault refused = links_.device.write(row_.written);
   row_.gate = gate_.state();
   if (refused) {
@@ -119,9 +120,8 @@ void Servo::one_tick() {
   if (!is_released(refused)) note(refused, true);
   if (row_.gate == GateState::latched) note(gate_.reason(), false);
   latched_.store(row_.gate == GateState::latched, std::memory_order_release);
-  if (row_.taken >= 0) {
-    row_.latency_s = static_cast<float>(steady_s() - links_.frames.front().sensed_s);
-  }
+  if (row_.taken >= 0)
+    row_.latency_s = static_cast<float>(links_.clock.now_s() - links_.frames.front().sensed_s);
   if (LiveTick* const slot = links_.rows.next_slot()) {
     *slot = row_;
     links_.rows.push();

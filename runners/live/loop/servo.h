@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/rendering/renderer.h"
+#include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/heartbeat.h"
 #include "runners/live/devices/safety_gate.h"
-#include "runners/live/loop/live_settings.h"
 #include "runners/live/loop/ring.h"
 #include "runners/live/loop/triple_buffer.h"
 
@@ -17,7 +17,7 @@ namespace remote_touch {
 // A frame on its way to the servo.
 struct LiveFrame {
   Frame frame;
-  double sensed_s = 0;  // of the steady clock: the sensor's time stamp, and when the frame was ready
+  double sensed_s = 0;  // of the clock: the sensor's time stamp, and when the frame was ready
   double ready_s = 0;
   std::uint64_t hash = 0;  // frame_hash()
 };
@@ -42,27 +42,30 @@ struct ServoLinks {
   Renderer& renderer;
   TripleBuffer<LiveFrame>& frames;
   Ring<LiveTick>& rows;
+  const Clock& clock;
   const std::atomic<bool>& stop;
   // A second one, of the program's signals, and an end by the clock: the loop sees to both itself, for the
   // thread that waits for it may be held up by the terminal that it writes to.
   const std::atomic<bool>* signal = nullptr;
-  double ends_s = std::numeric_limits<double>::infinity();  // of the steady clock
+  std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // of the clock
 };
 
-// No allocation, no lock, no file; the device's calls excepted. Ticks are numbered by the clock: a missed one
-// leaves a gap, a device that is fast gives each its own number. Their times are rounded up, and moved on
-// where a frame was captured while the device was read, so that no frame is taken before it was captured.
+// No allocation, no lock, no file, no time but that of the clock it is given; the device's calls excepted.
+// Ticks are numbered by the clock: a missed one leaves a gap, a device that is fast gives each its own
+// number. Their times are rounded up, and moved on where a frame was captured while the device was read, so
+// that no frame is taken before it was captured.
 class Servo final : public DeviceCycle {
  public:
   // stall_s: longest time without a tick until the heartbeat lets the device go.
   Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits, double rate_hz,
-        double start_s, double stall_s);
+        std::int64_t start_ns, double stall_s);
 
   bool tick() noexcept override;
 
   // For other threads.
   void rearm() noexcept { gate_.rearm(); }
-  int stalls() const { return heartbeat_.stalls(); }
+  // To be checked beside the loop.
+  Heartbeat& heartbeat() { return heartbeat_; }
   std::int64_t rows_lost() const { return rows_lost_.load(std::memory_order_relaxed); }
   bool is_latched() const { return latched_.load(std::memory_order_acquire); }
   // Of the newest latch or failure.
@@ -73,18 +76,19 @@ class Servo final : public DeviceCycle {
  private:
   void one_tick();
   bool is_over() const noexcept;
-  std::int64_t next_number(double now_s);
+  std::int64_t next_number(std::int64_t now_ns);
   void move_on_to(double time_s, LiveTick& row);
   void take_frame(LiveTick& row);
   void note(const DeviceFault& fault, bool of_device) noexcept;
 
   const ServoLinks links_;
   const DevicePlacement placement_;
-  const double rate_hz_, start_s_;
+  const double rate_hz_;
+  const std::int64_t start_ns_;
   SafetyGate gate_;
   Heartbeat heartbeat_;
   std::int64_t last_number_ = -1;
-  double last_tick_s_ = 0;
+  std::int64_t last_tick_ns_ = 0;
   DeviceReading last_reading_;
   LiveTick row_;
   std::atomic<std::int64_t> rows_lost_ = 0;

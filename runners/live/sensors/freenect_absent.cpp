@@ -10,7 +10,7 @@ constexpr const char* kNotCompiledIn = "not compiled in: install libfreenect-dev
 
 }  // namespace
 
-std::unique_ptr<DepthSource> open_freenect(const std::string&) {
+std::unique_ptr<DepthSource> open_freenect(const std::string&, Clock&) {
   throw InputError("freenect", kNotCompiledIn);
 }
 

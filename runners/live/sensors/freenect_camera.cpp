@@ -16,7 +16,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/live/sensors/pixel_rows.h"
 #include "runners/live/sensors/sensor_clock.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -98,7 +97,7 @@ std::array<std::uint16_t, kShifts> depth_of_shifts() {
 
 class FreenectCamera final : public DepthSource {
  public:
-  explicit FreenectCamera(const std::string& address);
+  FreenectCamera(const std::string& address, const Clock& host);
   ~FreenectCamera() override;
 
   const SensorView& view() const override { return view_; }
@@ -118,6 +117,7 @@ class FreenectCamera final : public DepthSource {
   void colour_came(const void* pixels);
   double stamp_s(std::uint32_t ticks, double arrived_s);
 
+  const Clock& host_;
   std::string name_;
   Context context_;
   std::unique_ptr<freenect_device, Close> device_;
@@ -142,7 +142,7 @@ class FreenectCamera final : public DepthSource {
   std::jthread thread_;
 };
 
-FreenectCamera::FreenectCamera(const std::string& address) {
+FreenectCamera::FreenectCamera(const std::string& address, const Clock& host) : host_(host) {
   open_device(address);
   choose_modes();
   start();
@@ -238,7 +238,7 @@ void FreenectCamera::colour_came(const void* pixels) {
 }
 
 void FreenectCamera::depth_came(const void* pixels, std::uint32_t ticks) {
-  const double arrived_s = steady_s();
+  const double arrived_s = host_.now_s();
   const double captured_s = clock_.captured_s(stamp_s(ticks, arrived_s), arrived_s);
   const auto width = static_cast<std::size_t>(view_.camera.width);
   const auto bytes = static_cast<std::size_t>(depth_mode_.bytes);
@@ -282,8 +282,8 @@ std::string FreenectCamera::failure() const {
 
 }  // namespace
 
-std::unique_ptr<DepthSource> open_freenect(const std::string& address) {
-  return std::make_unique<FreenectCamera>(address);
+std::unique_ptr<DepthSource> open_freenect(const std::string& address, Clock& clock) {
+  return std::make_unique<FreenectCamera>(address, clock);
 }
 
 Availability freenect_availability() {

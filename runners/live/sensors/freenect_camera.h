@@ -14,7 +14,7 @@ namespace remote_touch {
 // (fakenect) does not know those of the device. Of frames that nobody waits for only the newest is kept.
 //
 // The library tells no lost camera from the end of a recording: both are failures.
-std::unique_ptr<DepthSource> open_freenect(const std::string& address);
+std::unique_ptr<DepthSource> open_freenect(const std::string& address, Clock& clock);
 
 Availability freenect_availability();
 

@@ -10,7 +10,7 @@ constexpr const char* kNotCompiledIn = "not compiled in: install libopenni2-dev 
 
 }  // namespace
 
-std::unique_ptr<DepthSource> open_openni2(const std::string&) {
+std::unique_ptr<DepthSource> open_openni2(const std::string&, Clock&) {
   throw InputError("openni2", kNotCompiledIn);
 }
 

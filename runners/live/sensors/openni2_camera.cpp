@@ -11,7 +11,6 @@
 #include "runners/live/sensors/openni2_library.h"
 #include "runners/live/sensors/pixel_rows.h"
 #include "runners/live/sensors/sensor_clock.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -75,7 +74,7 @@ PixelRows rows_of(const openni::VideoFrameRef& frame, bool is_mirrored) {
 
 class Openni2Camera final : public DepthSource {
  public:
-  explicit Openni2Camera(const std::string& address);
+  Openni2Camera(const std::string& address, const Clock& host);
   ~Openni2Camera() override;
 
   const SensorView& view() const override { return view_; }
@@ -94,6 +93,7 @@ class Openni2Camera final : public DepthSource {
   SensorState fail(const std::string& reason);
   SensorState end();
 
+  const Clock& host_;
   // Closed from the last to the first.
   openni2::Library library_;
   std::string name_;
@@ -113,7 +113,7 @@ class Openni2Camera final : public DepthSource {
   std::string failure_;
 };
 
-Openni2Camera::Openni2Camera(const std::string& address) {
+Openni2Camera::Openni2Camera(const std::string& address, const Clock& host) : host_(host) {
   open_device(address);
   loss_.emplace(device_.getDeviceInfo().getUri());
   open_depth();
@@ -122,7 +122,7 @@ Openni2Camera::Openni2Camera(const std::string& address) {
   describe(view_.has_colour ? colour_ : depth_);
   if (depth_.start() != openni::STATUS_OK)
     refuse("depth does not start (" + error_text() + "); another program may be using the camera");
-  last_sign_s_ = steady_s();
+  last_sign_s_ = host_.now_s();
 }
 
 // A player that is closed before its thread has begun goes on for 3 s, and is killed then. A frame tells that
@@ -208,16 +208,16 @@ void Openni2Camera::describe(const openni::VideoStream& seen_by) {
 SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
   if (!failure_.empty()) return SensorState::failed;
   if (has_ended_) return SensorState::ended;
-  const double give_up_s = steady_s() + timeout_s;
+  const double give_up_s = host_.now_s() + timeout_s;
   while (true) {
     if (loss_->is_lost()) return fail("was disconnected");
-    const double remaining_s = give_up_s - steady_s();
+    const double remaining_s = give_up_s - host_.now_s();
     // In parts, since no lost camera ends the wait. 0 looks without waiting.
     const double part_ms = std::clamp(std::ceil(1e3 * remaining_s), 0.0, 50.0);
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
     if (status == openni::STATUS_OK) return take(frame);
     if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + error_text() + ")");
-    if (frame_count_ > 0 && steady_s() - last_sign_s_ > kMaxPause_s)
+    if (frame_count_ > 0 && host_.now_s() - last_sign_s_ > kMaxPause_s)
       return fail("plays no further: expected a recording without damage");
     if (remaining_s <= 0) return SensorState::waiting;
   }
@@ -226,7 +226,7 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
 SensorState Openni2Camera::take(SensorFrame& frame) {
   const openni::VideoFrameRef taken = read_from(depth_);
   if (!taken.isValid()) return fail("a frame cannot be read (" + error_text() + ")");
-  const double arrived_s = last_sign_s_ = steady_s();
+  const double arrived_s = last_sign_s_ = host_.now_s();
   // At once, before the next one takes its place.
   if (view_.has_colour && wait_for(colour_, openni::TIMEOUT_NONE) == openni::STATUS_OK)
     colour_frame_ = read_from(colour_);
@@ -267,8 +267,8 @@ SensorState Openni2Camera::end() {
 
 }  // namespace
 
-std::unique_ptr<DepthSource> open_openni2(const std::string& address) {
-  return std::make_unique<Openni2Camera>(address);
+std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clock) {
+  return std::make_unique<Openni2Camera>(address, clock);
 }
 
 Availability openni2_availability() {

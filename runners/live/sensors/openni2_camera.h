@@ -21,7 +21,7 @@ namespace remote_touch {
 // open it before other threads look for files by relative paths. Frames are to be taken in one thread of the
 // process, whatever camera they are of: the library remembers the threads that waited, and crashes when it
 // looks for one that has ended.
-std::unique_ptr<DepthSource> open_openni2(const std::string& address);
+std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clock);
 
 Availability openni2_availability();
 

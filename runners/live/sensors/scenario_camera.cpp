@@ -1,13 +1,10 @@
 #include "runners/live/sensors/scenario_camera.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/timing/steady_clock.h"
 
 namespace remote_touch {
 
@@ -25,7 +22,8 @@ void write_depth(const PointCloud& cloud, const RigidTransform& X_CW, SensorFram
 
 }  // namespace
 
-ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario) : scenario_(std::move(scenario)) {
+ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock)
+    : scenario_(std::move(scenario)), clock_(clock) {
   const PointCloud first = scenario_->cloud(0);
   if (!first.image)
     throw InputError("--depth sim:",
@@ -36,9 +34,10 @@ ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario) : scena
 }
 
 SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
-  if (start_s_ < 0) start_s_ = steady_s();
+  const double moment_s = clock_.now_s();
+  if (start_s_ < 0) start_s_ = moment_s;
   const double rate_hz = scenario_->frame_rate_hz();
-  const double now_s = steady_s() - start_s_;
+  const double now_s = moment_s - start_s_;
   const int last = scenario_->frame_count() - 1;
   // Beyond the last frame the scene stays as it is.
   const auto due_s = [&](int i) {
@@ -47,7 +46,7 @@ SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   while (due_s(next_ + 1) <= now_s) ++next_;  // of several that are due the newest
   const double captured_s = due_s(next_);
   const double wait_s = captured_s - now_s;
-  std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(wait_s, 0.0, timeout_s)));
+  if (wait_s > 0) clock_.sleep_s(std::min(wait_s, timeout_s));
   if (wait_s > timeout_s) return SensorState::waiting;
   const PointCloud cloud = scenario_->cloud(std::min(next_, last));
   write_depth(cloud, cloud.image->X_WC.inverse(), frame);

@@ -16,7 +16,7 @@ class ScenarioCamera final : public DepthSource {
   static constexpr double kUnit_m = 1e-4;  // so the farthest is 6.5 m
 
   // Throws InputError unless the scenario's frames are depth images.
-  explicit ScenarioCamera(std::unique_ptr<const Scenario> scenario);
+  ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock);
 
   const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
@@ -24,7 +24,8 @@ class ScenarioCamera final : public DepthSource {
  private:
   std::unique_ptr<const Scenario> scenario_;
   SensorView view_;
-  double start_s_ = -1;  // of the steady clock; -1: not started
+  Clock& clock_;
+  double start_s_ = -1;  // of the clock; -1: not started
   int next_ = 0;
 };
 

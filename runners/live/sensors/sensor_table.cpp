@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "runners/live/devices/uri.h"
-#include "runners/live/loop/session_scene.h"
 #include "runners/live/sensors/freenect_camera.h"
 #include "runners/live/sensors/openni2_camera.h"
 #include "runners/live/sensors/scenario_camera.h"
+#include "runners/sessions/session_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {
@@ -18,31 +18,33 @@ Availability always(const char* what) {
 }
 
 std::unique_ptr<DepthSource> open_simulated(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels) {
+                                            const Kernels& kernels, Clock& clock) {
   if (!address.empty())
     throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
-  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels));
+  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels), clock);
 }
 
 // Played at the rate of the recording, over and over, there and back.
 std::unique_ptr<DepthSource> open_recording(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels) {
+                                            const Kernels& kernels, Clock& clock) {
   RecordedScene::Settings settings;
   settings.path = address;
   settings.playback = RecordedScene::Playback::ping_pong;
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels));
+      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels), clock);
 }
 
 std::unique_ptr<DepthSource> open_session(const std::string& address, const Experiment& experiment,
-                                          const Kernels& kernels) {
+                                          const Kernels& kernels, Clock& clock) {
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels));
+      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels),
+      clock);
 }
 
-template <std::unique_ptr<DepthSource> (*open)(const std::string&)>
-std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&) {
-  return open(address);
+template <std::unique_ptr<DepthSource> (*open)(const std::string&, Clock&)>
+std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&,
+                                     Clock& clock) {
+  return open(address, clock);
 }
 
 constexpr SensorEntry kSensors[] = {
@@ -70,9 +72,9 @@ std::span<const SensorEntry> sensors() {
 }
 
 std::unique_ptr<DepthSource> open_sensor(const std::string& text, const Experiment& experiment,
-                                         const Kernels& kernels) {
+                                         const Kernels& kernels, Clock& clock) {
   const Uri uri = parse_uri("--depth", text);
-  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels);
+  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels, clock);
 }
 
 }  // namespace remote_touch

@@ -16,7 +16,7 @@ struct SensorEntry {
   const char* example;
   const char* summary;
   std::unique_ptr<DepthSource> (*open)(const std::string& address, const Experiment& experiment,
-                                       const Kernels& kernels);
+                                       const Kernels& kernels, Clock& clock);
   Availability (*availability)();
 };
 
@@ -24,6 +24,6 @@ std::span<const SensorEntry> sensors();
 
 // Throws InputError when the sensor cannot be opened.
 std::unique_ptr<DepthSource> open_sensor(const std::string& uri, const Experiment& experiment,
-                                         const Kernels& kernels);
+                                         const Kernels& kernels, Clock& clock);
 
 }  // namespace remote_touch

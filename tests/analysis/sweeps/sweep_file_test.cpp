@@ -103,7 +103,7 @@ TEST(SweepInProgress, IsReadAsFarAsItIs) {
   StoredSweep stored = read_sweep(folder / "x.h5");
   EXPECT_TRUE(stored.in_progress);
   EXPECT_EQ(stored.attributes, kAttributes);
-  result.error.assign(result.run_count(), "");  // told again when the run is tried again
+  result.error.assign(result.run_count(), "");  // told again when the run is made again
   expect_same(stored.result, result);
 
   // One run more, while the file is held.

@@ -12,7 +12,7 @@
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/figures/figures.h"
-#include "runners/live/loop/session_file.h"
+#include "runners/sessions/session_file.h"
 #include "runners/settings/json_parameters.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
@@ -31,7 +31,7 @@ std::string write_session(const TestFolder& folder) {
     frame.number = i, frame.depth[5] = static_cast<std::uint16_t>(480 + i);
     session.append(frame, i / 30.0, 0);
   }
-  LiveTick tick;
+  SessionTick tick;
   for (int i = 0; i < 100; ++i) {
     tick.number = i + 3, tick.taken = i % 50 == 0 ? i / 50 : -1;
     tick.device.position_W = Vec3(0.001 * i, 0, 0.5);

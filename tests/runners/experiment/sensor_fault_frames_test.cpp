@@ -12,7 +12,7 @@
 #include "core/cloud/camera.h"
 #include "runners/experiment/experiment.h"
 #include "runners/experiment/frame_stream.h"
-#include "runners/live/loop/session_file.h"
+#include "runners/sessions/session_file.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 #include "tests/support/scenes.h"
@@ -290,7 +290,7 @@ TEST(SensorFaultFrames, ALiveSessionRunsAgainWithoutThem) {
   SensorFrame frame;
   frame.depth.assign(128, 500);
   session.append(frame, 0, 0);
-  LiveTick tick;
+  SessionTick tick;
   tick.taken = 0;
   session.append(tick);
   session.finish();

@@ -12,7 +12,8 @@ namespace {
 
 class EntactTest : public testing::Test {
  protected:
-  DoubleInstalled double_{kEntact};
+  SimulatedClock clock_;
+  DoubleInstalled double_{kEntact, &clock_};
 };
 
 // Towards the user 10 mm, to the right 20, up 30; a quarter turn of the handle about the upward axis takes
@@ -22,7 +23,7 @@ TEST_F(EntactTest, MillimetresAndRowsByHand) {
     state.position = {10, 20, 30};
     state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   });
-  const auto device = open_entact("");
+  const auto device = open_entact("", clock_);
   const auto [reading, fault] = read_once(*device);
   ASSERT_FALSE(fault);
   EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.02, 0.03, 0.01), 1e-12));
@@ -32,23 +33,23 @@ TEST_F(EntactTest, MillimetresAndRowsByHand) {
 }
 
 TEST_F(EntactTest, DevicesHaveAddresses) {
-  EXPECT_NO_THROW(open_entact("192.168.1.144"));
-  EXPECT_HAS(refusal([] { open_entact("192.168.1.145"); }),
+  EXPECT_NO_THROW(open_entact("192.168.1.144", clock_));
+  EXPECT_HAS(refusal([&] { open_entact("192.168.1.145", clock_); }),
              "entact:192.168.1.145: no device answers: expected ");
-  EXPECT_EQ(open_entact("")->traits().name, "Double W5D");
+  EXPECT_EQ(open_entact("", clock_)->traits().name, "Double W5D");
 }
 
 TEST_F(EntactTest, HomedWhereItIsNot) {
   double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 5; });
-  EXPECT_NO_THROW(open_entact(""));
+  EXPECT_NO_THROW(open_entact("", clock_));
   double_->set([](DeviceDouble::State& state) { state.is_homed = false, state.failing_homings = 1000; });
-  EXPECT_HAS(refusal([] { open_entact(""); }),
+  EXPECT_HAS(refusal([&] { open_entact("", clock_); }),
              "entact: cannot be homed; hold the handle in its calibration position");
   EXPECT_FALSE(double_->is_open());
 }
 
 TEST_F(EntactTest, AReadingIsOneTickOld) {
-  const auto device = open_entact("");
+  const auto device = open_entact("", clock_);
   run_ticks(*device, 10, [&](int i) {
     double_->set([&](DeviceDouble::State& state) { state.position = {0, 1000.0 * i, 0}; });
     DeviceReading reading;

@@ -1,309 +1,204 @@
-// The adapter of Haply's Inverse3 against a simulated service (tests/doubles/haply_service.h) that goes
-// wrong, and letting go of it.
+// The adapter of Haply's Inverse3 against a service on a simulated clock that goes wrong, and letting go of
+// it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
-#include <cstdio>
+#include <functional>
 #include <limits>
 
 #include "runners/live/devices/haply.h"
-#include "runners/live/timing/steady_clock.h"
-#include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::haply_fault_test {
 namespace {
 
-// What a tick may take when the service is at fault.
-constexpr double kFaultWithin_s = 10e-3;
-
-// How long read() and then write() took, and the first fault, in ticks of 1 ms until there is one.
-struct FirstFault {
-  std::string text;
-  double max_s = 0;
-  double after_s = 0;  // from the moment in trouble() to the fault
+class HaplyFault : public SimulatedHaplyTest {
+ protected:
+  // How long a call takes, in microseconds.
+  std::int64_t takes_us(const std::function<void()>& call) {
+    const std::int64_t start_ns = clock_.now_ns();
+    call();
+    return (clock_.now_ns() - start_ns) / 1000;
+  }
+  // The number of the first tick with a fault, of 300 with this force, and the fault.
+  struct FirstFault {
+    int tick = -1;
+    std::string text;
+  };
+  FirstFault first_fault(HapticDevice& device, const Vec3& force_N) {
+    for (int i = 0; i < 300; ++i)
+      if (const std::string fault = tick(device, force_N); !fault.empty()) return {i, fault};
+    return {};
+  }
 };
 
-FirstFault first_fault(HapticDevice& device, const std::function<void()>& trouble) {
-  FirstFault found;
-  DeviceReading reading;
-  for (int i = 0; i < 5; ++i) reading_fault(device, reading);
-  trouble();
-  const double began_s = steady_s();
-  while (found.text.empty() && steady_s() - began_s < 1) {
-    const double tick_s = steady_s();
-    found.text = told(device.read(reading));
-    if (found.text.empty()) found.text = told(device.write(force({0.1, 0, 0})));
-    found.max_s = std::max(found.max_s, steady_s() - tick_s);
-    sleep_s(1e-3);
-  }
-  found.after_s = steady_s() - began_s;
-  return found;
-}
-
-// Once in some trials: on a machine that does other things too, a trial may be put aside for some
-// milliseconds.
-void expect_fault_in_time(const std::string& text, const std::function<FirstFault()>& trial) {
-  FirstFault fault;
-  for (int i = 0; i < 5; ++i) {
-    fault = trial();
-    EXPECT_HAS(fault.text, text);
-    if (fault.max_s < kFaultWithin_s) break;
-  }
-  EXPECT_LT(fault.max_s, kFaultWithin_s) << fault.text;
-  std::printf("%.1f ms after the trouble, %.1f ms for the longest tick: %s\n", 1e3 * fault.after_s,
-              1e3 * fault.max_s, fault.text.c_str());
-}
-
-TEST(HaplyFault, KilledService) {
-  expect_fault_in_time("the Haply service closed the connection", [] {
-    HaplyServiceProcess service;
-    const auto device = open_haply(service.address());
-    return first_fault(*device, [&] { service.kill(); });
-  });
-}
-
-// The first fault but late answers.
-std::string lasting_fault(HapticDevice& device) {
-  DeviceReading reading;
-  std::string fault;
-  for (int i = 0; i < 100 && fault.empty(); ++i) fault = reading_fault(device, reading);
-  return fault;
-}
-
-TEST(HaplyFault, ClosedConnectionStaysAFault) {
-  HaplyService service;
-  const auto device = open_haply(service.address());
-  service.die();
-  EXPECT_HAS(lasting_fault(*device), "closed the connection");
-  DeviceReading reading;
+TEST_F(HaplyFault, ClosedConnectionStaysAFault) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device), "");
+  service_.die();
   for (int i = 0; i < 3; ++i) {
-    EXPECT_TRUE(device->read(reading));
-    EXPECT_TRUE(device->write({}));
+    EXPECT_EQ(told(device->read(reading_)), "the Haply service closed the connection");
+    EXPECT_EQ(told(device->write({})), "the Haply service closed the connection");
   }
 }
 
-TEST(HaplyFault, HangingService) {
-  expect_fault_in_time(kLate, [] {
-    HaplyService service;
-    const auto device = open_haply(service.address());
-    return first_fault(*device, [&] { service.hang(); });
-  });
+// A tick with it ends well before the 10 ms after which the loop counts as hung.
+TEST_F(HaplyFault, AHangingServiceIsWaitedForNoLongerThanTold) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device), "");
+  service_.hang();
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->read(reading_)), kLate); }), 6000);
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->write({})), kLate); }), 1500);
 }
 
-TEST(HaplyFault, HangingInTheMiddleOfAMessage) {
-  expect_fault_in_time("the Haply service stopped in the middle of a message", [] {
-    HaplyService service;
-    const auto device = open_haply(service.address());
-    return first_fault(*device, [&] { service.hang_in_the_middle(); });
-  });
+TEST_F(HaplyFault, AnAnswerThatIsLateIsWaitedFor) {
+  const auto device = service_.open();
+  service_.answers_after_ns = 5'900'000;
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(told(device->read(reading_)), ""); }), 5900);
 }
 
-TEST(HaplyFault, PingsWithoutEnd) {
-  expect_fault_in_time("the Haply service stopped in the middle of a message", [] {
-    HaplyService service;
-    const auto device = open_haply(service.address());
-    return first_fault(*device, [&] { service.ping_without_end(); });
-  });
-}
-
-// Ticks go on with a fault each, none longer than 10 ms, and no command queues up; then the service is back.
-TEST(HaplyFault, ServiceThatComesBack) {
-  HaplyWorld world;
-  HaplyService service(world);
-  const auto device = open_haply(service.address());
-  EXPECT_HAS(first_fault(*device, [&] { service.hang(); }).text, "does not answer");
-  const std::size_t before = service.commands().size();
-  DeviceReading reading;
+// Ticks go on with a fault each, and no command queues up; then the service is back.
+TEST_F(HaplyFault, ServiceThatComesBack) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  const std::size_t before = service_.sent().size();
   for (int i = 0; i < 10; ++i) {
-    EXPECT_EQ(told(device->read(reading)), kLate);
+    EXPECT_EQ(told(device->read(reading_)), kLate);
     EXPECT_EQ(told(device->write(force({1, 0, 0}))), kLate);
   }
-  EXPECT_EQ(service.commands().size(), before);
-  world.position_m = Vec3(0.5, 0, 0);
-  service.set(world);
-  service.resume();
-  ASSERT_EQ(reading_fault(*device, reading), "");
-  EXPECT_EQ(reading.position_m, Vec3(0.5, 0, 0)) << "the state from before it hung";
-  EXPECT_TRUE(service.commands().back().force_N.isZero());
+  EXPECT_EQ(service_.sent().size(), before);
+  service_.world.position_m = Vec3(0.5, 0, 0);
+  service_.resume();
+  ASSERT_EQ(told(device->read(reading_)), "");
+  EXPECT_EQ(reading_.position_m, Vec3(0.5, 0, 0)) << "the state from before it hung";
+  EXPECT_EQ(newest_force_N(), 0);
 }
 
-TEST(HaplyFault, GarbageInsteadOfAState) {
-  HaplyWorld world;
-  HaplyService service(world);
-  const auto device = open_haply(service.address());
-  DeviceReading reading;
+TEST_F(HaplyFault, GarbageInsteadOfAState) {
+  const auto device = service_.open();
   const std::string nan =
       R"({"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":NaN,"y":0,"z":0}}}]})";
   for (const std::string& answer : {nan, std::string("garbage"), std::string("{}"), std::string("[]"),
                                     std::string(R"({"inverse3":[{"device_id":"049D","state":{}}]})")}) {
-    world.answer = answer;
-    service.set(world);
-    reading_fault(*device, reading);
-    reading.position_m = Vec3(1, 2, 3);
-    EXPECT_NE(reading_fault(*device, reading), "") << answer;
-    EXPECT_EQ(reading.position_m, Vec3(1, 2, 3)) << "a reading from a fault";
+    service_.world.answer = answer;
+    tick(*device);
+    reading_.position_m = Vec3(1, 2, 3);
+    EXPECT_NE(tick(*device), "") << answer;
+    EXPECT_EQ(reading_.position_m, Vec3(1, 2, 3)) << "a reading from a fault";
   }
-  world.answer.clear();
-  service.set(world);
-  reading_fault(*device, reading);
-  EXPECT_EQ(reading_fault(*device, reading), "");
+  service_.world.answer.clear();
+  tick(*device);
+  EXPECT_EQ(tick(*device), "");
 }
 
-TEST(HaplyFault, TextThatEndsTheConnection) {
-  for (const auto& [answer, fault] :
-       {std::pair(std::string(1 << 20, 'x'), "a message that is too long"),
-        std::pair(std::string("\xff\xff"), "the connection to the Haply service failed")}) {
-    HaplyWorld world;
-    HaplyService service(world);
-    const auto device = open_haply(service.address());
-    world.answer = answer;
-    service.set(world);
-    EXPECT_HAS(lasting_fault(*device), fault);
-  }
-}
-
-TEST(HaplyFault, ForceThatIsNoNumber) {
-  HaplyService service;
-  const auto device = open_haply(service.address());
-  DeviceReading reading;
+TEST_F(HaplyFault, ForceThatIsNoNumber) {
+  const auto device = service_.open();
   const Vec3 none(0, std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_EQ(tick_fault(*device, reading, none), "a force that is no number");
-  EXPECT_EQ(reading_fault(*device, reading), "");
-  for (const auto& command : service.commands()) EXPECT_TRUE(command.force_N.isZero());
+  EXPECT_EQ(tick(*device, none), "a force that is no number");
+  EXPECT_EQ(tick(*device), "");
+  for (const auto& sent : service_.sent()) EXPECT_TRUE(sent.command.force_N.isZero());
 }
 
-// The fault that ticks with this force find in 0.3 s, if any.
-std::string fault_of_check(HaplyService& service, const std::string& settings, const Vec3& force_N) {
-  const auto device = open_haply(service.address(settings));
-  std::string fault;
-  const double began_s = steady_s();
-  run_in_a_thread(*device, [&] {
-    DeviceReading reading;
-    const DeviceFault read = device->read(reading);
-    if (told(read) != kLate) fault = told(read);
-    device->write(force(force_N));
-    return fault.empty() && steady_s() - began_s < 0.3;
-  });
-  return fault;
+// A force that does not follow for 50 ms: ticks begin at 0.2 ms, and the first one is the last whose answer
+// (0.4 ms) tells of a force that was given.
+constexpr int kUnfollowedTick = 51;
+
+TEST_F(HaplyFault, BothForceKeys) {
+  EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
+  const FirstFault values = first_fault(*service_.open("?force=values"), {0, 1, 0});
+  EXPECT_HAS(values.text, "try force=vector");
+  EXPECT_EQ(values.tick, kUnfollowedTick);
+
+  service_.world.force_key = "values";
+  EXPECT_EQ(first_fault(*service_.open("?force=values"), {0, 1, 0}).tick, -1);
+  EXPECT_EQ(service_.sent()[service_.sent().size() - 2].command.key, "values");
+  const FirstFault vector = first_fault(*service_.open("?force=vector"), {0, 1, 0});
+  EXPECT_HAS(vector.text, "try force=values");
+  EXPECT_EQ(vector.tick, kUnfollowedTick);
+  EXPECT_EQ(first_fault(*service_.open("?force=vector&check=off"), {0, 1, 0}).tick, -1);
+  EXPECT_EQ(first_fault(*service_.open("?force=vector"), {0, 0.1, 0}).tick, -1) << "too small a force";
 }
 
-TEST(HaplyFault, BothForceKeys) {
-  HaplyWorld world;
-  {
-    HaplyService service(world);
-    EXPECT_EQ(fault_of_check(service, "", {0, 1, 0}), "");
-    EXPECT_HAS(fault_of_check(service, "?force=values", {0, 1, 0}), "try force=vector");
-  }
-  world.force_key = "values";
-  HaplyService service(world);
-  EXPECT_EQ(fault_of_check(service, "?force=values", {0, 1, 0}), "");
-  EXPECT_EQ(service.commands().back().key, "values");
-  EXPECT_HAS(fault_of_check(service, "?force=vector", {0, 1, 0}), "try force=values");
-  EXPECT_EQ(fault_of_check(service, "?force=vector&check=off", {0, 1, 0}), "");
-  EXPECT_EQ(fault_of_check(service, "?force=vector", {0, 0.1, 0}), "") << "too small a force to tell";
-}
-
-TEST(HaplyFault, ForceThatDoesNotFollow) {
-  HaplyWorld world;
+TEST_F(HaplyFault, ForceThatDoesNotFollow) {
+  HaplyWorld& world = service_.world;
   world.gate = 0.3;  // the gate of the documentation's sample
-  HaplyService service(world);
-  EXPECT_EQ(fault_of_check(service, "", {0, 3, 0}), "");
+  EXPECT_EQ(first_fault(*service_.open(), {0, 3, 0}).tick, -1);
   world.gate = -1;
-  service.set(world);
-  EXPECT_HAS(fault_of_check(service, "", {0, 1, 0}), "does not give the force that it is sent");
+  const FirstFault opposite = first_fault(*service_.open(), {0, 1, 0});
+  EXPECT_HAS(opposite.text, "does not give the force that it is sent");
+  EXPECT_EQ(opposite.tick, kUnfollowedTick);
   world.gate = 1;
   world.other_N = Vec3(0, 0, 2);
-  service.set(world);
-  EXPECT_HAS(fault_of_check(service, "", {0, 0, 0}), "gives a force that it was not sent");
+  EXPECT_HAS(first_fault(*service_.open(), {0, 0, 0}).text, "gives a force that it was not sent");
   world.reports_force = false;
-  service.set(world);
-  EXPECT_EQ(fault_of_check(service, "", {0, 1, 0}), "");
+  EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
 }
 
-TEST(HaplyLetGo, TheLastCommandIsNoForce) {
-  HaplyService service;
-  {
-    const auto device = open_haply(service.address());
-    DeviceReading reading;
-    ASSERT_EQ(tick_fault(*device, reading, {3, 0, 0}), "");
+class HaplyRelease : public HaplyFault {
+ protected:
+  // From another thread, so to speak; how long it takes, in microseconds.
+  void let_go_at(HapticDevice& device, double moment_s) {
+    clock_.at(moment_s, [&] { took_us_ = takes_us([&] { device.release(); }); });
   }
-  ASSERT_TRUE(
-      becomes([&] { return service.commands().size() >= 2 && service.commands().back().force_N.isZero(); }));
-  EXPECT_EQ(service.commands()[service.commands().size() - 2].force_N, Vec3(3, 0, 0));
+  std::int64_t took_us_ = -1;
+};
+
+TEST_F(HaplyRelease, TheLastCommandIsNoForce) {
+  {
+    const auto device = service_.open();
+    ASSERT_EQ(tick(*device, {3, 0, 0}), "");
+  }
+  EXPECT_EQ(newest_force_N(), 0);
+  EXPECT_EQ(service_.sent()[service_.sent().size() - 2].command.force_N, Vec3(3, 0, 0));
+  EXPECT_TRUE(service_.is_cut());
 }
 
-// From another thread, while ticks go on: within its time, the last command has no force, and no other
-// follows.
-TEST(HaplyLetGo, WhileTicksGoOn) {
-  HaplyService service;
-  const auto device = open_haply(service.address());
-  std::atomic<bool> is_over{false};
-  Ticks ticks([&] {
-    DeviceReading reading;
-    device->read(reading);
-    device->write(force({1, 0, 0}));
-    return !is_over;
-  });
-  std::thread loop([&] { device->run(ticks); });
-  sleep_s(0.05);
-  const double began_s = steady_s();
+TEST_F(HaplyRelease, BetweenTwoTicks) {
+  const auto device = service_.open();
+  let_go_at(*device, 0.0207);
+  std::string last;
+  for (int i = 0; i < 40; ++i) last = tick(*device, {1, 0, 0});
+  EXPECT_EQ(took_us_, 200);  // until the service has answered
+  EXPECT_EQ(last, "the device was let go");
+  EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
+  EXPECT_EQ(newest_force_N(), 0);
   device->release();
-  device->release();
-  EXPECT_LT(steady_s() - began_s, 0.1);
-  EXPECT_TRUE(becomes([&] { return service.commands().back().force_N.isZero(); }));
-  const std::size_t commands = service.commands().size();
-  sleep_s(0.02);
-  is_over = true;
-  loop.join();
-  EXPECT_EQ(service.commands().size(), commands);
-  DeviceReading reading;
-  EXPECT_EQ(told(device->read(reading)), "the device was let go");
-  EXPECT_EQ(told(device->write({})), "the device was let go");
+  EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
 }
 
 // A thread that hangs between reading and writing sends nothing when it comes back.
-TEST(HaplyLetGo, WhileATickHangs) {
-  HaplyService service;
-  const auto device = open_haply(service.address());
-  std::atomic<bool> hangs{false}, may_go_on{false};
-  std::string fault;
-  std::thread tick([&] {
-    DeviceReading reading;
-    for (int i = 0; i < 3; ++i) tick_fault(*device, reading, {1, 0, 0});
-    device->read(reading);
-    hangs = true;
-    while (!may_go_on) sleep_s(1e-3);
-    fault = told(device->write(force({1, 0, 0})));
-  });
-  EXPECT_TRUE(becomes([&] { return hangs.load(); }));
-  device->release();
-  EXPECT_TRUE(becomes([&] { return service.commands().back().force_N.isZero(); }));
-  const std::size_t commands = service.commands().size();
-  may_go_on = true;
-  tick.join();
-  sleep_s(0.02);
-  EXPECT_EQ(fault, "the device was let go");
-  EXPECT_EQ(service.commands().size(), commands);
+TEST_F(HaplyRelease, WhileATickHangs) {
+  const auto device = service_.open();
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  ASSERT_EQ(told(device->read(reading_)), "");
+  let_go_at(*device, 0.02);
+  clock_.sleep_s(0.1);
+  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was let go");
+  EXPECT_EQ(service_.sent().back().at_ns, ms(20));
+  EXPECT_EQ(newest_force_N(), 0);
 }
 
-TEST(HaplyLetGo, WhileTheServiceHangs) {
-  HaplyService service;
-  const auto device = open_haply(service.address());
-  DeviceReading reading;
-  for (int i = 0; i < 3; ++i) reading_fault(*device, reading);
-  service.hang();
-  device->read(reading);
-  device->write(force({1, 0, 0}));
-  std::thread tick([&] {
-    DeviceReading late;
-    EXPECT_TRUE(device->read(late));
-  });
-  device->release();
-  tick.join();
-  EXPECT_TRUE(device->write(force({1, 0, 0})));
+// The call under way gets 5 ms, and no command can be sent beside it: the connection ends.
+TEST_F(HaplyRelease, WhileAReadWaits) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  let_go_at(*device, clock_.now_s() + 0.001);
+  EXPECT_TRUE(device->read(reading_));
+  EXPECT_EQ(took_us_, 5000);
+  EXPECT_TRUE(service_.is_cut());
+  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the Haply service closed the connection");
+}
+
+TEST_F(HaplyRelease, WhileTheServiceHangs) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  EXPECT_EQ(takes_us([&] { device->release(); }), 20'000);
+  EXPECT_EQ(newest_force_N(), 0);
+  EXPECT_TRUE(service_.is_cut());
+  EXPECT_EQ(told(device->write(force({1, 0, 0}))), "the device was let go");
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace {
 
 class OpenHapticsTest : public testing::Test {
  protected:
-  DoubleInstalled double_{kOpenHaptics};
+  SimulatedClock clock_;
+  DoubleInstalled double_{kOpenHaptics, &clock_};
 };
 
 // The double hands its transform over by columns: a quarter turn about z takes x to y, not back.
@@ -19,7 +20,7 @@ TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
     state.position = {10, 20, 30}, state.velocity = {-1000, 0, 0};
     state.rotation = {0, -1, 0, 1, 0, 0, 0, 0, 1};
   });
-  const auto device = open_open_haptics("");
+  const auto device = open_open_haptics("", clock_);
   const auto [reading, fault] = read_once(*device);
   ASSERT_FALSE(fault);
   EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.01, 0.02, 0.03), 1e-12));
@@ -31,7 +32,7 @@ TEST_F(OpenHapticsTest, MillimetresAndColumnsByHand) {
 
 // Neither a tick without one nor the last.
 TEST_F(OpenHapticsTest, NoForceStaysBehind) {
-  const auto device = open_open_haptics("");
+  const auto device = open_open_haptics("", clock_);
   std::array<double, 6> sent_in_between{1};
   int ticks = 0;
   CallCycle cycle([&] {
@@ -46,9 +47,9 @@ TEST_F(OpenHapticsTest, NoForceStaysBehind) {
 }
 
 TEST_F(OpenHapticsTest, DevicesHaveNames) {
-  EXPECT_NO_THROW(open_open_haptics("Default Device"));
-  EXPECT_NO_THROW(open_open_haptics("Left Device"));
-  EXPECT_HAS(refusal([] { open_open_haptics("Right Device"); }),
+  EXPECT_NO_THROW(open_open_haptics("Default Device", clock_));
+  EXPECT_NO_THROW(open_open_haptics("Left Device", clock_));
+  EXPECT_HAS(refusal([&] { open_open_haptics("Right Device", clock_); }),
              "touch:Right Device: cannot be opened (the double's text, 770/-28): expected ");
 }
 
@@ -57,7 +58,7 @@ TEST_F(OpenHapticsTest, TraitsInOurUnits) {
     state.max_force = 3.3, state.continuous_force = 0.88;
     state.max_stiffness = 0.5, state.max_torque = 300;
   });
-  const auto device = open_open_haptics("");
+  const auto device = open_open_haptics("", clock_);
   const DeviceTraits& traits = device->traits();
   EXPECT_EQ(traits.name, "Double Touch");
   EXPECT_EQ(traits.sensed_axes, 6);
@@ -84,13 +85,16 @@ void expect_fault_of_the_scheduler(HapticDevice& device, DeviceDouble& behind, i
 
 TEST_F(OpenHapticsTest, ASchedulerThatDoesNotStartIsAFault) {
   double_->set([](DeviceDouble::State& state) { state.scheduler_error = 0x0304; });
-  const auto device = open_open_haptics("");
+  const auto device = open_open_haptics("", clock_);
   expect_fault_of_the_scheduler(*device, *double_, 0, "OpenHaptics: the scheduler has no timer");
 }
 
+// It is told after more than a second without a call.
 TEST_F(OpenHapticsTest, ASchedulerThatStopsCallingIsAFault) {
-  const auto device = open_open_haptics("");
+  const auto device = open_open_haptics("", clock_);
   expect_fault_of_the_scheduler(*device, *double_, 5, "OpenHaptics: the scheduler has stopped calling");
+  EXPECT_GT(clock_.now_s(), 1.004);
+  EXPECT_LT(clock_.now_s(), 1.02);
 }
 
 }  // namespace

@@ -1,189 +1,178 @@
 // What a haptic device feels when something of a live run fails: test doubles of the vendors' libraries stand
-// for the device, and the force is taken at the device's side.
+// for the device, the force is taken at the device's side, and all times are those of a simulated clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 
-#include "runners/live/loop/servo.h"
 #include "tests/doubles/vendor_devices.h"
-#include "tests/runners/live/loop/background_run.h"
+#include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_failure_test {
 namespace {
 
-// A live run whose device is pressed into the table.
+// A live run whose device is pressed into the table, until the moment of trouble and on.
 class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
  protected:
-  void press(const std::function<void(DeviceDouble::State&)>& prepare = {}) {
-    double_.reset();
-    double_ = std::make_unique<DoubleInstalled>(*GetParam());
-    if (prepare) device().set(prepare);
-    run_.reset();
-    press_in_again();
-  }
-  void press_in_again() {
-    const auto start = [&] { return std::make_unique<BackgroundRun>(kPress, GetParam()->uri); };
-    ASSERT_TRUE(
-        press_in(run_, start,
-                 {[&] { hold(0.03); }, [&] { hold(-kPressed_m); }, [&] { return device().now().force(); }}))
-        << "never touched";
-  }
+  static constexpr double kTrouble_s = 0.3;
 
-  DeviceDouble& device() { return **double_; }
+  void SetUp() override {
+    hold(kAbove_m);
+    clock_.at(kPressed_s, [&] { hold(kBelow_m); });
+  }
+  LiveResult run(double duration_s = 0.5) {
+    run_.options.duration_s = duration_s;
+    return run_.run();
+  }
+  void at(double moment_s, std::function<void(DeviceDouble&)> what) {
+    clock_.at(moment_s, [this, what = std::move(what)] { what(*double_); });
+  }
   // The middle of the device so far above the table.
   void hold(double above_m) {
     const Vec3 place = GetParam()->length_per_m * (GetParam()->axes * Vec3(0, height_m_ + above_m, 0));
-    device().set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
+    double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
   }
-  double time_to_nothing_s() {
-    return remote_touch::time_to_nothing_s([&] { return device().now().force(); });
+  ForceOverTime force() const {
+    ForceOverTime force;
+    for (const DeviceDouble::Event& event : double_->events())
+      force.pieces.push_back({event.at_ns, event.force()});
+    return force;
+  }
+  // Pressed until then, and nothing from then on.
+  void expect_gone_at(std::int64_t moment_ns) const {
+    EXPECT_EQ(force().gone_ns(), moment_ns);
+    EXPECT_GT(force().at(moment_ns - 1), 1);
   }
 
-  static constexpr double kPressed_m = 0.002;
+  SimulatedClock clock_;
+  DoubleInstalled double_{*GetParam(), &clock_};
   const double height_m_ = table_height_m();
-  std::unique_ptr<DoubleInstalled> double_;
-  std::unique_ptr<BackgroundRun> run_;
+  SimulatedRun run_{clock_, press_experiment(),
+                    [](const Experiment&, Clock& clock) { return GetParam()->open("", clock); }};
 };
 
+// At 300 ms it is told so to the tick; the user's part looks every 10 ms, and the next tick is the last.
 TEST_P(PressedDevice, UnpluggedTheRunEndsSayingSo) {
-  press();
-  device().set([](DeviceDouble::State& state) { state.is_unplugged = true; });
-  const LiveResult& result = run_->ended();
+  at(kTrouble_s + 0.0005,
+     [](DeviceDouble& device) { device.set([](DeviceDouble::State& state) { state.is_unplugged = true; }); });
+  const LiveResult result = run();
   EXPECT_TRUE(result.failed);
   EXPECT_HAS(result.ended, "the device failed: ");
+  EXPECT_EQ(clock_.now_ns(), ms(310));
 }
 
-TEST_P(PressedDevice, AReadingThatFailsEndsTheForceAndTheRun) {
-  press();
-  device().set([](DeviceDouble::State& state) { state.reading_error = GetParam()->error; });
-  EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  const LiveResult& result = run_->ended();
+TEST_P(PressedDevice, AReadingThatFailsEndsTheForceInThatTickAndTheRun) {
+  at(kTrouble_s, [](DeviceDouble& device) {
+    device.set([](DeviceDouble::State& state) { state.reading_error = GetParam()->error; });
+  });
+  const LiveResult result = run();
+  expect_gone_at(ms(300));
   EXPECT_TRUE(result.failed);
   EXPECT_HAS(result.ended, "the device failed: ");
+  EXPECT_EQ(clock_.now_ns(), ms(310));
 }
 
-TEST_P(PressedDevice, NoNumberFromItEndsTheForce) {
-  press();
-  device().set(
-      [](DeviceDouble::State& state) { state.position[1] = std::numeric_limits<double>::quiet_NaN(); });
-  EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  EXPECT_TRUE(run_->ended().failed);
+TEST_P(PressedDevice, NoNumberFromItEndsTheForceInThatTick) {
+  at(kTrouble_s, [](DeviceDouble& device) {
+    device.set(
+        [](DeviceDouble::State& state) { state.position[1] = std::numeric_limits<double>::quiet_NaN(); });
+  });
+  const LiveResult result = run();
+  // Entact's readings are one tick old.
+  expect_gone_at(ms(GetParam() == &kEntact ? 301 : 300));
+  EXPECT_TRUE(result.failed);
 }
 
-TEST_P(PressedDevice, AStopEndsTheForce) {
-  press();
-  run_->stop();
-  EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  const LiveResult& result = run_->ended();
+TEST_P(PressedDevice, AStopEndsTheForceInTheNextTick) {
+  std::atomic<bool> stop = false;
+  run_.options.stop = &stop;
+  clock_.at(kTrouble_s, [&] { stop = true; });
+  const LiveResult result = run();
+  expect_gone_at(ms(300));
   EXPECT_FALSE(result.failed);
   EXPECT_EQ(result.ended, "stopped by a signal");
-  EXPECT_FALSE(device().now().has_motors_on);
+  EXPECT_FALSE(double_->now().has_motors_on);
 }
 
+TEST_P(PressedDevice, TheEndOfItsDurationEndsTheForceInTheNextTick) {
+  const LiveResult result = run(kTrouble_s);
+  expect_gone_at(ms(300));
+  EXPECT_EQ(result.ended, "its duration is over");
+  EXPECT_EQ(result.log.missed_ticks, 0);
+  EXPECT_EQ(result.log.trace.length(), 300u);
+}
+
+// The tick of 300 ms hangs in the vendor's call. The watch looks every 2 ms and finds more than 10 ms at 312.
+// A call of the adapter gets 5 ms to end, which that of OpenHaptics' scheduler is not; then the motors are
+// off. What hung goes on at 380 ms, and from then on it begins as at the start: pressed in, it waits.
 TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
-  press();
-  device().hang_next(DeviceDouble::reports_force);
-  ASSERT_TRUE(wait_until([&] { return device().is_hanging(); }));
-  EXPECT_LT(time_to_nothing_s(), kPromise_s);
-  std::this_thread::sleep_for(std::chrono::milliseconds(80));
-  device().release();
-  const double released_s = steady_s();
-  // What hung may still be told; from then on it begins as at the start: pressed in, it waits.
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  for (const DeviceDouble::Event& event : device().events()) {
-    if (event.at_s > released_s + kPromise_s) {
-      EXPECT_EQ(event.force(), 0);
-    }
-  }
-  press_in_again();
-  EXPECT_GE(run_->ended_by_stop().counts.stalls, 1);
+  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
+  at(0.38, [](DeviceDouble& device) { device.release(); });
+  clock_.at(0.5, [&] { hold(kAbove_m); });
+  clock_.at(0.6, [&] { hold(kBelow_m); });
+  const LiveResult result = run(0.8);
+  const std::int64_t off_ns = ms(GetParam()->drives_itself ? 312 : 317);
+  EXPECT_GT(force().at(off_ns - 1), 1);
+  EXPECT_EQ(force().max_in(off_ns, ms(600)), 0);
+  EXPECT_GT(force().at(ms(700)), 1);
+  EXPECT_EQ(result.counts.stalls, 1);
+  EXPECT_FALSE(result.failed);
 }
 
 TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
-  press();
-  for (int i = 0; i < 40; ++i) {
-    hold(i % 2 == 0 ? -0.2 : 0.03);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int i = 0; i < 40; ++i)
+    clock_.at(kTrouble_s + 0.01 * i, [this, i] { hold(i % 2 == 0 ? -0.2 : kAbove_m); });
+  run(kTrouble_s + 0.45);
+  const auto pieces = force().pieces;
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    EXPECT_LE(pieces[i].force_N, SafetyLimits{}.max_force_N * (1 + 1e-9));
+    EXPECT_LE(std::abs(pieces[i].force_N - pieces[i - 1].force_N),
+              SafetyLimits{}.force_slew_N_per_s * 1e-3 * (1 + 1e-9));
   }
-  for (const DeviceDouble::Event& event : device().events())
-    EXPECT_LE(event.force(), SafetyLimits{}.max_force_N * (1 + 1e-9));
+  EXPECT_DOUBLE_EQ(force().max_in(ms(300), ms(700)), SafetyLimits{}.max_force_N);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
                          [](const auto& device) { return device.param->name; });
 
 // OpenHaptics alone tells how stiff a device can be.
-using StiffnessOfADevice = PressedDevice;
-
-TEST_P(StiffnessOfADevice, IsNotExceeded) {
-  const auto max_rendered_N = [](const LiveResult& result) {
-    double max = 0;
+class StiffnessOfADevice : public PressedDevice {
+ protected:
+  static double max_rendered_N(const LiveResult& result) {
+    double max_N = 0;
     const Trace& trace = result.log.trace;
-    for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force_N[i].norm());
-    return max;
-  };
-  const auto rendered_at_last_N = [](const LiveResult& result) {
+    for (std::size_t i = 0; i < trace.length(); ++i) max_N = std::max(max_N, trace.force_N[i].norm());
+    return max_N;
+  }
+  static double rendered_at_last_N(const LiveResult& result) {
     const Trace& trace = result.log.trace;
     return trace.force_N[trace.length() - 1].norm();
-  };
-  // At the device, once its force no longer rises; none where the machine has paused meanwhile.
-  const auto resting_N = [&] {
-    double force_N = 0;
-    wait_until([&] {
-      press_in_again();
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      return (force_N = device().now().force()) > 0;
-    });
-    return force_N;
-  };
-  press();
-  const double whole_N = resting_N();
-  const LiveResult whole = run_->ended_by_stop();
-  EXPECT_EQ(whole.force_scale, 1);
-  EXPECT_EQ(run_->told().find("N/m"), std::string::npos);
-  EXPECT_NEAR(whole_N, rendered_at_last_N(whole), 0.01 * whole_N);
+  }
+};
 
+TEST_P(StiffnessOfADevice, ThatIsNotToldLeavesTheForceAsItIs) {
+  const LiveResult result = run();
+  EXPECT_EQ(result.force_scale, 1);
+  EXPECT_TRUE(run_.told().empty());
+  EXPECT_NEAR(force().at(ms(499)), rendered_at_last_N(result), 1e-12);
+}
+
+TEST_P(StiffnessOfADevice, IsNotExceeded) {
   constexpr double kLimit_N_per_m = 300, kRendered_N_per_m = 600;
-  press([&](DeviceDouble::State& state) { state.max_stiffness = kLimit_N_per_m / 1000; });  // N/mm
-  const double limited_N = resting_N();
-  const LiveResult limited = run_->ended_by_stop();
-  EXPECT_EQ(limited.force_scale, kLimit_N_per_m / kRendered_N_per_m);
-  EXPECT_HAS(run_->told(),
+  double_->set([](DeviceDouble::State& state) { state.max_stiffness = kLimit_N_per_m / 1000; });  // N/mm
+  const LiveResult result = run();
+  EXPECT_EQ(result.force_scale, kLimit_N_per_m / kRendered_N_per_m);
+  ASSERT_EQ(run_.told().size(), 1u);
+  EXPECT_HAS(run_.told()[0].line,
              "the maximum stiffness of the device is 300 N/m: forces and torques are scaled by 0.5");
-  EXPECT_NEAR(limited_N, 0.5 * rendered_at_last_N(limited), 0.01 * limited_N);
-  EXPECT_LT(limited.log.max_force_N, 0.5 * max_rendered_N(limited) * (1 + 1e-9));
+  EXPECT_NEAR(force().at(ms(499)), 0.5 * rendered_at_last_N(result), 1e-12);
+  EXPECT_LT(result.log.max_force_N, 0.5 * max_rendered_N(result) * (1 + 1e-9));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),
                          [](const auto& device) { return device.param->name; });
-
-// --- a renderer that throws, against its contract ---
-
-class Throwing final : public Renderer {
- public:
-  void on_frame(const Frame&) override {}
-  RenderOutput step(const DeviceState&, double time_s) override {
-    if (time_s > 0.05) throw std::bad_alloc();
-    return {};
-  }
-};
-
-TEST(ServoTick, AnExceptionLetsTheDeviceGo) {
-  DoubleInstalled device_double(kForceDimension);
-  const auto device = kForceDimension.open("");
-  Throwing renderer;
-  TripleBuffer<LiveFrame> frames;
-  Ring<LiveTick> rows(1000);
-  const std::atomic<bool> stop = false;
-  Servo servo({*device, renderer, frames, rows, stop}, DevicePlacement({}), {}, 1000, steady_s(), 0.01);
-  device->run(servo);  // ends by itself
-  EXPECT_TRUE(servo.has_failed());
-  EXPECT_STREQ(servo.trouble(), "an exception in the haptic loop");
-  EXPECT_FALSE(device_double->now().has_motors_on);
-}
 
 }  // namespace
 }  // namespace remote_touch::live_failure_test

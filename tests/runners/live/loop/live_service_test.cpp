@@ -1,12 +1,13 @@
-// What happens to a live run whose device is behind a service of its vendor: Haply's, simulated, and
-// spacenavd, of which a socket of the test's own stands in.
+// What happens to a live run whose device is behind a service of its vendor, on a simulated clock: Haply's,
+// and spacenavd, of which a socket of the test's own stands in.
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "tests/doubles/haply_service.h"
+#include "runners/live/devices/spacenav.h"
+#include "tests/doubles/simulated_haply.h"
 #include "tests/doubles/spacenav_socket.h"
-#include "tests/runners/live/loop/background_run.h"
+#include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_service_test {
@@ -15,70 +16,81 @@ namespace {
 class PressedInverse3 : public testing::Test {
  protected:
   void SetUp() override {
-    const auto start = [&] { return std::make_unique<BackgroundRun>(kPress, "haply:" + service_.address()); };
-    ASSERT_TRUE(
-        press_in(run_, start, {[&] { hold(0.03); }, [&] { hold(-0.002); }, [&] { return force_N(); }}))
-        << "never touched";
+    hold(kAbove_m);
+    clock_.at(kPressed_s, [&] { hold(kBelow_m); });
+    run_.options.duration_s = 0.5;
   }
-
   // The service's z is up.
-  void hold(double above_m) {
-    world_.position_m = Vec3(0, 0, height_m_ + above_m);
-    service_.set(world_);
-  }
-  // What the service was told last.
-  double force_N() const {
-    const auto commands = service_.commands();
-    return commands.empty() ? 0 : commands.back().force_N.norm();
+  void hold(double above_m) { service_.world.position_m = Vec3(0, 0, height_m_ + above_m); }
+  // What the service was told.
+  ForceOverTime force() const {
+    ForceOverTime force;
+    for (const auto& [at_ns, command] : service_.sent())
+      force.pieces.push_back({at_ns, command.force_N.norm()});
+    return force;
   }
 
   const double height_m_ = table_height_m();
-  HaplyWorld world_;
-  HaplyService service_;
-  std::unique_ptr<BackgroundRun> run_;
+  SimulatedClock clock_;
+  SimulatedHaply service_{clock_};
+  SimulatedRun run_{clock_, press_experiment(),
+                    [this](const Experiment&, Clock&) { return service_.open(); }};
 };
 
-TEST_F(PressedInverse3, AStopEndsTheForce) {
-  run_->stop();
-  EXPECT_LT(time_to_nothing_s([&] { return force_N(); }), kPromise_s);
-  EXPECT_EQ(run_->ended().ended, "stopped by a signal");
-  EXPECT_EQ(force_N(), 0);
+TEST_F(PressedInverse3, AStopEndsTheForceInTheNextTick) {
+  std::atomic<bool> stop = false;
+  run_.options.stop = &stop;
+  clock_.at(0.3, [&] { stop = true; });
+  const LiveResult result = run_.run();
+  EXPECT_GT(force().at(ms(299.9)), 1);
+  EXPECT_LE(force().gone_ns(), ms(301));
+  EXPECT_EQ(result.ended, "stopped by a signal");
+  EXPECT_FALSE(result.failed);
 }
 
 // Without messages the device idles; nobody can tell it anything.
 TEST_F(PressedInverse3, AServiceThatDiesEndsTheRun) {
-  service_.die();
-  const LiveResult& result = run_->ended();
+  clock_.at(0.3, [&] { service_.die(); });
+  const LiveResult result = run_.run();
   EXPECT_TRUE(result.failed);
-  EXPECT_HAS(result.ended, "the device failed: the Haply service closed the connection");
+  EXPECT_EQ(result.ended, "the device failed: the Haply service closed the connection");
+  EXPECT_LE(clock_.now_ns(), ms(311));
 }
 
 TEST_F(PressedInverse3, AServiceThatHangsEndsTheRun) {
-  service_.hang();
-  const LiveResult& result = run_->ended();
+  clock_.at(0.3, [&] { service_.hang(); });
+  const LiveResult result = run_.run();
   EXPECT_TRUE(result.failed);
-  EXPECT_HAS(result.ended, "the device failed: the Haply service does not answer");
+  EXPECT_EQ(result.ended, "the device failed: the Haply service does not answer");
 }
 
 TEST_F(PressedInverse3, AStateThatIsNoNumberEndsTheForceAndTheRun) {
-  world_.answer = R"({"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": null}}}]})";
-  service_.set(world_);
-  EXPECT_LT(time_to_nothing_s([&] { return force_N(); }), kPromise_s);
-  EXPECT_TRUE(run_->ended().failed);
+  clock_.at(0.3, [&] {
+    service_.world.answer =
+        R"({"inverse3": [{"device_id": "049D", "state": {"cursor_position": {"x": null}}}]})";
+  });
+  const LiveResult result = run_.run();
+  EXPECT_GT(force().at(ms(299.9)), 1);
+  EXPECT_LE(force().gone_ns(), ms(302));
+  EXPECT_TRUE(result.failed);
 }
 
 TEST(LiveSpaceMouse, AKilledDaemonEndsTheRun) {
   const TestFolder folder("live_service_test");
   const std::string path = (folder / "sock").string();
   SpacenavSocket daemon(path);
-  BackgroundRun run(kPress, "spnav:" + path);
-  daemon.accept();
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_EQ(run.told().find("failed"), std::string::npos);
-  daemon.close();
-  const LiveResult& result = run.ended();
+  SimulatedClock clock;
+  SimulatedRun run(clock, press_experiment(), [&](const Experiment&, Clock& of_device) {
+    auto device = open_spacenav(path, of_device);
+    daemon.accept();
+    return device;
+  });
+  run.options.duration_s = 1;
+  clock.at(0.2, [&] { daemon.close(); });
+  const LiveResult result = run.run();
   EXPECT_TRUE(result.failed);
-  EXPECT_HAS(result.ended, "the device failed: ");
+  EXPECT_EQ(result.ended, "the device failed: spacenavd has closed the connection");
+  EXPECT_EQ(clock.now_ns(), ms(210));
 }
 
 }  // namespace

@@ -1,145 +1,211 @@
-// The tick of the live loop by itself, with a device that a test scripts.
+// The tick of the live loop by itself, with a device that a test scripts, on a simulated clock.
 #include "runners/live/loop/servo.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <new>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch::servo_test {
 namespace {
 
-constexpr double kRate_hz = 1000, kStall_s = 0.01;
+constexpr double kRate_hz = 1000, kStall_s = 0.01, kTick_s = 1e-3;
+constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
-void sleep_ms(int ms) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-}
-
-// Ticks without a pause, until it is told to stop or has done so many.
+// A tick, a pause of a millisecond, and so on, until it is told to stop or has done so many.
 class ScriptedDevice final : public HapticDevice {
  public:
+  using HapticDevice::HapticDevice;
+
   std::function<DeviceFault()> on_read, on_write;
   int max_ticks = 100;
-  int held_again = 0;
+  int rearmed = 0;
+  std::vector<std::int64_t> released_ms;
+  std::vector<double> written_N;
 
   const DeviceTraits& traits() const override { return traits_; }
   void run(DeviceCycle& cycle) override {
-    for (int i = 0; i < max_ticks && cycle.tick(); ++i) {
-    }
+    for (int i = 0; i < max_ticks && cycle.tick(); ++i) clock().sleep_s(kTick_s);
   }
   DeviceFault read(DeviceReading&) noexcept override { return on_read ? on_read() : DeviceFault{}; }
-  DeviceFault write(const Wrench&) noexcept override { return on_write ? on_write() : DeviceFault{}; }
-  void release() noexcept override { ++times_released_; }
-  int release_count() const { return times_released_; }
+  DeviceFault write(const Wrench& wrench) noexcept override {
+    written_N.push_back(wrench.force_N.x());
+    return on_write ? on_write() : DeviceFault{};
+  }
+  void release() noexcept override { released_ms.push_back(clock().now_ns() / ms(1)); }
   bool rearm() noexcept override {
-    ++held_again;
+    ++rearmed;
     return true;
   }
 
  private:
   DeviceTraits traits_;
-  std::atomic<int> times_released_ = 0;  // by the heartbeat's thread too
 };
 
-class CountingRenderer final : public Renderer {
+class ScriptedRenderer final : public Renderer {
  public:
-  int max_steps = 1 << 30, steps = 0;
+  std::function<void(int)> on_step;  // with the number of steps before
+  Vec3 force_N = Vec3::Zero();
+  int steps = 0;
+
   void on_frame(const Frame&) override {}
   RenderOutput step(const DeviceState&, double) override {
-    if (++steps > max_steps) throw std::bad_alloc();
-    return {};
+    if (on_step) on_step(steps);
+    ++steps;
+    RenderOutput out;
+    out.force_N = force_N;
+    return out;
   }
 };
 
 class ServoTest : public testing::Test {
  protected:
-  void run(double ends_s = std::numeric_limits<double>::infinity()) {
-    servo_ = std::make_unique<Servo>(ServoLinks{device_, renderer_, frames_, rows_, stop_, &signal_, ends_s},
-                                     DevicePlacement({}), SafetyLimits{}, kRate_hz, start_s_, kStall_s);
+  void run(std::int64_t ends_ns = kNever_ns) {
+    servo_ = std::make_unique<Servo>(
+        ServoLinks{device_, renderer_, frames_, rows_, clock_, stop_, &signal_, ends_ns}, DevicePlacement({}),
+        limits_, kRate_hz, clock_.now_ns(), kStall_s);
+    Heartbeat& heartbeat = servo_->heartbeat();
+    const int watch =
+        clock_.every(heartbeat.period_s(), clock_.now_s(), [&] { heartbeat.check(clock_.now_ns()); });
     device_.run(*servo_);
+    clock_.sleep_s(0.05);
+    clock_.cancel(watch);
+  }
+  // Before the n-th reading ends.
+  void in_read(int number, std::function<DeviceFault()> what) {
+    device_.on_read = [number, what = std::move(what), calls = 0]() mutable {
+      return ++calls == number ? what() : DeviceFault{};
+    };
+  }
+  DeviceFault hang(double time_s) {
+    clock_.sleep_s(time_s);
+    return {};
+  }
+  void send_frame(double sensed_s) {
+    LiveFrame& frame = frames_.back();
+    frame.frame.captured_s = frame.sensed_s = sensed_s;
+    frame.ready_s = clock_.now_s();
+    frame.frame.index = 0;
+    frames_.publish();
   }
   std::vector<LiveTick> rows() {
     std::vector<LiveTick> rows;
     for (; const LiveTick* row = rows_.oldest(); rows_.pop()) rows.push_back(*row);
     return rows;
   }
+  std::vector<std::int64_t> numbers() {
+    std::vector<std::int64_t> numbers;
+    for (const LiveTick& row : rows()) numbers.push_back(row.number);
+    return numbers;
+  }
 
-  const double start_s_ = steady_s();
-  ScriptedDevice device_;
-  CountingRenderer renderer_;
+  SimulatedClock clock_;
+  ScriptedDevice device_{clock_};
+  ScriptedRenderer renderer_;
+  SafetyLimits limits_;
   TripleBuffer<LiveFrame> frames_;
   Ring<LiveTick> rows_{1 << 10};
   std::atomic<bool> stop_ = false, signal_ = false;
   std::unique_ptr<Servo> servo_;
 };
 
+using Numbers = std::vector<std::int64_t>;
+
+TEST_F(ServoTest, TicksAreNumberedByTheClock) {
+  device_.max_ticks = 5;
+  in_read(3, [&] { return hang(0.0035); });  // it begins at 2 ms, the next one at 6.5
+  run();
+  EXPECT_EQ(numbers(), (Numbers{0, 1, 2, 7, 8}));
+}
+
 // A recording of it would not be the same run again.
 TEST_F(ServoTest, ATickThatHungWhileTheDeviceWasReadIsNotBeforeTheFrameItTakes) {
-  double captured_s = 0;
   device_.max_ticks = 5;
-  device_.on_read = [&, calls = 0]() mutable {
-    if (++calls != 3) return DeviceFault{};
-    sleep_ms(30);
-    captured_s = frames_.back().frame.captured_s = steady_s() - start_s_;
-    frames_.publish();
+  in_read(3, [&] {
+    hang(0.030);
+    send_frame(clock_.now_s());
     return DeviceFault{};
-  };
+  });
+  run();
+  EXPECT_EQ(numbers(), (Numbers{0, 1, 32, 33, 34}));
+}
+
+TEST_F(ServoTest, TimesOfATick) {
+  device_.max_ticks = 3;
+  in_read(2, [&] {
+    send_frame(0.25e-3);
+    return hang(0.5e-3);
+  });
+  renderer_.on_step = [&](int) { clock_.sleep_s(0.125e-3); };
   run();
   const std::vector<LiveTick> ticks = rows();
-  ASSERT_EQ(ticks.size(), 5u);
-  ASSERT_GE(ticks[2].taken, 0);
-  EXPECT_GE(static_cast<double>(ticks[2].number) / kRate_hz, captured_s);
-  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_GT(ticks[i].number, ticks[i - 1].number);
+  ASSERT_EQ(ticks.size(), 3u);
+  EXPECT_EQ(ticks[0].since_last_tick_s, 0);
+  EXPECT_FLOAT_EQ(ticks[1].since_last_tick_s, 1.125e-3f);
+  EXPECT_FLOAT_EQ(ticks[2].since_last_tick_s, 1.625e-3f);
+  EXPECT_FLOAT_EQ(ticks[1].step_s, 0.125e-3f);
+  EXPECT_EQ(ticks[1].taken, 0);
+  EXPECT_FLOAT_EQ(ticks[1].waited_s, 0.5e-3f);
+  EXPECT_FLOAT_EQ(ticks[1].latency_s, 1.5e-3f);  // sensed at 0.25 ms, written at 1.75
+  EXPECT_EQ(ticks[2].taken, -1);
 }
 
 TEST_F(ServoTest, AnEndIsNoStall) {
-  device_.on_read = [&, calls = 0]() mutable {
-    stop_ = ++calls == 50;
+  in_read(50, [&] {
+    stop_ = true;
     return DeviceFault{};
-  };
+  });
   run();
-  sleep_ms(50);
-  EXPECT_EQ(servo_->stalls(), 0);
+  EXPECT_EQ(servo_->heartbeat().stalls(), 0);
+  EXPECT_EQ(device_.released_ms, (Numbers{50}));
 }
 
+// Looked at every 2 ms: 10 ms have passed at 12 ms, and more than that at 14 ms.
 TEST_F(ServoTest, AHangingReadIsAStallAndTheNextTickHoldsAgain) {
   device_.max_ticks = 5;
-  device_.on_read = [calls = 0]() mutable {
-    if (++calls == 3) sleep_ms(60);
+  in_read(3, [&] { return hang(0.060); });
+  run();
+  ASSERT_FALSE(device_.released_ms.empty());
+  EXPECT_EQ(device_.released_ms.front(), 14);
+  EXPECT_EQ(device_.rearmed, 1);
+  EXPECT_FALSE(servo_->has_failed());
+}
+
+TEST_F(ServoTest, ATickOfTenMillisecondsIsNoStall) {
+  device_.max_ticks = 5;
+  in_read(3, [&] { return hang(0.010); });
+  device_.on_write = [&, writes = 0]() mutable {
+    if (++writes == 5) stop_ = true;
     return DeviceFault{};
   };
   run();
-  EXPECT_EQ(servo_->stalls(), 1);
-  EXPECT_EQ(device_.held_again, 1);
+  EXPECT_EQ(device_.rearmed, 0);
 }
 
 TEST_F(ServoTest, ADeviceThatRefusedAForceIsNotHeldAgain) {
-  device_.on_write = [calls = 0]() mutable {
+  device_.on_write = [&, calls = 0]() mutable {
     if (++calls != 3) return DeviceFault{};
-    sleep_ms(60);  // long enough for the heartbeat to let go
+    hang(0.060);
     return DeviceFault{"refused"};
   };
   run();
   EXPECT_TRUE(servo_->has_failed());
   EXPECT_TRUE(servo_->is_latched());
-  EXPECT_EQ(device_.held_again, 0);
+  EXPECT_STREQ(servo_->trouble(), "refused");
+  EXPECT_EQ(device_.rearmed, 0);
 }
 
 // By what a fault says, not by where the text is: an adapter in a library of its own has its own copy.
 TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
   const std::string said = kReleased.what;
-  device_.on_read = [&, calls = 0]() mutable {
-    return ++calls == 3 ? DeviceFault{said.c_str()} : DeviceFault{};
-  };
+  in_read(3, [&] { return DeviceFault{said.c_str()}; });
   run();
   EXPECT_FALSE(servo_->has_failed());
   EXPECT_FALSE(servo_->is_latched());
@@ -147,26 +213,44 @@ TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
 }
 
 // The thread that waits for the loop may be held up.
-TEST_F(ServoTest, ASignalOrTheEndOfTheTimeEndsIt) {
-  device_.on_read = [&, calls = 0]() mutable {
-    if (++calls == 3) signal_ = true;
+TEST_F(ServoTest, ASignalEndsIt) {
+  in_read(3, [&] {
+    signal_ = true;
     return DeviceFault{};
-  };
+  });
   run();
-  EXPECT_EQ(rows().size(), 3u);
-  EXPECT_GE(device_.release_count(), 1);
-  signal_ = false;
-  run(steady_s() - 1);
-  EXPECT_EQ(rows().size(), 0u);
+  EXPECT_EQ(numbers(), (Numbers{0, 1, 2}));
+  EXPECT_EQ(device_.released_ms, (Numbers{3}));
+}
+
+TEST_F(ServoTest, TheEndOfItsTimeEndsIt) {
+  run(ms(4));
+  EXPECT_EQ(numbers(), (Numbers{0, 1, 2, 3}));
+  EXPECT_EQ(device_.released_ms, (Numbers{4}));
 }
 
 TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
-  renderer_.max_steps = 50;
+  renderer_.on_step = [&](int before) {
+    if (before == 50) throw std::bad_alloc();
+  };
   run();
-  EXPECT_EQ(renderer_.steps, 51);
+  EXPECT_EQ(renderer_.steps, 50);
   EXPECT_TRUE(servo_->has_failed());
   EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop");
-  EXPECT_GE(device_.release_count(), 1);
+  EXPECT_EQ(device_.released_ms, (Numbers{50}));
+}
+
+// A command that took longer than 4 ms to render is old: the force is gone in the tick that writes it, and
+// begins anew only where the command is small.
+TEST_F(ServoTest, AnOldCommandIsNotWritten) {
+  limits_.ramp_s = 0, limits_.max_command_age_s = 0.004;
+  renderer_.on_step = [&](int before) {
+    renderer_.force_N.x() = before < 2 ? 0 : before < 9 ? 2 : 0.25;
+    if (before == 5) clock_.sleep_s(0.005);
+  };
+  device_.max_ticks = 11;
+  run();
+  EXPECT_EQ(device_.written_N, (std::vector<double>{0, 0, 1, 2, 2, 0, 0, 0, 0, 0.25, 0.25}));
 }
 
 }  // namespace

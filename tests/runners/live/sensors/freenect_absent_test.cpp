@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runners/live/sensors/freenect_camera.h"
+#include "runners/live/timing/steady_clock.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::freenect_absent_test {
@@ -10,7 +11,7 @@ namespace {
 TEST(FreenectAbsent, IsRefused) {
   const Availability availability = freenect_availability();
   if (availability.found) GTEST_SKIP() << "a Kinect is plugged in: " << availability.detail;
-  const std::string message = refusal([] { open_freenect("0"); });
+  const std::string message = refusal([] { open_freenect("0", steady_clock()); });
   if (availability.compiled_in) {
     EXPECT_HAS(message, "freenect");
     EXPECT_HAS(message, ": expected ");

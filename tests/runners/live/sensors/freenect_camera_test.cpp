@@ -90,12 +90,12 @@ TEST_F(FreenectCamera, PlaysARecording) {
 
   SensorFrame frame;
   {
-    const auto closed_early = open_freenect("0");
+    const auto closed_early = open_freenect("0", steady_clock());
     ASSERT_EQ(closed_early->next(frame, kPatience_s), SensorState::frame);
     EXPECT_TRUE(shows(frame, number_in(frame)));
   }
   int last = number_in(frame);
-  const auto source = open_freenect("");
+  const auto source = open_freenect("", steady_clock());
   const CameraIntrinsics& camera = source->view().camera;
   EXPECT_EQ(camera.width, kWidth);
   EXPECT_EQ(camera.height, kHeight);
@@ -113,7 +113,7 @@ TEST_F(FreenectCamera, PlaysARecording) {
     const int number = number_in(frame);
     EXPECT_GT(number, last);
     EXPECT_TRUE(shows(frame, number)) << number;
-    EXPECT_LE(frame.captured_s, steady_s());
+    EXPECT_LE(frame.captured_s, steady_clock().now_s());
     if (seen++ > 0) {
       EXPECT_NEAR(frame.captured_s - last_s, taken_s(number) - taken_s(last), 0.02);
     }
@@ -129,10 +129,10 @@ TEST_F(FreenectCamera, PlaysARecording) {
 }
 
 TEST_F(FreenectCamera, OtherNumbersAreRefused) {
-  EXPECT_HAS(refusal([] { open_freenect("1"); }),
+  EXPECT_HAS(refusal([] { open_freenect("1", steady_clock()); }),
              "freenect:1: 1 Kinects are plugged in, from 0 on: expected ");
   for (const char* address : {"-1", "x", "0x", " 0", "99999999999"})
-    EXPECT_HAS(refusal([&] { open_freenect(address); }),
+    EXPECT_HAS(refusal([&] { open_freenect(address, steady_clock()); }),
                "freenect:" + std::string(address) + ": no camera has this number: expected 0, 1, ...");
 }
 

@@ -57,7 +57,7 @@ SensorState take(DepthSource& source, int max, std::vector<SensorFrame>& frames)
     SensorFrame frame;
     const SensorState state = source.next(frame, kPatience_s);
     if (state != SensorState::frame) return state;
-    EXPECT_LE(frame.captured_s, steady_s());
+    EXPECT_LE(frame.captured_s, steady_clock().now_s());
     if (!frames.empty()) {
       EXPECT_GT(frame.number, frames.back().number);
       EXPECT_GT(frame.captured_s, frames.back().captured_s);
@@ -78,8 +78,8 @@ void expect_camera(const CameraIntrinsics& camera, double across_rad, double dow
 
 TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
   for (const char* address : {"any", "", "virtual-camera"}) {
-    const double opened_s = steady_s();
-    const auto source = open_openni2(address);
+    const double opened_s = steady_clock().now_s();
+    const auto source = open_openni2(address, steady_clock());
     expect_camera(source->view().camera, kColourAcross_rad, kColourDown_rad);
     EXPECT_EQ(source->view().metres_per_unit, 0.001);
     EXPECT_EQ(source->view().frame_rate_hz, 30);
@@ -102,7 +102,7 @@ TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
 
 TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
   report_line("stays_mirrored");
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
   for (const SensorFrame& frame : frames) expect_pattern(frame);
@@ -110,7 +110,7 @@ TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
 
 TEST_F(Openni2Camera, NoColourWhereDepthIsNotRegisteredToIt) {
   report_line("unregistered");
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   EXPECT_FALSE(source->view().has_colour);
   expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
   std::vector<SensorFrame> frames;
@@ -123,7 +123,7 @@ TEST_F(Openni2Camera, NoColourWhereDepthIsNotRegisteredToIt) {
 
 // A reader that comes late finds the newest frame, not the oldest.
 TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   ASSERT_EQ(take(*source, 3, frames), SensorState::frame);
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
@@ -134,28 +134,28 @@ TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
 
 TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
   report_line("stop_after=20");
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   SensorFrame frame;
   SensorState state = SensorState::frame;
   while (state == SensorState::frame) state = source->next(frame, 0.5);
   EXPECT_EQ(state, SensorState::waiting);
   EXPECT_LE(number_in(frame), 20);
   expect_pattern(frame);
-  const double start_s = steady_s();
+  const double start_s = steady_clock().now_s();
   EXPECT_EQ(source->next(frame, 0.3), SensorState::waiting);
-  EXPECT_GE(steady_s() - start_s, 0.29);
-  EXPECT_LT(steady_s() - start_s, 2);
+  EXPECT_GE(steady_clock().now_s() - start_s, 0.29);
+  EXPECT_LT(steady_clock().now_s() - start_s, 2);
   EXPECT_EQ(source->next(frame, 0), SensorState::waiting);
   EXPECT_EQ(source->failure(), "");
 }
 
 TEST_F(Openni2Camera, CameraThatIsUnplugged) {
   report_line("lose_after=20");
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
-  const double start_s = steady_s();
+  const double start_s = steady_clock().now_s();
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
-  EXPECT_LT(steady_s() - start_s, kPatience_s / 2);  // told, not timed out
+  EXPECT_LT(steady_clock().now_s() - start_s, kPatience_s / 2);  // told, not timed out
   EXPECT_EQ(source->failure(), "openni2: was disconnected");
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
@@ -163,7 +163,7 @@ TEST_F(Openni2Camera, CameraThatIsUnplugged) {
 
 TEST_F(Openni2Camera, FrameOfAnotherSize) {
   report_line("small_after=20");
-  const auto source = open_openni2("any");
+  const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
   EXPECT_LE(frames.size(), 20u);
@@ -172,7 +172,7 @@ TEST_F(Openni2Camera, FrameOfAnotherSize) {
 
 TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
   for (int i = 0; i < 5; ++i) {
-    const auto source = open_openni2("any");
+    const auto source = open_openni2("any", steady_clock());
     std::vector<SensorFrame> frames;
     ASSERT_EQ(take(*source, i, frames), SensorState::frame) << source->failure();
     for (const SensorFrame& frame : frames) expect_pattern(frame);
@@ -180,16 +180,17 @@ TEST_F(Openni2Camera, ClosedAndOpenedAgain) {
 }
 
 TEST_F(Openni2Camera, AbsentCameras) {
-  const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5"); });
+  const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5", steady_clock()); });
   EXPECT_HAS(unknown, "1d27/0601@1/5: neither a file nor a camera that a driver in ");
   EXPECT_HAS(unknown, "/OpenNI2/Drivers knows: expected any, virtual-camera");
-  EXPECT_HAS(refusal([] { open_openni2("Dummy"); }), "Dummy: neither a file nor a camera");
-  EXPECT_HAS(refusal([] { open_openni2("missing.oni"); }), "missing.oni: neither a file nor a camera");
-  EXPECT_HAS(refusal([] { open_openni2("/tmp"); }), "/tmp: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("Dummy", steady_clock()); }), "Dummy: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("missing.oni", steady_clock()); }),
+             "missing.oni: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("/tmp", steady_clock()); }), "/tmp: neither a file nor a camera");
   report_line("absent");
   EXPECT_FALSE(openni2_availability().found);
   EXPECT_HAS(openni2_availability().detail, "no camera that a driver in ");
-  const std::string none = refusal([] { open_openni2("any"); });
+  const std::string none = refusal([] { open_openni2("any", steady_clock()); });
   EXPECT_HAS(none, "openni2: no camera that a driver in ");
   EXPECT_HAS(none, "/OpenNI2/Drivers knows: expected one that is plugged in");
 }
@@ -209,17 +210,17 @@ class Openni2Recording : public Openni2Camera {
 
 // The camera shows a mirrored image until it is told not to, and the recorder does not tell it.
 TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
-  const auto source = open_openni2(file_);
+  const auto source = open_openni2(file_, steady_clock());
   EXPECT_FALSE(source->view().has_colour);
   expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
   std::vector<SensorFrame> frames;
-  const double start_s = steady_s();
+  const double start_s = steady_clock().now_s();
   EXPECT_EQ(take(*source, 100, frames), SensorState::ended) << source->failure();
   // The recorder may lose frames at both ends, and a slow machine some on the way.
   ASSERT_GE(frames.size(), 8u);
   EXPECT_LE(frames.front().number, 5);
   EXPECT_GE(frames.back().number, 15);
-  EXPECT_GT(steady_s() - start_s, 0.8 * (frames.back().number - 1) / kRate_hz);
+  EXPECT_GT(steady_clock().now_s() - start_s, 0.8 * (frames.back().number - 1) / kRate_hz);
   for (const SensorFrame& frame : frames) {
     expect_pattern(frame);
     EXPECT_TRUE(frame.colour.empty());
@@ -230,15 +231,16 @@ TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
 }
 
 TEST_F(Openni2Recording, IsNoCamera) {
-  const auto source = open_openni2(file_);
+  const auto source = open_openni2(file_, steady_clock());
   EXPECT_EQ(openni2_availability().detail, "Virtual camera (virtual-camera)");
   report_line("absent");
-  EXPECT_HAS(refusal([] { open_openni2("missing"); }), "missing: neither a file nor a camera");
+  EXPECT_HAS(refusal([] { open_openni2("missing", steady_clock()); }),
+             "missing: neither a file nor a camera");
 }
 
 TEST_F(Openni2Recording, ClosedInTheMiddle) {
   for (int i = 0; i < 10; ++i) {
-    const auto source = open_openni2(file_);
+    const auto source = open_openni2(file_, steady_clock());
     std::vector<SensorFrame> frames;
     ASSERT_EQ(take(*source, i % 4, frames), SensorState::frame) << source->failure();
   }
@@ -253,7 +255,7 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
        {std::string(), std::string("NI10"), garbage, whole.substr(0, 4) + garbage, whole.substr(0, 100),
         whole.substr(0, 1000), whole.substr(0, whole.size() / 3)}) {
     const std::string file = folder_.write("damaged.oni", bytes).string();
-    const std::string message = refusal([&] { open_openni2(file); });
+    const std::string message = refusal([&] { open_openni2(file, steady_clock()); });
     EXPECT_HAS(message, file + ": ");
     EXPECT_HAS(message, "expected ") << bytes.size() << " bytes";
   }
@@ -265,7 +267,7 @@ TEST_F(Openni2Recording, FramesThatAreZeroed) {
   const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // which frame begins where
   ASSERT_NE(table, std::string::npos);
   std::fill(bytes.begin() + 5000, bytes.begin() + static_cast<std::ptrdiff_t>(table), '\0');
-  const auto source = open_openni2(folder_.write("zeroed.oni", bytes).string());
+  const auto source = open_openni2(folder_.write("zeroed.oni", bytes).string(), steady_clock());
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
   EXPECT_LE(frames.size(), 1u);

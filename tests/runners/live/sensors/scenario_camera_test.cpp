@@ -1,10 +1,10 @@
-// A scenario as a sensor in real time.
+// A scenario as a sensor in real time, on a simulated clock.
 #include "runners/live/sensors/scenario_camera.h"
 
 #include <gtest/gtest.h>
 
 #include "runners/experiment/experiment.h"
-#include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scenario_camera_test {
@@ -32,25 +32,43 @@ class SlowRecording final : public Scenario {
           .build_scenario(scenes::kernels());
 };
 
+// After the last it is shown again and again, at 30 Hz.
 TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
-  ScenarioCamera camera(std::make_unique<SlowRecording>());
+  SimulatedClock clock;
+  clock.sleep_s(5);
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
   SensorFrame frame;
-  std::vector<SensorFrame> frames;
-  const double start_s = steady_s();
-  while (steady_s() - start_s < 1)
-    if (camera.next(frame, 0.02) == SensorState::frame) frames.push_back(frame);
-  // All eight, and then the last again and again at 30 Hz; a busy machine may lose some.
-  ASSERT_GE(frames.size(), 10u);
-  EXPECT_LE(frames.size(), 8u + 30);
-  EXPECT_NEAR(frames[0].captured_s - start_s,
-              SlowRecording::kFirst_s + SlowRecording::kPeriod_s * frames[0].number, 0.01);
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    EXPECT_GT(frames[i].number, frames[i - 1].number);
-    if (frames[i].number < 8) {
-      EXPECT_NEAR(frames[i].captured_s - frames[i - 1].captured_s,
-                  SlowRecording::kPeriod_s * (frames[i].number - frames[i - 1].number), 1e-9);
-    }
+  for (int number = 0; number < 20; ++number) {
+    while (camera.next(frame, 0.02) == SensorState::waiting) continue;
+    const double after_s = SlowRecording::kFirst_s + SlowRecording::kPeriod_s * std::min(number, 7) +
+                           std::max(0, number - 7) / 30.0;
+    EXPECT_EQ(frame.number, number);
+    EXPECT_NEAR(frame.captured_s, 5 + after_s, 1e-9);
+    EXPECT_NEAR(clock.now_s(), 5 + after_s, 1e-9);
   }
+}
+
+TEST(ScenarioCamera, WaitsNoLongerThanItIsTold) {
+  SimulatedClock clock;
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  SensorFrame frame;
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
+  EXPECT_EQ(clock.now_ns(), 0);
+  EXPECT_EQ(camera.next(frame, 0.1), SensorState::waiting);
+  EXPECT_EQ(clock.now_ns(), 100'000'000);
+  EXPECT_EQ(camera.next(frame, 0.1), SensorState::frame);
+  EXPECT_EQ(clock.now_ns(), 120'000'000);
+}
+
+TEST(ScenarioCamera, ALateReaderGetsTheNewestFrame) {
+  SimulatedClock clock;
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  SensorFrame frame;
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
+  clock.sleep_s(SlowRecording::kFirst_s + 3.5 * SlowRecording::kPeriod_s);
+  ASSERT_EQ(camera.next(frame, 0), SensorState::frame);
+  EXPECT_EQ(frame.number, 3);
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
 }
 
 }  // namespace

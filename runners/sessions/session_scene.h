@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/loop/session_file.h"
+#include "runners/sessions/session_file.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording_part.h"

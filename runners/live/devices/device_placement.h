@@ -1,30 +1,12 @@
-// Where device and camera stand in the world, for the live loop.
+// A device in the world: poses from it, forces to it.
 #pragma once
 
-#include <string>
-
-#include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
 #include "core/tool/dynamics/wrench_coupling.h"
 #include "runners/live/devices/haptic_device.h"
+#include "runners/sessions/live_settings.h"
 
 namespace remote_touch {
-
-struct LiveSettings {
-  Vec3 device_position_m = Vec3::Zero();
-  Vec3 device_rotation_deg = Vec3::Zero();
-  double device_scale = 1;
-  Vec3 camera_position_m = Vec3::Zero();
-  Vec3 camera_rotation_deg = Vec3::Zero();
-};
-
-Parameters parameters(LiveSettings& s);
-inline std::string validate(const LiveSettings&) {
-  return {};
-}
-
-// Of the camera over where its source says that it stands.
-RigidTransform camera_registration(const LiveSettings& s);
 
 // Factor on all forces so that no spring exceeds the maximum stiffness of the device; 1 if none does, or if
 // the limit is 0 (unknown). A motion scale of device_scale makes springs stiffer by that factor.

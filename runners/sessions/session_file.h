@@ -10,10 +10,19 @@
 
 #include "analysis/storage/hdf5_appender.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "runners/live/loop/servo.h"
-#include "runners/live/sensors/depth_source.h"
+#include "core/rendering/renderer.h"
+#include "core/tool/dynamics/wrench_coupling.h"
+#include "runners/sessions/sensor_frame.h"
 
 namespace remote_touch {
+
+struct SessionTick {
+  std::int64_t number = 0;  // its time times the haptic rate
+  DeviceState device;       // as the renderer got it
+  int taken = -1;           // the frame that the renderer got before this tick; -1: none
+  Wrench written;           // to the device, in its axes
+  int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
+};
 
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as they
 // were written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's
@@ -24,7 +33,7 @@ class SessionWriter {
   SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
                 const TextAttributes& provenance);
 
-  void append(const LiveTick& tick);  // goes to the disk a thousand at a time
+  void append(const SessionTick& tick);  // goes to the disk a thousand at a time
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   void finish();
 

@@ -1,4 +1,4 @@
-#include "runners/live/sensors/sensor_cloud.h"
+#include "runners/sessions/sensor_cloud.h"
 
 #include <limits>
 

@@ -1,17 +1,14 @@
-#include "runners/live/loop/camera_thread.h"
+#include "runners/live/loop/camera_feed.h"
 
 #include <algorithm>
 #include <exception>
 #include <utility>
 
-#include "runners/live/sensors/sensor_cloud.h"
-#include "runners/live/timing/steady_clock.h"
+#include "runners/sessions/sensor_cloud.h"
 
 namespace remote_touch {
 
 namespace {
-
-constexpr double kPatience_s = 0.05;  // a stop is noticed in that time
 
 bool is_complete(const SensorFrame& frame, const SensorView& view) {
   const std::size_t pixels =
@@ -21,68 +18,58 @@ bool is_complete(const SensorFrame& frame, const SensorView& view) {
 
 }  // namespace
 
-CameraThread::CameraThread(std::unique_ptr<DepthSource> source, FrameProcessing processing,
-                           const Renderer& renderer, const RigidTransform& registration, double start_s,
-                           TripleBuffer<LiveFrame>& out, FrameSink sink)
+CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing,
+                       const Renderer& renderer, const RigidTransform& registration, const Clock& clock,
+                       std::int64_t start_ns, TripleBuffer<LiveFrame>& out, FrameSink sink)
     : source_(std::move(source)),
       processing_(std::move(processing)),
       renderer_(renderer),
       X_WC_(registration * source_->view().X_WC),
-      start_s_(start_s),
+      clock_(clock),
+      start_s_(1e-9 * static_cast<double>(start_ns)),
       out_(out),
       sink_(std::move(sink)),
-      newest_s_(start_s) {}
+      newest_s_(start_s_) {}
 
-CameraThread::~CameraThread() {
-  stop();
-}
-
-void CameraThread::start() {
-  thread_ = std::thread([this] { run(); });
-}
-
-void CameraThread::stop() {
-  stop_.store(true, std::memory_order_relaxed);
-  if (thread_.joinable()) thread_.join();
-}
-
-std::string CameraThread::ended() const {
+std::string CameraFeed::ended() const {
   return ended_.load(std::memory_order_acquire) ? why_ : std::string();
 }
 
-void CameraThread::end(std::string why) {
+bool CameraFeed::end(std::string why) {
   why_ = std::move(why);
   ended_.store(true, std::memory_order_release);
+  return false;
 }
 
-CameraCounts CameraThread::counts() const {
-  const std::lock_guard lock(reported_mutex_);
-  return reported_;
+CameraCounts CameraFeed::counts() const {
+  const std::lock_guard lock(told_mutex_);
+  return told_;
 }
 
-void CameraThread::run() try {
-  SensorFrame sensed;
-  while (!stop_.load(std::memory_order_relaxed)) switch (source_->next(sensed, kPatience_s)) {
-      case SensorState::frame: {
-        handle(sensed);
-        const std::lock_guard lock(reported_mutex_);
-        reported_ = counts_;
-        break;
-      }
-      case SensorState::waiting:
-        break;
-      case SensorState::ended:
-        return end(kEnd);
-      case SensorState::failed:
-        return end(source_->failure());
+bool CameraFeed::step(double patience_s) noexcept try {
+  if (ended_) return false;
+  switch (source_->next(sensed_, patience_s)) {
+    case SensorState::frame: {
+      handle(sensed_);
+      const std::lock_guard lock(told_mutex_);
+      told_ = counts_;
+      return true;
     }
+    case SensorState::waiting:
+      return true;
+    case SensorState::ended:
+      return end(kEnd);
+    case SensorState::failed:
+      return end(source_->failure());
+  }
+  return true;
 } catch (const std::exception& error) {
-  end(error.what());
+  return end(error.what());
 } catch (...) {
-  end("an unknown error");
+  return end("an unknown error");
 }
 
-bool CameraThread::is_newer(const SensorFrame& sensed) {
+bool CameraFeed::is_newer(const SensorFrame& sensed) {
   const bool newer =
       counts_.received == 1 || (sensed.number > last_number_ && sensed.captured_s > last_captured_s_);
   if (!newer) return false;
@@ -94,7 +81,7 @@ bool CameraThread::is_newer(const SensorFrame& sensed) {
   return true;
 }
 
-void CameraThread::handle(SensorFrame& sensed) {
+void CameraFeed::handle(SensorFrame& sensed) {
   ++counts_.received;
   if (!is_newer(sensed)) {
     ++counts_.reversed;
@@ -104,7 +91,7 @@ void CameraThread::handle(SensorFrame& sensed) {
     ++counts_.incomplete;
     return;
   }
-  const double begin_s = steady_s();
+  const double begin_s = clock_.now_s();
   Frame frame;
   frame.index = index_;
   frame.captured_s = sensed.captured_s - start_s_;
@@ -117,17 +104,17 @@ void CameraThread::handle(SensorFrame& sensed) {
   processing_.fill(frame, cloud_of(sensed, source_->view(), X_WC_), off);
   renderer_.prepare(frame);
   send(std::move(frame), sensed.captured_s);
-  counts_.processing_s += steady_s() - begin_s;
+  counts_.processing_s += clock_.now_s() - begin_s;
 }
 
-void CameraThread::send(Frame frame, double sensed_s) {
-  std::erase_if(retained_frames_, [](const Frame& old) {
+void CameraFeed::send(Frame frame, double sensed_s) {
+  std::erase_if(held_, [](const Frame& old) {
     return old.points.use_count() == 1 && (!old.prepared || old.prepared.use_count() == 1);
   });
-  retained_frames_.push_back(frame);
+  held_.push_back(frame);
   const std::uint64_t hash =
       frame_hash(dynamic_cast<const CloudSearch&>(*frame.points).cloud(), frame.captured_s);
-  const double ready_s = steady_s();
+  const double ready_s = clock_.now_s();
   out_.back() = {std::move(frame), sensed_s, ready_s, hash};
   if (!out_.publish()) ++counts_.overtaken;
   newest_s_.store(ready_s, std::memory_order_relaxed);

@@ -1,7 +1,7 @@
 // A sensor's frame as an organised cloud.
 #pragma once
 
-#include "runners/live/sensors/depth_source.h"
+#include "runners/sessions/sensor_frame.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-// From the sensor to the servo: frames are processed and prepared in a thread of their own.
+// From the sensor to the servo: frames are processed and prepared, one step at a time.
 #pragma once
 
 #include <atomic>
@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "runners/experiment/frame_stream.h"
 #include "runners/live/loop/servo.h"
@@ -30,49 +29,48 @@ struct CameraCounts {
 };
 
 // Frames that the renderer may hold are held here too until nobody else does, so that their memory is given
-// back by this thread.
-class CameraThread {
+// back by the thread that calls step().
+class CameraFeed {
  public:
   static constexpr const char* kEnd = "the recording has ended";
 
-  CameraThread(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
-               const RigidTransform& registration, double start_s, TripleBuffer<LiveFrame>& out,
-               FrameSink sink);
-  ~CameraThread();  // stops
+  CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
+             const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
+             TripleBuffer<LiveFrame>& out, FrameSink sink);
 
-  void start();
-  void stop();                  // waits
-  CameraCounts counts() const;  // so far; from any thread
-  // For other threads: why there will be no more frames; empty while there may be.
-  std::string ended() const;
-  double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the steady clock
+  // Waits so long for the next frame and hands it over. False: there will be no more.
+  bool step(double patience_s) noexcept;
+
+  // For other threads.
+  CameraCounts counts() const;  // so far
+  std::string ended() const;    // why there will be no more frames; empty while there may be
+  double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the clock
   const SensorView& view() const { return source_->view(); }
 
  private:
-  void run();
   void handle(SensorFrame& sensed);
   bool is_newer(const SensorFrame& sensed);
   void send(Frame frame, double sensed_s);
-  void end(std::string why);
+  bool end(std::string why);  // false
 
   const std::unique_ptr<DepthSource> source_;
   const FrameProcessing processing_;
   const Renderer& renderer_;
   const RigidTransform X_WC_;
+  const Clock& clock_;
   const double start_s_;
   TripleBuffer<LiveFrame>& out_;
   const FrameSink sink_;
+  SensorFrame sensed_;
   CameraCounts counts_;
-  mutable std::mutex reported_mutex_;
-  CameraCounts reported_;  // after the newest frame
+  mutable std::mutex told_mutex_;
+  CameraCounts told_;  // after the newest frame
   int index_ = 0, last_number_ = -1;
   double last_captured_s_ = 0;
-  std::deque<Frame> retained_frames_;
-  std::atomic<bool> stop_ = false;
+  std::deque<Frame> held_;
   std::atomic<double> newest_s_;
   std::string why_;
   std::atomic<bool> ended_ = false;
-  std::thread thread_;
 };
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/live/loop/session_scene.h"
+#include "runners/sessions/session_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/sensors/sensor_cloud.h"
+#include "runners/sessions/sensor_cloud.h"
 
 namespace remote_touch {
 

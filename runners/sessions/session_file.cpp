@@ -1,4 +1,4 @@
-#include "runners/live/loop/session_file.h"
+#include "runners/sessions/session_file.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -55,7 +55,7 @@ SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorVi
   if (has_colour_) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
 }
 
-void SessionWriter::append(const LiveTick& tick) {
+void SessionWriter::append(const SessionTick& tick) {
   const DeviceState& device = tick.device;
   const auto push = [](std::vector<double>& column, const Vec3& v) {
     column.insert(column.end(), v.data(), v.data() + 3);
@@ -67,7 +67,7 @@ void SessionWriter::append(const LiveTick& tick) {
   ticks_.buttons.push_back(device.buttons);
   ticks_.taken.push_back(tick.taken);
   push(ticks_.force, tick.written.force_N), push(ticks_.torque, tick.written.torque_Nm);
-  ticks_.gate.push_back(static_cast<std::int32_t>(tick.gate));
+  ticks_.gate.push_back(tick.gate);
   if (ticks_.number.size() >= kTicksAtOnce) flush_ticks();
 }
 

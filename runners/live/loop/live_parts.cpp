@@ -1,0 +1,148 @@
+#include "runners/live/loop/live_parts.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kRows = 1 << 14;  // 16 s at 1 kHz until rows are lost
+
+std::size_t padded(int side_px) {
+  return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
+}
+
+std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
+  return duration_s > 0 ? start_ns + std::llround(1e9 * duration_s)
+                        : std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace
+
+LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
+                     std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source)
+    : options_(options),
+      clock_(clock),
+      rate_hz_(experiment.settings().haptic_rate_hz),
+      switches_(std::make_shared<FixtureSwitches>()),
+      renderer_(experiment.build_renderer(*options.kernels, switches_)),
+      device_(std::move(device)),
+      rows_(kRows) {
+  require_rate();
+  const SensorView& view = source->view();
+  renderer_->reserve(padded(view.camera.width) * padded(view.camera.height));
+  const RigidTransform registration = camera_registration(experiment.live());
+  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_, recorder(view, registration * view.X_WC));
+  const auto sink = [this](const SensorFrame& sensed, const Frame& frame, std::uint64_t off) {
+    return logger_->record(sensed, frame.captured_s, off);
+  };
+  const std::int64_t start_ns = clock_.now_ns();
+  ends_ns_ = end_ns(start_ns, options.duration_s);
+  camera_ = std::make_unique<CameraFeed>(std::move(source),
+                                         experiment.build_processing(*options.kernels, switches_), *renderer_,
+                                         registration, clock_, start_ns, frames_, sink);
+  force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
+                             device_->traits().max_stiffness_N_per_m);
+  servo_ = std::make_unique<Servo>(
+      ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_},
+      DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
+      rate_hz_, start_ns, options.stall_s);
+  if (force_scale_ < 1) report_force_scale();
+}
+
+std::unique_ptr<SessionWriter> LiveParts::recorder(const SensorView& view,
+                                                   const RigidTransform& registered) const {
+  if (options_.record.empty()) return nullptr;
+  return std::make_unique<SessionWriter>(options_.record, view, registered, options_.provenance);
+}
+
+// Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.
+void LiveParts::require_rate() const {
+  const double device_hz = device_->traits().tick_rate_hz;
+  if (std::abs(device_hz - rate_hz_) > 0.01 * rate_hz_)
+    throw InputError("haptic_rate_hz = " + std::to_string(rate_hz_),
+                     "expected " + std::to_string(device_hz) + ", the rate of this device's loop");
+}
+
+void LiveParts::run_loop() noexcept {
+  try {
+    device_->run(*servo_);
+  } catch (...) {
+    loop_failed_ = true;
+  }
+  device_->release();
+}
+
+LiveResult LiveParts::finish() {
+  logger_->finish();
+  LiveResult result;
+  result.device = device_->traits().name;
+  result.force_scale = force_scale_;
+  is_over();  // a loop that has ended by itself may be ahead of the last look
+  result.ended = logger_->failure().empty() ? ended_ : logger_->failure();
+  result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() ||
+                  !logger_->failure().empty() || loop_failed_;
+  result.log = logger_->take();
+  result.counts = counts();
+  return result;
+}
+
+LiveCounts LiveParts::counts() const {
+  return {camera_->counts(), servo_->heartbeat().stalls(), servo_->rows_lost()};
+}
+
+std::string LiveParts::camera_failure() const {
+  const std::string why = camera_->ended();
+  return why == CameraFeed::kEnd ? std::string() : why;
+}
+
+bool LiveParts::is_over() {
+  if (ended_.empty()) ended_ = why_over();
+  return !ended_.empty();
+}
+
+std::string LiveParts::why_over() const {
+  if (options_.stop && *options_.stop) return "stopped by a signal";
+  if (servo_->has_failed()) return std::string("the device failed: ") + servo_->trouble();
+  if (loop_failed_) return "the device's loop failed";
+  if (const std::string why = logger_->failure(); !why.empty()) return why;
+  if (clock_.now_ns() >= ends_ns_) return "its duration is over";
+  return {};
+}
+
+void LiveParts::report_line(const std::string& line) const {
+  if (options_.report_line) options_.report_line(line);
+}
+
+void LiveParts::report_force_scale() const {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "the maximum stiffness of the device is %.4g N/m: forces and torques are scaled by %.3g",
+                device_->traits().max_stiffness_N_per_m, force_scale_);
+  report_line(line);
+}
+
+void LiveParts::report_changes() {
+  if (!reported_camera_ && !camera_->ended().empty()) {
+    reported_camera_ = true;
+    report_line("no more frames (" + camera_->ended() + "): the last cloud stays");
+  }
+  const bool stale = clock_.now_s() - camera_->newest_s() > LiveLog::kStaleFrame_s;
+  if (stale != reported_stale_ && !reported_camera_) {
+    reported_stale_ = stale;
+    report_line(stale ? "no frame for 0.2 s: the last cloud stays" : "frames come again");
+  }
+  if (servo_->is_latched() != reported_latch_) {
+    reported_latch_ = !reported_latch_;
+    report_line(reported_latch_ ? std::string("force is off: ") + servo_->trouble() + "; SIGUSR2 re-arms"
+                                : std::string("armed again"));
+  }
+  if (options_.rearm && options_.rearm->exchange(false)) servo_->rearm();
+  if (options_.report && options_.report->exchange(false) && options_.on_report)
+    logger_->ask([this](const LiveLog& log) { options_.on_report(live_report(log, counts())); });
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,68 @@
+// Everything of a live run but its threads: a thread does no more than to call one of these steps again and
+// again. Without threads, on a clock of a test, the same steps make the same run.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "runners/live/loop/camera_feed.h"
+#include "runners/live/loop/live_logger.h"
+#include "runners/live/loop/live_run.h"
+
+namespace remote_touch {
+
+class LiveParts {
+ public:
+  // All arguments outlive it. Throws InputError where they do not fit each other, or the recording cannot be
+  // opened.
+  LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
+            std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source);
+
+  // The haptic loop, until it is over; the device is let go then.
+  void run_loop() noexcept;
+  // Beside the loop: camera().step(), heartbeat().check(), logger().step(), and of the user
+  // is_over() and report_changes() every kReportPeriod_s.
+  CameraFeed& camera() { return *camera_; }
+  Heartbeat& heartbeat() { return servo_->heartbeat(); }
+  LiveLogger& logger() { return *logger_; }
+  static constexpr double kReportPeriod_s = 0.01;
+  // Whether something other than stop() has ended the run.
+  bool is_over();
+  void report_changes();
+
+  // Ends the loop.
+  void stop() { stop_ = true; }
+  // From any thread.
+  void release() noexcept { device_->release(); }
+  // Once none of the steps is called any more.
+  LiveResult finish();
+
+ private:
+  std::unique_ptr<SessionWriter> recorder(const SensorView& view, const RigidTransform& registered) const;
+  void require_rate() const;
+  LiveCounts counts() const;
+  std::string camera_failure() const;
+  std::string why_over() const;
+  void report_line(const std::string& line) const;
+  void report_force_scale() const;
+
+  const LiveOptions& options_;
+  const Clock& clock_;
+  const double rate_hz_;
+  std::int64_t ends_ns_ = 0;
+  double force_scale_ = 1;
+  std::atomic<bool> stop_ = false, loop_failed_ = false;
+  const std::shared_ptr<FixtureSwitches> switches_;
+  const std::unique_ptr<Renderer> renderer_;
+  const std::unique_ptr<HapticDevice> device_;
+  TripleBuffer<LiveFrame> frames_;
+  Ring<LiveTick> rows_;
+  std::unique_ptr<LiveLogger> logger_;
+  std::unique_ptr<CameraFeed> camera_;
+  std::unique_ptr<Servo> servo_;
+  std::string ended_;  // why
+  bool reported_camera_ = false, reported_stale_ = false, reported_latch_ = false;
+};
+
+}  // namespace remote_touch

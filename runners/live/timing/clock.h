@@ -1,0 +1,22 @@
+// The time of everything live: sensors, devices and the loop between them stamp and wait by the clock that
+// they are given.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace remote_touch {
+
+// A moment is counted from some other moment, and never set back. A clock outlives whatever is given it.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual std::int64_t now_ns() const noexcept = 0;
+  // Returns at that moment or later; at once where it has passed.
+  virtual void sleep_until_ns(std::int64_t moment_ns) noexcept = 0;
+
+  double now_s() const noexcept { return 1e-9 * static_cast<double>(now_ns()); }
+  void sleep_s(double time_s) noexcept { sleep_until_ns(now_ns() + std::llround(1e9 * time_s)); }
+};
+
+}  // namespace remote_touch

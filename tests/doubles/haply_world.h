@@ -1,0 +1,41 @@
+// What stands behind a simulated Inverse service, and the texts by which it is told of.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// All in the service's axes: x to the right, y away from the user, z up.
+struct HaplyWorld {
+  Vec3 position_m = Vec3(0.01, -0.12, 0.15), velocity_m_per_s = Vec3::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  bool a = false, b = false, c = false;
+
+  std::vector<std::string> devices = {"049D"};
+  bool has_handle = true;
+  bool is_handle_wired = false;
+  std::string basis = "XYZ";
+  std::string force_key = "vector";  // the one it knows; another is passed over, as unknown keys are
+  bool reports_force = true;
+  double gate = 1;              // what it gives of the force that it is sent
+  Vec3 other_N = Vec3::Zero();  // what others at the service command
+  std::string answer;           // instead of a state
+  std::string inventory;        // instead of the inventory
+};
+
+struct HaplyCommand {
+  std::string device_id, key;
+  Vec3 force_N = Vec3::Zero();
+};
+
+std::vector<HaplyCommand> haply_commands(const std::string& message);
+// What the first device of the world gives after such a command.
+Vec3 given_force_N(const HaplyWorld& world, const HaplyCommand& command);
+// given_N: what it gives now.
+std::string haply_inventory(const HaplyWorld& world, const Vec3& given_N);
+std::string haply_state(const HaplyWorld& world, const Vec3& given_N);
+
+}  // namespace remote_touch

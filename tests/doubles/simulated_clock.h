@@ -1,0 +1,79 @@
+// A clock that stands still until somebody sleeps. What is to happen beside the one who sleeps, in a real run
+// in other threads, happens in his sleep: in the same thread, at its own time, in the order in which it is
+// due.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "runners/live/timing/clock.h"
+
+namespace remote_touch {
+
+// Begins at 0. What is due at the same moment happens in the order in which it was asked for, and before a
+// sleep that ends then is over. Who sleeps in an event sleeps longer than the one whose sleep it is where it
+// has to. One thread only.
+class SimulatedClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override { return now_ns_; }
+  void sleep_until_ns(std::int64_t moment_ns) noexcept override {
+    if (moment_ns <= now_ns_) return;
+    while (!events_.empty() && events_.begin()->first.first <= moment_ns) happen();
+    now_ns_ = std::max(now_ns_, moment_ns);
+  }
+
+  void at(double moment_s, std::function<void()> what) { add(ns(moment_s), {std::move(what), 0, 0}); }
+  // At first_s, and then again and again; what it misses in a sleep of its own is left out. For cancel().
+  int every(double period_s, double first_s, std::function<void()> what) {
+    const int id = ++last_id_;
+    repeated_.insert(id);
+    add(ns(first_s), {std::move(what), ns(period_s), id});
+    return id;
+  }
+  void cancel(int id) {
+    repeated_.erase(id);
+    std::erase_if(events_, [id](const auto& event) { return event.second.id == id; });
+  }
+
+ private:
+  struct Event {
+    std::function<void()> what;
+    std::int64_t period_ns;
+    int id;  // 0: once
+  };
+
+  static std::int64_t ns(double time_s) { return std::llround(1e9 * time_s); }
+  void add(std::int64_t due_ns, Event event) {
+    events_.emplace(std::pair(std::max(due_ns, now_ns_), ++added_), std::move(event));
+  }
+  void happen() {
+    auto node = events_.extract(events_.begin());
+    std::int64_t due_ns = node.key().first;
+    now_ns_ = std::max(now_ns_, due_ns);
+    Event event = std::move(node.mapped());
+    event.what();
+    if (!repeated_.contains(event.id)) return;
+    due_ns += event.period_ns;
+    if (due_ns < now_ns_)
+      due_ns += (now_ns_ - due_ns + event.period_ns - 1) / event.period_ns * event.period_ns;
+    add(due_ns, std::move(event));
+  }
+
+  std::int64_t now_ns_ = 0;
+  std::map<std::pair<std::int64_t, std::int64_t>, Event> events_;  // by due time, then in the order of asking
+  std::int64_t added_ = 0;
+  int last_id_ = 0;
+  std::set<int> repeated_;
+};
+
+// A moment of it.
+constexpr std::int64_t ms(double time_ms) {
+  return static_cast<std::int64_t>(1e6 * time_ms);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,165 @@
+// The WebSocket to Haply's service, over a real socket to a service that is simulated
+// (tests/doubles/haply_service.h). Times are those of the machine: what has to end by a deadline is held to
+// seconds.
+#include "runners/live/devices/haply_link.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+
+#include "runners/live/devices/haply.h"
+#include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/haply_service.h"
+#include "tests/runners/live/devices/haply_ticks.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/test_files.h"
+#include "tests/support/wait_until.h"
+
+namespace remote_touch::haply_link_test {
+namespace {
+
+constexpr double kSoon_s = 0.05;
+const std::string kCommand =
+    R"({"inverse3":[{"device_id":"049D","commands":{"set_cursor_force":{"vector":{"x":0,"y":0,"z":1}}}}]})";
+
+double now_s() {
+  return steady_clock().now_s();
+}
+std::unique_ptr<HaplyLink> open_link(const std::string& address) {
+  return open_haply_link({"haply", address, {}}, steady_clock(), now_s() + kPatience_s);
+}
+std::string receive(HaplyLink& link, double within_s = kPatience_s) {
+  std::string_view text;
+  const DeviceFault fault = link.receive(text, now_s() + within_s);
+  return fault ? fault.what : std::string(text);
+}
+// Past the inventory.
+std::unique_ptr<HaplyLink> open_and_send(const HaplyService& service) {
+  auto link = open_link(service.address());
+  EXPECT_HAS(receive(*link), "session_id");
+  EXPECT_FALSE(link->send(kCommand, now_s() + kPatience_s));
+  return link;
+}
+
+TEST(HaplyLink, CommandsAndAnswers) {
+  const HaplyService service;
+  const auto link = open_and_send(service);
+  EXPECT_HAS(receive(*link), "cursor_position");
+  ASSERT_EQ(service.commands().size(), 1u);
+  EXPECT_EQ(service.commands()[0].force_N, Vec3(0, 0, 1));
+}
+
+TEST(HaplyLink, AServiceThatHangsIsWaitedForUntilTheDeadlineAndMayComeBack) {
+  HaplyService service;
+  service.hang();
+  const auto link = open_and_send(service);
+  const double start_s = now_s();
+  EXPECT_EQ(receive(*link, kSoon_s), kLate);
+  EXPECT_GE(now_s() - start_s, kSoon_s);
+  EXPECT_LT(now_s() - start_s, kPatience_s);
+  service.resume();
+  EXPECT_HAS(receive(*link), "cursor_position");
+}
+
+TEST(HaplyLink, AServiceThatIsKilled) {
+  HaplyServiceProcess service;
+  const auto link = open_link(service.address());
+  EXPECT_HAS(receive(*link), "session_id");
+  service.kill();
+  EXPECT_EQ(receive(*link), "the Haply service closed the connection");
+  EXPECT_EQ(receive(*link), "the Haply service closed the connection");
+}
+
+TEST(HaplyLink, AMessageThatStopsInTheMiddle) {
+  HaplyService service;
+  service.hang_in_the_middle();
+  const auto link = open_and_send(service);
+  ASSERT_TRUE(wait_until([&] { return service.misbehaves(); }));
+  EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
+}
+
+// There is always something to read, and never an answer.
+TEST(HaplyLink, PingsWithoutEnd) {
+  HaplyService service;
+  service.ping_without_end();
+  const auto link = open_and_send(service);
+  ASSERT_TRUE(wait_until([&] { return service.misbehaves(); }));
+  const double start_s = now_s();
+  EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
+  EXPECT_LT(now_s() - start_s, kPatience_s);
+}
+
+TEST(HaplyLink, TextThatEndsTheConnection) {
+  for (const auto& [answer, fault] :
+       {std::pair(std::string(1 << 20, 'x'), "the Haply service sent a message that is too long"),
+        std::pair(std::string("\xff\xff"), "the connection to the Haply service failed")}) {
+    HaplyWorld world;
+    world.answer = answer;
+    const HaplyService service(world);
+    const auto link = open_and_send(service);
+    EXPECT_EQ(receive(*link), fault);
+    EXPECT_STREQ(link->send(kCommand, now_s() + kPatience_s).what, fault);
+  }
+}
+
+TEST(HaplyLink, ACutEndsACallUnderWay) {
+  HaplyService service;
+  service.hang();
+  const auto link = open_and_send(service);
+  std::thread other([&] { link->cut(); });
+  EXPECT_EQ(receive(*link), "the Haply service closed the connection");
+  other.join();
+}
+
+TEST(HaplyLink, WhatCannotBeOpened) {
+  int free_port = 0;
+  { free_port = HaplyService().port(); }
+  const std::string gone = "ws://127.0.0.1:" + std::to_string(free_port);
+  EXPECT_HAS(refusal([&] { open_link(gone); }), "haply:" + gone + ": no Haply service at " + gone + "/ (");
+  EXPECT_HAS(refusal([&] { open_link(gone); }), "start the Inverse service");
+  EXPECT_HAS(refusal([&] { open_link("http://127.0.0.1"); }), "write ws://HOST:PORT");
+  EXPECT_HAS(refusal([&] { open_link("ws://:1"); }), "write ws://HOST:PORT");
+}
+
+// The adapter and the socket together, with ticks until one of them was answered in its time.
+TEST(HaplyOverTheSocket, ReadsAndWrites) {
+  HaplyWorld world;
+  world.position_m = Vec3(0.1, 0.2, 0.3);
+  HaplyService service(world);
+  const auto device = open_haply(service.address(), steady_clock());
+  DeviceReading reading;
+  EXPECT_TRUE(wait_until([&] { return !device->read(reading) && !device->write(force({0, 1, 0})); }));
+  EXPECT_TRUE(reading.position_m.isApprox(Vec3(0.1, 0.3, -0.2), 1e-12));
+  EXPECT_TRUE(wait_until([&] { return service.commands().back().force_N == Vec3(0, 0, 1); }));
+  device->release();
+  EXPECT_TRUE(wait_until([&] { return service.commands().back().force_N.isZero(); }));
+}
+
+// The service is in a process of its own: what it allocates is not counted.
+TEST(HaplyOverTheSocket, NoAllocationInATick) {
+  HaplyServiceProcess service;
+  const auto device = open_haply(service.address(), steady_clock());
+  std::size_t allocations = 0;
+  int answered = 0;
+  EXPECT_TRUE(wait_until([&] {
+    DeviceReading reading;
+    const std::size_t before = allocation_count();
+    const bool is_read = !device->read(reading);
+    device->write(force({0.1, 0.2, 0.3}));
+    allocations += allocation_count() - before;
+    answered += is_read ? 1 : 0;
+    return answered >= 100;
+  }));
+  EXPECT_EQ(allocations, 0u);
+}
+
+TEST(HaplyOverTheSocket, Availability) {
+  const Availability availability = haply_availability(steady_clock());
+  EXPECT_TRUE(availability.compiled_in);
+  EXPECT_FALSE(availability.detail.empty());
+  EXPECT_EQ(availability.detail.find('\n'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace remote_touch::haply_link_test

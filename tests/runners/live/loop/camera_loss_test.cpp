@@ -1,0 +1,108 @@
+// What a live run does when its camera stops or is unplugged, on a simulated clock.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "tests/doubles/vendor_devices.h"
+#include "tests/runners/live/loop/pressed_hand.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::camera_loss_test {
+namespace {
+
+// The experiment's camera until so many frames were sent; then it does what its state says.
+class CameraThatStops final : public DepthSource {
+ public:
+  CameraThatStops(std::unique_ptr<DepthSource> camera, int frames, SensorState then)
+      : camera_(std::move(camera)), left_(frames), then_(then) {}
+  const SensorView& view() const override { return camera_->view(); }
+  SensorState next(SensorFrame& frame, double timeout_s) override {
+    if (left_ == 0) return then_;
+    const SensorState state = camera_->next(frame, timeout_s);
+    left_ -= state == SensorState::frame ? 1 : 0;
+    return state;
+  }
+  std::string failure() const override { return "it was pulled out"; }
+
+ private:
+  const std::unique_ptr<DepthSource> camera_;
+  int left_;
+  const SensorState then_;
+};
+
+class CameraLoss : public testing::Test {
+ protected:
+  // Thirty frames, the last of them at 967 ms; lifted at 1.6 s, pressed to another depth at 1.7 s.
+  LiveResult run_with_loss(SensorState then) {
+    hold(kAbove_m);
+    clock_.at(kPressed_s, [&] { hold(kBelow_m); });
+    clock_.at(1.6, [&] { hold(kAbove_m); });
+    clock_.at(1.7, [&] { hold(2 * kBelow_m); });
+    SimulatedRun run(
+        clock_, press_experiment(),
+        [](const Experiment&, Clock& clock) { return kForceDimension.open("", clock); },
+        [then](const Experiment& experiment, Clock& clock) {
+          return std::make_unique<CameraThatStops>(SimulatedRun::scenario_camera(experiment, clock), 30,
+                                                   then);
+        });
+    run.options.duration_s = 2;
+    LiveResult result = run.run();
+    told_ = run.told();
+    return result;
+  }
+  void hold(double above_m) {
+    const Vec3 place = kForceDimension.axes * Vec3(0, height_m_ + above_m, 0);
+    double_->set([&](DeviceDouble::State& state) { Vec3::Map(state.position.data()) = place; });
+  }
+  // The last cloud stays: a force as before, free space free, and another force at another depth.
+  void expect_the_last_cloud_to_hold() const {
+    ForceOverTime force;
+    for (const DeviceDouble::Event& event : double_->events())
+      force.pieces.push_back({event.at_ns, event.force()});
+    const double pressed_N = force.at(ms(900));
+    EXPECT_GT(pressed_N, 1);
+    EXPECT_NEAR(force.at(ms(1500)), pressed_N, 0.02 * pressed_N);
+    EXPECT_EQ(force.at(ms(1690)), 0);
+    EXPECT_NEAR(force.at(ms(1900)), 2 * pressed_N, 0.1 * pressed_N);
+  }
+
+  SimulatedClock clock_;
+  DoubleInstalled double_{kForceDimension, &clock_};
+  const double height_m_ = table_height_m();
+  std::vector<SimulatedRun::Told> told_;
+};
+
+// The frame of 29 / 30 s is there at 967 ms. It is older than 0.2 s from 1167 ms on, and the next look is at
+// 1170.
+TEST_F(CameraLoss, ThatSendsNothingMoreLeavesItsLastCloud) {
+  const LiveResult result = run_with_loss(SensorState::waiting);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].line, "no frame for 0.2 s: the last cloud stays");
+  EXPECT_EQ(told_[0].at_ns, ms(1170));
+  expect_the_last_cloud_to_hold();
+  EXPECT_FALSE(result.failed) << result.ended;
+  EXPECT_EQ(result.counts.camera.received, 30);
+  EXPECT_EQ(result.log.stale_ticks, 2000 - 1168);
+}
+
+TEST_F(CameraLoss, ThatIsUnpluggedLeavesItsLastCloudAndAFailure) {
+  const LiveResult result = run_with_loss(SensorState::failed);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): the last cloud stays");
+  EXPECT_EQ(told_[0].at_ns, ms(970));
+  expect_the_last_cloud_to_hold();
+  EXPECT_TRUE(result.failed);
+  EXPECT_EQ(result.ended, "its duration is over");
+}
+
+TEST_F(CameraLoss, TheEndOfARecordingIsNoFailure) {
+  const LiveResult result = run_with_loss(SensorState::ended);
+  EXPECT_FALSE(result.failed);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].line, "no more frames (the recording has ended): the last cloud stays");
+  expect_the_last_cloud_to_hold();
+}
+
+}  // namespace
+}  // namespace remote_touch::camera_loss_test

@@ -1,0 +1,37 @@
+// What is counted as late, on a simulated clock. How late this machine is, `remote-touch jitter` tells.
+#include "runners/live/loop/jitter.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/doubles/simulated_clock.h"
+
+namespace remote_touch::jitter_test {
+namespace {
+
+TEST(Jitter, NothingIsLateWhereEveryTickComesInItsTime) {
+  SimulatedClock clock;
+  const Jitter jitter = measure_jitter(0.5, 1000, nullptr, clock);
+  ASSERT_EQ(jitter.late_s.size(), 500u);
+  for (const double late_s : jitter.late_s) EXPECT_NEAR(late_s, 0, 1e-12);
+  EXPECT_EQ(jitter.missed, 0);
+}
+
+// Something else runs from 5.2 to 7.7 ms: the tick of 6 ms comes at 7.7 in place of that of 7 ms.
+TEST(Jitter, WhatComesLateIsLateAndWhatNeverCameIsMissed) {
+  SimulatedClock clock;
+  clock.at(0.0052, [&] { clock.sleep_s(0.0025); });
+  const Jitter jitter = measure_jitter(0.01, 1000, nullptr, clock);
+  ASSERT_EQ(jitter.late_s.size(), 9u);
+  EXPECT_EQ(jitter.missed, 1);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(jitter.late_s[i], i == 6 ? 0.7e-3 : 0, 1e-12) << i;
+}
+
+TEST(Jitter, AStopEndsIt) {
+  SimulatedClock clock;
+  std::atomic<bool> stop = false;
+  clock.at(0.0035, [&] { stop = true; });
+  EXPECT_EQ(measure_jitter(10, 1000, &stop, clock).late_s.size(), 4u);
+}
+
+}  // namespace
+}  // namespace remote_touch::jitter_test

@@ -1,0 +1,64 @@
+// What tests of whole live runs share: a hand that presses on a table, on a simulated clock.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runners/experiment/experiment.h"
+#include "tests/runners/live/loop/simulated_run.h"
+
+namespace remote_touch {
+
+// A proxy over the table of `camera-scene`. Without noise a hand at rest commands the same force in every
+// frame.
+constexpr const char* kPress = R"({
+  "scenario": {"name": "camera-scene", "width": 160, "height": 120, "noise_per_m": 0, "quantisation_per_m": 0},
+  "renderer": {"name": "proxy"},
+  "trajectory": {"name": "follow-surface"}, "safety": {"ramp_s": 0.05}})";
+
+inline Experiment press_experiment() {
+  return Experiment::from_json(kPress, "test");
+}
+inline double table_height_m() {
+  return press_experiment().build_scenario(scenes::kernels())->surface_height(0, 0, 0);
+}
+
+// Above the table until kPressed_s, then 2 mm below it.
+constexpr double kAbove_m = 0.03, kBelow_m = -0.002, kPressed_s = 0.2;
+
+// The force at the device's side, over time: from each moment on until the next. Of several at one moment the
+// last counts.
+struct ForceOverTime {
+  struct Piece {
+    std::int64_t from_ns;
+    double force_N;
+  };
+  std::vector<Piece> pieces;
+
+  double at(std::int64_t moment_ns) const {
+    double force_N = 0;
+    for (const Piece& piece : pieces)
+      if (piece.from_ns <= moment_ns) force_N = piece.force_N;
+    return force_N;
+  }
+  double max_in(std::int64_t from_ns, std::int64_t to_ns) const {
+    double max_N = at(from_ns);
+    for (const Piece& piece : pieces)
+      if (piece.from_ns > from_ns && piece.from_ns < to_ns) max_N = std::max(max_N, at(piece.from_ns));
+    return max_N;
+  }
+  // The moment from which on there is none, after one with.
+  std::int64_t gone_ns() const {
+    std::int64_t gone_ns = -1;
+    bool has_force = false;
+    for (const Piece& piece : pieces) {
+      if (has_force && piece.force_N == 0) gone_ns = piece.from_ns;
+      has_force = piece.force_N > 0;
+    }
+    return has_force ? -1 : gone_ns;
+  }
+};
+
+}  // namespace remote_touch
