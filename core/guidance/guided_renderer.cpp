@@ -164,7 +164,8 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
     if (sequence_.begins(time_s)) act(sequence_.step());
     if (sequence_.is_over()) return;
     const Guide* const guide = goal_of(sequence_.step());
-    const std::optional<Remaining> remaining_goal = guide ? remaining(*guide, out) : std::nullopt;
+    std::optional<Remaining> remaining_goal;
+    if (guide) remaining_goal = remaining(*guide, out);
     const bool reached = remaining_goal && remaining_goal->m <= guide->reached_m &&
                          remaining_goal->rad <= settings_.reached_deg * kRadiansPerDegree;
     if (!sequence_.ends(time_s, reached)) return;

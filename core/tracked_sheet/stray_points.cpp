@@ -6,7 +6,7 @@
 namespace remote_touch {
 
 namespace {
-constexpr double kMinFraction = 0.25;
+constexpr double kMinNeighbourFraction = 0.25;
 constexpr double kMinNeighbours = 2;  // besides itself
 }  // namespace
 
@@ -25,7 +25,7 @@ void StrayPoints::count(const PatchPoints& points, const PatchRegion& region, do
   side_ = static_cast<int>(std::ceil(2 * half_side_)) + 2;
   thickness_ = std::max({0.5, sigma, 2 * half_height_ / 127});
   layers_ = static_cast<int>(std::ceil(2 * half_height_ / thickness_)) + 2;
-  min_ = std::max(kMinNeighbours + 1, kMinFraction * 9 * per_unit_area);
+  min_ = std::max(kMinNeighbours + 1, kMinNeighbourFraction * 9 * per_unit_area);
   std::fill_n(counts_.begin(), side_ * side_ * layers_, std::uint16_t{0});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points.is_member(i)) continue;

@@ -41,11 +41,11 @@ Table contour(const std::string& name, const Table& map, std::size_t columns) {
 
 // The contour of an independent implementation at six noise strengths, read against ours by interpolation.
 double max_contour_deviation(const Table& contour) {
-  constexpr double kReference[][2] = {{0.08, 840}, {0.68, 960}, {1.08, 740},
-                                      {1.48, 600}, {1.88, 500}, {2.48, 300}};
+  constexpr double kReferenceContour[][2] = {{0.08, 840}, {0.68, 960}, {1.08, 740},
+                                             {1.48, 600}, {1.88, 500}, {2.48, 300}};
   const auto &noise = numbers(contour, "noise"), &acceleration = numbers(contour, "acceleration");
   double max = 0;
-  for (const auto& [x, expected] : kReference) {
+  for (const auto& [x, expected] : kReferenceContour) {
     const auto next = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(std::upper_bound(noise.begin(), noise.end(), x) - noise.begin(), 1,
                                    static_cast<std::ptrdiff_t>(noise.size()) - 1));
