@@ -1,6 +1,6 @@
-// Cheap 64-bit fingerprints: of the points of a frame, and of a run up to each tick. They tell that two
-// things are the same and where they cease to be, with one chance in 1.8e19 of being wrong; against intent
-// there is the SHA-256 of the file.
+// Fast 64-bit hashes: of the points of a frame, and of a run up to each tick. They show whether two results
+// are equal and where they begin to differ, with one chance in 1.8e19 of being wrong. Against intended
+// changes there is the SHA-256 of the file.
 #pragma once
 
 #include <cstdint>

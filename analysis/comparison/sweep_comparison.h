@@ -1,4 +1,4 @@
-// Two finished sweeps of the same definition, held against each other.
+// Comparison of two finished sweeps of the same definition.
 //
 // Noise is keyed by seed, cell and replicate: the same run of both met the same noise, so they are a pair.
 // Where nothing changed, pairs are equal to the last bit. Where something did, single runs near a limit are

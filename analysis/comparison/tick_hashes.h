@@ -1,5 +1,5 @@
-// The running hash of a trace without the trace: what is sent from one machine to another to find the first
-// tick at which two runs differ. 8 bytes a tick, or less when only every n-th is kept.
+// The running hash of a trace without the trace: a small file that is copied from one machine to another to
+// find the first tick at which two runs differ. 8 bytes a tick, or less when only every n-th is stored.
 #pragma once
 
 #include <filesystem>

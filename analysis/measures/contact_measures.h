@@ -1,5 +1,5 @@
-// What a run with contact is judged by, as scalars of a trace: where the rendered surface lies over the true
-// one, how steady the force is and when it ends, and the energy that the hand gets.
+// Measures of a run with contact, computed from its trace: where the rendered surface lies above the true
+// one, how steady the force is and when it ends, and the energy that the hand receives.
 #pragma once
 
 #include "analysis/trace/trace.h"

@@ -1,4 +1,4 @@
-// Traces to scalars: the numbers that tell how a run went.
+// Measures: numbers that summarise a run, computed from its trace.
 #pragma once
 
 #include <span>

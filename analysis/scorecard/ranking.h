@@ -1,4 +1,5 @@
-// Contenders in order of a measure, and who at the ends of that order is told apart from all others.
+// Methods in the order of a measure, and which of the best and worst are significantly different from all
+// others.
 #pragma once
 
 #include <cstdint>

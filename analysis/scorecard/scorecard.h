@@ -1,5 +1,5 @@
-// A scorecard: what each method made of each scene, at each noise level, with intervals, and who stands
-// out.
+// A scorecard: the result of each method in each scene at each noise level, with intervals, and which method
+// is significantly best or worst.
 #pragma once
 
 #include <string>

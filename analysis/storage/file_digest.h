@@ -1,6 +1,6 @@
-// The seal of a finished result: HDF5 keeps the first 512 bytes of a file for its user (the "user block"),
-// and there stands the SHA-256 of all that follows. So a changed byte, wherever it is, is found before the
-// HDF5 library, which checksums only the values of long columns, looks at the file.
+// The SHA-256 of a finished result. HDF5 leaves the first 512 bytes of a file to the user (the "user block");
+// they contain the SHA-256 of all bytes that follow. So any changed byte is found before the HDF5 library,
+// which has checksums only for the values of long columns, reads the file.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// HDF5 files, written whole or not at all. Only analysis/hdf5_* know the HDF5 library.
+// HDF5 files, written completely or not at all. Only analysis/storage/hdf5_* use the HDF5 library.
 #pragma once
 
 #include <cstdint>

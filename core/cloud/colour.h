@@ -1,4 +1,4 @@
-// Hue, saturation and lightness of a colour: what segmentation by colour asks, 7.2.
+// Hue, saturation and lightness of a colour, for segmentation by colour, 7.2.
 #pragma once
 
 #include <cstdint>

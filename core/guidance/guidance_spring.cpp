@@ -38,7 +38,7 @@ Parameters parameters(GuidanceSettings& s) {
       {"max_force_N", &s.max_force_N, 0, 1000, "maximum magnitude of the guidance force"},
       {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum magnitude of the guidance torque"},
       {"reached_deg", &s.reached_deg, 0, 180,
-       "the goal is reached within radius_m of the fixture and this angle"},
+       "the goal counts as reached when the tool is within radius_m (of the fixture rule) and within this angle of it"},
   };
 }
 

@@ -1,5 +1,5 @@
-// What the proxy asks of the points near it: its state, normal and stiffness, and its step sizes. Positions
-// and radii in m, directions of unit length.
+// What the proxy computes from the points near it: its state, normal and stiffness, and its step lengths.
+// Positions and radii in m, directions of unit length.
 #pragma once
 
 #include "core/kernels/points_view.h"

@@ -1,4 +1,4 @@
-// What crosses the seam between a sensor and a renderer, and between a device and a renderer.
+// The data that a sensor and a device give to a renderer, and that a renderer gives to a device.
 #pragma once
 
 #include <cstdint>

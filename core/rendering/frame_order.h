@@ -1,4 +1,5 @@
-// Which frame of a stream is the newest. A frame captured no later than it is dropped, and told of once.
+// Which frame of a stream is the newest. A frame that was not captured later than it is dropped and reported
+// once.
 #pragma once
 
 #include <utility>

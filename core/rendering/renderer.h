@@ -1,4 +1,4 @@
-// The seam of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
+// The interface of every haptic renderer: frames at the rate of the camera, steps at the haptic rate.
 #pragma once
 
 #include <cstddef>

@@ -34,9 +34,9 @@ Vec3 less(const Vec3& v, const Vec3& n) {
 Parameters parameters(ImplicitSurfaceParameters& p) {
   return {
       {"surface", choice(p.surface, {"metaballs", "surfels"}), 0, 0,
-       "[84]: f = T - sum of weights, or f = n . (p - a) by weighted total least squares"},
+       "surface f = 0 of [84]; metaballs: f = T - sum of weights; surfels: f = n . (p - a), a plane by weighted total least squares"},
       {"weight", choice(p.weight, {"wyvill", "wendland"}), 0, 0,
-       "w(q): 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2, or (1 - q)^4 (4 q + 1)"},
+       "weight w(q) at the distance q R; wyvill: 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2; wendland: (1 - q)^4 (4 q + 1)"},
       {"support_radius_m", &p.support_radius_m, 1e-6, 1,
        "R of [84]: points at a larger distance have weight 0"},
       {"threshold", &p.threshold, 1e-3, 1000,

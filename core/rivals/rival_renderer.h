@@ -1,6 +1,7 @@
-// What the rivals of the chapter 4 proxy have in common: 3-DOF renderers written from other papers, to be
-// compared on the same scenes with the same noise. Here are the rules of the seam that are no part of any
-// method: frames in their order, a device that is lost, and what is answered before the first frame.
+// What the renderers of other authors have in common: 3-DOF renderers written from other papers, to be
+// compared with the proxy of chapter 4 on the same scenes with the same noise. Here are the rules of the
+// interface that are not part of a method: order of frames, lost device, and the output before the first
+// frame.
 #pragma once
 
 #include "core/kernels/kernels.h"

@@ -1,4 +1,4 @@
-// Where a patch speaks for the frame.
+// The region of a frame that is described by a patch.
 #pragma once
 
 #include <cmath>

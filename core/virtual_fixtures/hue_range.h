@@ -1,4 +1,4 @@
-// The points of a colour: the sensor sees what is to be protected.
+// The points of a colour: what is to be protected is found by its hue.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"

@@ -1,4 +1,4 @@
-// The points around a picked one: a place in the world, or what a pixel sees in each frame.
+// The points near a given position in the world, or near the point that a pixel sees in each frame.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"

@@ -64,12 +64,14 @@ int make_figures(const CommandLine& line, const FigureRequest& request) {
 }
 
 void add_lists(Subcommands& commands) {
-  commands.add("list", "scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
+  commands.add("list",
+               "list the names of scenarios, renderers, trajectories, experiments, sweeps, figures, measures",
                command_list);
-  auto [describe, described] =
-      commands.add("describe", "describe parameters: range, default, meaning; `trace`: columns of a trace",
-                   command_describe);
-  describe->add_option("name", described->name, "a name from `remote-touch list`")->required();
+  auto [describe, described] = commands.add(
+      "describe",
+      "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",
+      command_describe);
+  describe->add_option("name", described->name, "a name from `remote-touch list`, or trace")->required();
   auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
   inspect->add_option("file", inspected->file, "an HDF5 file")->required();
 }
@@ -90,18 +92,20 @@ void add_sweep(Subcommands& commands) {
       "sweep", "run an experiment over a grid of parameters; the same command resumes it", run_sweep);
   command->add_option("sweep", sweep->sweep, "a name from `remote-touch list`, or a JSON file")->required();
   add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
-  command->add_option("-o,--output", sweep->output,
-                      "the HDF5 file to write or to resume; {shard} is replaced by the shard, such as 2of7");
+  command->add_option(
+      "-o,--output", sweep->output,
+      "the HDF5 file to write or to resume; {shard} is replaced by the part, for example 2of7");
   command->add_option("--threads", sweep->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
       ->check(CLI::Range(1, 4096));
   command->add_option("--shard", sweep->shard,
-                      "i/N: only part i of N (default: from Slurm or mpirun, else everything)");
+                      "i/N: run only part i of N (default: from Slurm or mpirun, else everything)");
   command->add_flag("--dry-run", sweep->dry_run,
-                    "check every cell, estimate time and file size, write nothing");
+                    "check every cell, estimate time and file size; write nothing");
 }
 
 void add_merge_and_replay(Subcommands& commands) {
-  auto [command, merge] = commands.add("merge", "merge the shards of a sweep", command_merge);
+  auto [command, merge] =
+      commands.add("merge", "merge the shards (parts) of a sweep into one file", command_merge);
   command->add_option("shards", merge->shards, "the files of all shards")->required();
   command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
 
@@ -114,27 +118,30 @@ void add_merge_and_replay(Subcommands& commands) {
 }
 
 void add_figure(Subcommands& commands) {
-  auto [command, figure] = commands.add("figure", "reproduce figures: HDF5 and claims.json", make_figures);
+  auto [command, figure] = commands.add(
+      "figure", "reproduce figures and check their claims; writes HDF5 files and claims.json", make_figures);
   command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
   command
       ->add_option("--coarse", figure->coarse,
-                   "use every Nth value of the axes of maps: what is claimed of a whole map is not judged")
+                   "maps: use only every Nth value of each axis; claims about a whole map then stay open")
       ->check(CLI::Range(1, 10));
   command->add_flag("--quick", figure->quick,
-                    "the same for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
+                    "--coarse only for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
 }
 
 void add_scorecard(Subcommands& commands) {
-  auto [command, scorecard] =
-      commands.add("scorecard", "compare renderers over many scenes and noise levels: HDF5 and an HTML page",
-                   command_scorecard);
-  command->add_option("methods", scorecard->methods, "names from `remote-touch list` (default: all)");
-  command->add_option("--scene", scorecard->scenes, "names from `remote-touch list` (default: all)");
+  auto [command, scorecard] = commands.add(
+      "scorecard", "compare renderers over many scenes and noise levels; writes HDF5 files and an HTML page",
+      command_scorecard);
+  command->add_option("methods", scorecard->methods,
+                      "names from `remote-touch list`, or JSON files (default: all)");
+  command->add_option("--scene", scorecard->scenes,
+                      "a name from `remote-touch list`, or a JSON file (default: all)");
   command->add_option("-o,--output", scorecard->folder, "the folder to write to, or to resume")->required();
   command
       ->add_option("--seeds", scorecard->seeds,
-                   "number of number of runs of each scene and noise level, each with its own noise")
+                   "number of runs of each scene and noise level, each with its own noise")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
   command->add_option("--threads", scorecard->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
@@ -144,11 +151,11 @@ void add_scorecard(Subcommands& commands) {
 void add_compare(Subcommands& commands) {
   auto [command, compare] = commands.add(
       "compare", "compare two results; exit code 0: same, 1: different, 2: not comparable", command_compare);
-  command->add_option("baseline", compare->baseline, "a trace, sweep, figure or hashes")->required();
-  command->add_option("candidate", compare->candidate, "another of the same kind")->required();
+  command->add_option("baseline", compare->baseline, "a trace, sweep, figure or file of hashes")->required();
+  command->add_option("candidate", compare->candidate, "another file of the same kind")->required();
   command
       ->add_option("--tolerance", compare->tolerances,
-                   "COLUMN=ABSOLUTE[,RELATIVE]; * for every column; default: exact")
+                   "COLUMN=ABSOLUTE[,RELATIVE]; * stands for every column; default: exactly equal")
       ->allow_extra_args(false);
   command->add_flag("--paired", compare->paired,
                     "compare sweeps by paired tests over regions; single runs may differ");
@@ -167,8 +174,8 @@ void add_compare(Subcommands& commands) {
                    "significance level: probability of reporting a change where there is none")
       ->check(between(0, 1))
       ->capture_default_str();
-  command->add_option("--json", compare->json, "also write everything to this file");
-  command->add_option("--junit", compare->junit, "also write JUnit's XML");
+  command->add_option("--json", compare->json, "also write the complete report to this JSON file");
+  command->add_option("--junit", compare->junit, "also write a report in JUnit's XML format");
   command->add_option("--plot", compare->plot,
                       "also write a figure of the deviation over time (HDF5, for scripts/plot)");
 
@@ -176,34 +183,34 @@ void add_compare(Subcommands& commands) {
       "hashes", "extract the running hash of a trace, to find the first tick that differs on another machine",
       command_hashes);
   hash->add_option("trace", hashes->trace, "a trace")->required();
-  hash->add_option("--every", hashes->every, "keep every n-th tick");
+  hash->add_option("--every", hashes->every, "keep only every n-th tick");
   hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
 }
 
 void add_baseline(Subcommands& commands) {
-  CLI::App* parent =
-      commands.app.add_subcommand("baseline", "stored results that later versions are compared with");
+  CLI::App* parent = commands.app.add_subcommand(
+      "baseline", "check or store baselines: stored results that later versions are compared with");
   parent->require_subcommand(1);
   Subcommands below{*parent, commands.line, commands.act};
   auto [command, check] =
-      below.add("check", "run every stored result again and compare", command_baseline_check);
+      below.add("check", "compute every stored result again and compare", command_baseline_check);
   command->add_option("names", check->names, "names of baselines (default: all; none may be missing)");
-  command->add_option("--folder", check->folder, "where they are")->capture_default_str();
-  command->add_option("--json", check->json, "also write everything to this file");
-  command->add_option("--junit", check->junit, "also write JUnit's XML");
+  command->add_option("--folder", check->folder, "folder of the baselines")->capture_default_str();
+  command->add_option("--json", check->json, "also write the complete report to this JSON file");
+  command->add_option("--junit", check->junit, "also write a report in JUnit's XML format");
 
   auto [other, bless] =
-      below.add("bless", "store a result with its spread over builds", command_baseline_bless);
-  other->add_option("names", bless->names, "of the baselines, or all")->required();
+      below.add("bless", "store a result as a baseline, with its spread over builds", command_baseline_bless);
+  other->add_option("names", bless->names, "names of baselines, or all")->required();
   other->add_option("--reason", bless->reason, "why the new numbers are correct");
   other->add_option("--run", bless->run,
-                    "a new baseline: the experiment, a name or a JSON file in the folder");
-  other->add_option("--sweep", bless->sweep, "a new baseline: the sweep");
-  add_set(other, bless->overrides, "parameter=value of a new baseline");
+                    "for a new baseline: its experiment, a name or a JSON file in the folder");
+  other->add_option("--sweep", bless->sweep, "for a new baseline: its sweep");
+  add_set(other, bless->overrides, "for a new baseline: parameter=value");
   other->add_option("--other-build", bless->also, "a build of the same source by another compiler")
       ->allow_extra_args(false);
   other->add_flag("--one-compiler", bless->one_compiler, "measure the spread with this compiler only");
-  other->add_option("--folder", bless->folder, "where to store")->capture_default_str();
+  other->add_option("--folder", bless->folder, "folder of the baselines")->capture_default_str();
 }
 
 void add_repro_and_verify(Subcommands& commands) {
@@ -215,24 +222,25 @@ void add_repro_and_verify(Subcommands& commands) {
 
   auto [other, verify] = commands.add(
       "verify", "metamorphic checks: relations that must hold when a scene is transformed", command_verify);
-  other->add_option("renderers", verify->renderers, "of the list (default: all of three degrees of freedom)");
+  other->add_option("renderers", verify->renderers,
+                    "names of 3-DOF renderers from `remote-touch list` (default: all)");
   add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
-  other->add_option("--junit", verify->junit, "also write JUnit's XML");
+  other->add_option("--junit", verify->junit, "also write a report in JUnit's XML format");
 }
 
 void add_live(Subcommands& commands) {
-  auto [command, live] =
-      commands.add("live", "run an experiment in real time, with a sensor and a haptic device", command_live);
+  auto [command, live] = commands.add(
+      "live", "run an experiment in real time, with a depth sensor and a haptic device", command_live);
   command
       ->add_option("experiment", live->experiment,
                    "a name from `remote-touch list`, a JSON file, or a recorded live session")
       ->required();
   add_set(command, live->overrides, "parameter=value, for example safety.max_force_N=3");
-  command->add_option("--device", live->device, "SCHEME:ADDRESS, see remote-touch devices")
+  command->add_option("--device", live->device, "haptic device, SCHEME:ADDRESS; see remote-touch devices")
       ->capture_default_str();
-  command->add_option("--depth", live->depth, "SCHEME:ADDRESS, see remote-touch devices")
+  command->add_option("--depth", live->depth, "depth sensor, SCHEME:ADDRESS; see remote-touch devices")
       ->capture_default_str();
-  command->add_option("--duration", live->duration_s, "seconds (default: until SIGINT)")
+  command->add_option("--duration", live->duration_s, "duration in seconds (default: until SIGINT)")
       ->check(between(1e-3, 1e6));
   command->add_option("--record", live->record, "record device and sensor to this HDF5 file");
   command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
@@ -243,10 +251,10 @@ void add_live(Subcommands& commands) {
                command_devices);
   auto [other, jitter] =
       commands.add("jitter", "measure the timing of the haptic loop on this machine", command_jitter);
-  other->add_option("--duration", jitter->duration_s, "seconds")
+  other->add_option("--duration", jitter->duration_s, "duration in seconds")
       ->check(between(0.01, 86400.0))
       ->capture_default_str();
-  other->add_option("--rate", jitter->rate_hz, "ticks a second")
+  other->add_option("--rate", jitter->rate_hz, "ticks per second")
       ->check(between(1.0, 100000.0))
       ->capture_default_str();
 }
@@ -271,9 +279,10 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.require_subcommand(1);
   app.set_version_flag("--version", "remote-touch " + version());
   app.fallthrough();
-  app.add_flag("-q,--quiet", line.quiet, "no progress");
-  app.add_flag("--force", line.force,
-               "write over a file that is no result of this program; never over an input");
+  app.add_flag("-q,--quiet", line.quiet, "do not show progress");
+  app.add_flag(
+      "--force", line.force,
+      "also overwrite files that are not results of this program; an input file is never overwritten");
   std::function<int()> act;
   Subcommands commands{app, line, act};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,

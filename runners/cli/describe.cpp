@@ -151,7 +151,7 @@ void print(const TraceColumn& column) {
 bool describe_trace(const std::string& name) {
   if (name != "trace") return false;
   std::puts(
-      "trace: what a run records: a row for each tick. Columns with unit, numbers in a row and meaning:");
+      "trace: what a run records, one row for each tick. For each column: unit, numbers per row, meaning:");
   std::optional<TracePart> part;
   for (const TraceColumn& column : trace_columns()) {
     if (part != column.part) std::puts(runs_with(column.part));
@@ -177,7 +177,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())
     if (name == measure.name)
-      found = std::printf("%s: a measure: %s, %s\n", measure.name, measure.meaning, measure.unit) > 0;
+      found = std::printf("%s: a measure: %s; unit: %s\n", measure.name, measure.meaning, measure.unit) > 0;
   if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
   return kDone;
 }

@@ -51,8 +51,7 @@ std::string line_of(const Claim& claim) {
 void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
   figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
                     std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +
-                    std::to_string(coarse) +
-                    " values of each axis. What is claimed of a whole map is not judged.";
+                    std::to_string(coarse) + " values of each axis. Claims about a whole map stay open.";
   for (Claim& claim : figure.claims) {
     if (!claim.of_map) continue;
     claim.verdict = Verdict::open;

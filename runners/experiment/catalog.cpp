@@ -70,46 +70,54 @@ RendererEntry renderer(const char* name, DegreesOfFreedom degrees_of_freedom, Co
 }
 
 const ScenarioEntry kScenarios[] = {
-    scenario<FlatGrid>("flat-grid", "a flat 100 x 100 cloud that rests, 4.3.1"),
+    scenario<FlatGrid>("flat-grid", "a flat 100 x 100 cloud at rest, 4.3.1"),
     scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
     scenario<MovingShape>("moving-shape",
                           "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
-    scenario<TriangleWave>("triangle-wave", "sharp edges of growing height, 4.3.3"),
+    scenario<TriangleWave>("triangle-wave",
+                           "a triangle wave of growing height at rest, with sharp edges, 4.3.3"),
     scenario<CameraScene>("camera-scene",
                           "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
-    scenario<ListedPoints>("points", "listed points that rest: one is the cloud of 5.3.1"),
+    scenario<ListedPoints>("points",
+                           "a list of points at rest; the default, one point, is the cloud of 5.3.1"),
     scenario<BeatingHeart>("beating-heart",
                            "a simulated depth camera looks down on a beating organ on a table"),
     scenario<ValveTank>("valve-tank",
                         "a simulated colour and depth camera looks at two valves in turbid water, 7.5.1"),
     scenario<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
     scenario<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
-    scenario<Wedge>("wedge", "two walls that lean apart, close on a tool and open again"),
-    scenario<MovingPlane>("moving-plane", "a flat cloud with normals that rests, then lifts a tool"),
-    scenario<Sheet>("sheet", "one flat panel with normals, to be touched from the back too"),
+    scenario<Wedge>("wedge", "two inclined walls that close on a tool and open again"),
+    scenario<MovingPlane>("moving-plane",
+                          "a flat cloud with normals that waits, then rises and lifts a tool"),
+    scenario<Sheet>("sheet", "one flat panel with normals that can be touched from both sides"),
     scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
-    scenario<SessionScene>("live-session",
-                           "the frames of a recorded live session, when the live renderer got them"),
+    scenario<SessionScene>(
+        "live-session",
+        "the frames of a recorded live session, at the times when the live renderer received them"),
 };
 
 const FixtureEntry kFixtures[] = {
-    fixture<Everywhere>("everywhere", "every point, 5.3.3"),
-    fixture<HalfSpace>("half-space", "the points on one side of a plane, 5.3.2"),
-    fixture<NearPoint>("near-point", "the points around a picked one: a place, or what a pixel sees"),
-    fixture<HueRange>("hue-range", "the points of a colour"),
-    fixture<ImageMask>("image-mask", "the points whose pixels a mask image marks"),
+    fixture<Everywhere>("everywhere", "selects every point, 5.3.3"),
+    fixture<HalfSpace>("half-space", "selects the points on one side of a plane, 5.3.2"),
+    fixture<NearPoint>("near-point",
+                       "selects the points near a given position, or near the point that a pixel sees"),
+    fixture<HueRange>("hue-range", "selects the points of a colour (a range of hues)"),
+    fixture<ImageMask>("image-mask", "selects the points whose pixels a mask image marks"),
 };
 
 const TrajectoryEntry kTrajectories[] = {
-    trajectory<Waypoints>("waypoints", "listed points, each with its speed"),
-    trajectory<Poses>("poses", "listed poses of six degrees of freedom, each with the time of the way there"),
-    trajectory<SessionHand>("live-session", "the hand of a recorded live session, tick for tick", true),
-    trajectory<RandomWalk>("random-walk", "a smooth random motion of six degrees of freedom"),
-    trajectory<Press>("press", "wait, then press a set depth into the surface, 4.3.2"),
-    trajectory<FollowSurface>("follow-surface", "along a line, a set depth below the true surface"),
-    trajectory<ImageScan>("image-scan", "along an image row, a set depth behind the first frame's surface"),
+    trajectory<Waypoints>("waypoints", "a list of positions, each with the speed of the motion to it"),
+    trajectory<Poses>(
+        "poses", "a list of poses (position and orientation), each with the duration of the motion to it"),
+    trajectory<SessionHand>("live-session", "the motion of the hand in a recorded live session, tick by tick",
+                            true),
+    trajectory<RandomWalk>("random-walk", "a smooth random motion with six degrees of freedom"),
+    trajectory<Press>("press", "waits, then presses to a given depth below the surface, 4.3.2"),
+    trajectory<FollowSurface>("follow-surface", "moves along a line at a given depth below the true surface"),
+    trajectory<ImageScan>("image-scan",
+                          "moves along an image row at a given depth behind the surface of the first frame"),
     trajectory<ImagePress>("image-press",
-                           "where a pixel looks, a set depth behind the newest frame's surface"),
+                           "presses at one pixel, at a given depth behind the surface of the newest frame"),
 };
 
 const RendererEntry kRenderers[] = {
@@ -117,20 +125,21 @@ const RendererEntry kRenderers[] = {
                                              "3-DOF point cloud proxy, chapters 4 and 5"),
     renderer<TrackedSheetRenderer, TrackedSheetParameters>(
         "tracked-sheet", DegreesOfFreedom::three, ContactModel::sheet,
-        "3-DOF proxy on a sheet that is tracked and denoised"),
-    renderer<PenaltyRenderer, PenaltyParameters>("penalty", DegreesOfFreedom::three, ContactModel::nothing,
-                                                 "a rival: direct rendering, a spring and no proxy"),
+        "3-DOF proxy on a surface that is tracked from frame to frame and denoised; beyond the dissertation"),
+    renderer<PenaltyRenderer, PenaltyParameters>(
+        "penalty", DegreesOfFreedom::three, ContactModel::nothing,
+        "3-DOF method for comparison: direct (penalty) rendering, a spring without a proxy"),
     renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
         "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
-        "a rival: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+        "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
     renderer<GodObjectRenderer, GodObjectParameters>(
         "god-object", DegreesOfFreedom::three, ContactModel::mesh,
-        "a rival: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
+        "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
     renderer<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(
         "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
-        "6-DOF forbidden regions: a tool of spheres against those around points, chapter 7"),
+        "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7"),
 };
 
 }  // namespace

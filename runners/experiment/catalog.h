@@ -1,6 +1,6 @@
 // Everything that an experiment can name. A new scenario, fixture rule, trajectory or renderer is one file
 // pair and one line here; tests/runners/experiment/contract_test.cpp, or renderer_contract_test.cpp, then
-// holds it to its seam's contract.
+// tests the contract of its interface.
 #pragma once
 
 #include <span>

@@ -9,7 +9,7 @@ namespace remote_touch {
 
 Parameters parameters(RunSettings& s) {
   return {
-      {"title", &s.title, 0, 0, "one line for lists"},
+      {"title", &s.title, 0, 0, "one line that says what this is; shown by list"},
       {"duration_s", &s.duration_s, 0, 86400, "simulated time; 0: duration of the trajectory"},
       {"haptic_rate_hz", &s.haptic_rate_hz, 100, 10000, "haptic ticks per second, f_h of (4.16)"},
       {"frame_latency_s", &s.transport.latency_s, 0, 10,
@@ -18,7 +18,7 @@ Parameters parameters(RunSettings& s) {
        "maximum additional delay, uniformly distributed for each frame; frames may overtake each other"},
       {"frame_drop_probability", &s.transport.drop_probability, 0, 1,
        "probability that a frame never arrives"},
-      {"seed", &s.key.seed, 0, 18446744073709551615.0, "seed of all noise"},
+      {"seed", &s.key.seed, 0, 18446744073709551615.0, "seed of the noise"},
       {"cell", &s.key.cell, 0, 4294967295.0, "second key of the noise: the cell of a sweep"},
       {"replicate", &s.key.replicate, 0, 4294967295.0, "third key of the noise: the replicate of a cell"},
   };

@@ -1,5 +1,5 @@
-// The way of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
-// are assigned fixtures, and it arrives late, at irregular times, or not at all.
+// The frames between scenario and renderer: the depth image is filtered, points get normals and fixtures, and
+// frames arrive late, at irregular times, or not at all.
 #pragma once
 
 #include <memory>

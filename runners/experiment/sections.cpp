@@ -251,16 +251,18 @@ Section optional_list(const char* key, const char* summary, Rule complete = null
 using C = Configuration;
 
 const Section kSections[] = {
-    top_level<&C::run>("run", "duration, rates, delays of frames, and the seed of all noise"),
+    top_level<&C::run>("run", "duration, rates, delays of frames, and the seed of the noise"),
     required<&C::scenario, scenarios>("scenario", "scenarios",
                                       "the scene: point cloud frames and the true surface behind them"),
-    optional<&C::faults>("faults", "sensor faults, for the frames of any scenario"),
-    optional<&C::depth_pipeline>("depth_pipeline", "filter of depth images and estimation of normals, 6.2.1"),
+    optional<&C::faults>("faults", "simulated sensor faults, for the frames of any scenario"),
+    optional<&C::depth_pipeline>("depth_pipeline",
+                                 "filter of depth images and estimation of surface normals, 6.2.1"),
     list_of_entries<&C::fixtures, fixtures>(
         "fixtures", "fixture rules",
-        "a list of rules that give points a forbidden region, or make them a target", check_fixtures),
+        "a list of rules that give points a forbidden region, or make them a guidance target",
+        check_fixtures),
     optional<&C::guidance>("guidance",
-                           "the spring that leads the hand to fixtures with role = guidance, 7.3.2",
+                           "the spring that pulls the hand to fixtures with role = guidance, 7.3.2",
                            complete_guidance),
     optional_list<&C::sequence>(
         "sequence", "a list of the steps of a task, which enable and disable fixtures", check_sequence),
@@ -268,9 +270,10 @@ const Section kSections[] = {
     required<&C::trajectory, trajectories>("trajectory", "trajectories", "how the hand moves"),
     optional<&C::operator_settings>(
         "operator", "a simulated hand with mass that follows the trajectory and feels the force"),
-    optional<&C::device>("device", "actuated axes of the haptic device"),
-    optional<&C::live>("live", "where device and camera stand in a run in real time"),
-    optional<&C::safety>("safety", "limits of force, torque and speed of a real haptic device"),
+    optional<&C::device>("device", "actuated axes and maximum force of the haptic device"),
+    optional<&C::live>("live", "poses of device and camera in the world, for real-time runs"),
+    optional<&C::safety>("safety",
+                         "limits of force, torque and speed of a real haptic device, for real-time runs"),
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// How far a fixture is violated when its frames come late, at irregular times or not at all: what chapter 8
-// names and does not measure.
+// How far a fixture is violated when frames arrive late, at irregular times or not at all. Chapter 8 names
+// this question and does not measure it.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
-// What a recording itself tells about a run over it, frame by frame: where the proxy is relative to the
-// measured points, and how the surface moved. By looking at every point, not with the renderer's kernels.
+// What a recording itself shows about a run over it, frame by frame: where the proxy is relative to the
+// measured points, and how the surface moved. Computed from every point, not with the renderer's kernels.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Runs of the tasks of 7.5 among the valves of the tank, and what is told about them.
+// Runs of the tasks of 7.5 among the valves of the tank, and the claims about them.
 #pragma once
 
 #include <memory>

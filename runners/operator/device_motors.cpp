@@ -25,8 +25,8 @@ Parameters parameters(MotorSettings& s) {
        "the device can exert a torque about x of the handle, which is that of the tool"},
       {"torque_y", &s.torque_y, 0, 0, "the device can exert a torque about y of the handle"},
       {"torque_z", &s.torque_z, 0, 0, "the device can exert a torque about z of the handle"},
-      {"max_force_N", &s.max_force_N, 0, 1000, "maximum of the device; 0: no limit"},
-      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum of the device; 0: no limit"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum force of the device; 0: no limit"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum torque of the device; 0: no limit"},
   };
 }
 

@@ -20,7 +20,7 @@ Parameters parameters(OperatorSettings& s) {
   return {
       {"mass_kg", &s.mass_kg, 0.01, 100, "mass of hand and handle"},
       {"inertia_kg_m2", &s.inertia_kg_m2, 1e-5, 10,
-       "moment of inertia moment of inertia of hand and handle, the same about all axes"},
+       "moment of inertia of hand and handle, the same about all axes"},
       {"stiffness_N_per_m", &s.stiffness_N_per_m, 0, 10000,
        "stiffness of the spring from the intended position to the hand"},
       {"damping_Ns_per_m", &s.damping_Ns_per_m, 0, 1000, "damping parallel to that spring"},

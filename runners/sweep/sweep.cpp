@@ -39,7 +39,7 @@ struct Sweep::Definition {
 namespace {
 
 Parameters parameters(std::string& title, int& replicates) {
-  return {{"title", &title, 0, 0, "one line for lists"},
+  return {{"title", &title, 0, 0, "one line that says what this is; shown by list"},
           {"replicates", &replicates, 1, 1e6, "runs of each cell, each with its own noise"}};
 }
 

@@ -1,5 +1,5 @@
-// A device that presses where one pixel looks, a set depth behind the surface of the newest frame: it stays
-// in touch while the camera or the scene moves.
+// A device that presses at one pixel, at a given depth behind the surface of the newest frame: it stays in
+// contact while the camera or the scene moves.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// The seam of every scripted device motion.
+// The interface of every scripted device motion.
 #pragma once
 
 #include "core/rendering/frame.h"

@@ -42,7 +42,8 @@ Parameters parameters(ValveTank::Settings& s) {
        "hue of the right valve's paint: 46 yellow, which turns towards green in the water"},
       {"turbidity_per_m", &s.turbidity_per_m, 0, 20,
        "attenuation coefficient beta of the water; 0: clear water"},
-      {"colour_noise", &s.colour_noise, 0, 128, "standard deviation of each colour channel, 0 to 255"},
+      {"colour_noise", &s.colour_noise, 0, 128,
+       "standard deviation of the noise of each colour channel, on its scale of 0 to 255"},
       {"dropout_probability", &s.dropout_probability, 0, 1,
        "probability that a pixel has no depth in clear water"},
   };

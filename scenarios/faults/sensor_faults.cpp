@@ -61,7 +61,7 @@ Parameters parameters(SensorFaults& s) {
       {"rolling_shutter_s", &s.rolling_shutter_s, 0, 10,
        "rolling shutter: time from reading the first row to the last; needs a scene whose true surface is known between frames"},
       {"flying_probability", &s.flying_probability, 0, 1,
-       "probability that a point is moved along the viewing direction"},
+       "probability that a point is a flying pixel, that is displaced along the viewing direction"},
       {"max_flying_distance_m", &s.max_flying_distance_m, 0, 100,
        "maximum displacement of such a point in either direction, uniformly distributed"},
       {"outlier_probability", &s.outlier_probability, 0, 1,

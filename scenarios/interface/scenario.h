@@ -1,4 +1,4 @@
-// The seam of every scenario: a stream of point cloud frames and what is true about the scene.
+// The interface of every scenario: a stream of point cloud frames and the ground truth of the scene.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ Parameters parameters(MovingPlane::Settings& s) {
       {"start_height_m", &s.start_height_m, -100, 100, "initial height of the plane"},
       {"wait_s", &s.wait_s, 0, 1e4, "waiting time before it rises"},
       {"speed_m_per_s", &s.speed_m_per_s, 0, 100, "initial speed of the rise"},
-      {"acceleration_m_per_s2", &s.acceleration_m_per_s2, 0, 1000, "of the rise"},
+      {"acceleration_m_per_s2", &s.acceleration_m_per_s2, 0, 1000, "acceleration of the rise"},
       {"rise_height_m", &s.rise_height_m, 0, 100, "height of the rise; the plane then stops"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
        "standard deviation of the noise on x, y and z, redrawn per frame"},

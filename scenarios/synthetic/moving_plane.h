@@ -1,4 +1,4 @@
-// A flat cloud with normals that rests and then rises: a slab that lifts a tool.
+// A flat cloud with normals that waits and then rises: a plane that lifts a tool.
 #pragma once
 
 #include <string>

@@ -19,9 +19,9 @@ Parameters parameters(Shape::Settings& s) {
       {"shape", choice(s.kind, {"flat", "ridge", "valley", "sphere", "ripple"}), 0, 0,
        "flat; ridge or valley along z; sphere: upper half of a ball; ripple: sine along x"},
       {"slope_deg", &s.slope_deg, 0, 80, "slope of the flanks of a ridge or valley"},
-      {"radius_m", &s.radius_m, 0.001, 10, "of the sphere, whose top is the origin"},
+      {"radius_m", &s.radius_m, 0.001, 10, "radius of the sphere; its top is the origin"},
       {"amplitude_m", &s.amplitude_m, 0, 1, "amplitude of the ripple"},
-      {"period_m", &s.period_m, 0.001, 10, "of the ripple along x"},
+      {"period_m", &s.period_m, 0.001, 10, "period of the ripple, along x"},
   };
 }
 

@@ -4,9 +4,9 @@ namespace remote_touch {
 
 Parameters parameters(Slot::Settings& s) {
   return {
-      {"width_m", &s.width_m, 1e-3, 10, "between the walls, along z"},
-      {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
-      {"height_m", &s.height_m, 1e-3, 10, "of the walls, along y"},
+      {"width_m", &s.width_m, 1e-3, 10, "distance between the walls, along z"},
+      {"length_m", &s.length_m, 1e-3, 10, "length of the walls, along x"},
+      {"height_m", &s.height_m, 1e-3, 10, "height of the walls, along y"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
       {"phase_m", &s.phase_m, -1, 1, "offset of the points along x"},
   };

@@ -9,12 +9,12 @@ namespace remote_touch {
 
 Parameters parameters(Wedge::Settings& s) {
   return {
-      {"angle_deg", &s.angle_deg, 0, 170, "between the walls; 0: they are parallel"},
-      {"length_m", &s.length_m, 1e-3, 10, "of the walls, along x"},
-      {"height_m", &s.height_m, 1e-3, 10, "of the walls, along their slope"},
+      {"angle_deg", &s.angle_deg, 0, 170, "angle between the walls; 0: they are parallel"},
+      {"length_m", &s.length_m, 1e-3, 10, "length of the walls, along x"},
+      {"height_m", &s.height_m, 1e-3, 10, "height of the walls, along their slope"},
       {"spacing_m", &s.spacing_m, 1e-4, 1, "distance between neighbouring points"},
       {"open_gap_m", &s.open_gap_m, 0, 10, "distance of the lower edges while open"},
-      {"closed_gap_m", &s.closed_gap_m, 0, 10, "distance of the lower edges while closed; 0: they meet"},
+      {"closed_gap_m", &s.closed_gap_m, 0, 10, "distance of the lower edges while closed; 0: they touch"},
       {"close_start_s", &s.close_start_s, 0, 1e4, "time at which the walls start to close"},
       {"close_end_s", &s.close_end_s, 0, 1e4, "time at which the walls are closed"},
       {"open_start_s", &s.open_start_s, 0, 1e4, "time at which the walls start to open again"},

@@ -1,4 +1,4 @@
-// Two walls that lean apart and close on what is between them: motions of a tool that nothing can allow.
+// Two inclined walls that close on what is between them: no motion of a tool can satisfy all constraints.
 #pragma once
 
 #include <string>

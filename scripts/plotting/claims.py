@@ -74,7 +74,9 @@ def overview(anchored):
     failed = [(anchor, claim) for anchor, claim in anchored if verdict(claim)[1] == "FAIL"]
     style = "fail" if failed else "pass"
     lines = [f'<p class="count"><span class="{style}">{words.count("pass")} of {len(words)} claims pass</span>'
-             f', {len(failed)} failed, {words.count("open")} open, {words.count("not run")} not run.</p>']
+             f', {len(failed)} failed, {words.count("open")} open, {words.count("not run")} not run.</p>',
+             "<p class=none>A claim is a statement about a figure with a criterion for a measured number. Open: measured on a "
+             "part of the runs only. Not run: a recording is missing.</p>"]
     if failed:
         items = "\n".join(f'<li><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}: '
                           f'{esc(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)

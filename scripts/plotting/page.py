@@ -80,7 +80,7 @@ def progress_box(progress):
                      for entry in progress.figures if entry["state"] != "done")
     left = f", {duration(progress.left_s)} left" if progress.left_s else ""
     return f"""<div class=progress><p>{done} of {len(progress.figures)} figures are made{left}. \
-This page fills while the others are made; it loads itself again every few seconds.</p>
+The others appear here as soon as they are made; this page reloads every few seconds.</p>
 <ul>
 {rows}
 </ul></div>"""

@@ -1,5 +1,5 @@
-// A point of a cloud as the look-ahead rule sees it: a small disk in the plane of its normal, so that corners
-// of the tool do not sink between the points of a surface. Not in the dissertation.
+// A point of a cloud in the look-ahead rule: a small disk in the plane of its normal, so that corners of the
+// tool do not sink between the points of a surface. Not in the dissertation.
 #pragma once
 
 #include "core/tool/dynamics/motion_program.h"

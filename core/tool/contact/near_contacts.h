@@ -1,4 +1,4 @@
-// What the look-ahead rule asks of a scene: everything that the tool could touch soon.
+// The input of the look-ahead rule: everything that the tool could touch soon.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ struct NearContacts {
   double deepest_m = 0;  // largest depth, below 0 where nothing is touched; -infinity: nothing is near
 };
 
-// The seam between the look-ahead rule and what holds a tool: the points of a surface, or regions.
+// The interface between the look-ahead rule and what holds a tool: the points of a surface, or regions.
 class NearContactSource {
  public:
   virtual ~NearContactSource() = default;

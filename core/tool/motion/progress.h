@@ -1,5 +1,5 @@
-// Whether a tool still comes nearer to its device within a tick: steps that lead to and fro for ever are rest
-// too, however long they are.
+// Whether a tool still comes nearer to its device within a tick. An oscillation counts as rest too, however
+// long its steps are.
 #pragma once
 
 #include <algorithm>

@@ -21,7 +21,7 @@ struct ToolMotionReport {
   Vec3 first_step_m = Vec3::Zero();
 };
 
-// The seam of the two rules.
+// The interface of the two rules.
 class ToolMotion {
  public:
   virtual ~ToolMotion() = default;

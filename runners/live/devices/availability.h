@@ -1,4 +1,4 @@
-// What `remote-touch devices` tells about an adapter.
+// What `remote-touch devices` prints about an adapter.
 #pragma once
 
 #include <string>

@@ -1,9 +1,9 @@
 // Entact's W5D and W7D, the devices of the dissertation's experiments, by the vendor's EntactAPI. Written
 // from its documentation and tried with a test double, never with a device.
 //
-// Two things differ from what the seam promises. The device tells where it is only while its motors are on,
-// and only as of the last force it was told: the first read() switches them on with no force, and a reading
-// is one tick old. And a call that the network loses waits for as long as the vendor's library does.
+// Two things differ from what the interface promises. The device tells where it is only while its motors are
+// on, and only as of the last force it was told: the first read() switches them on with no force, and a
+// reading is one tick old. And a call that the network loses waits for as long as the vendor's library does.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// What the adapters of vendors' libraries share: the force is off until the first write() and after
-// release(), and nothing that is no number passes in either direction.
+// What the adapters of vendors' libraries have in common: the force is off until the first write() and after
+// release(), and values that are not finite pass in neither direction.
 #pragma once
 
 #include <atomic>

@@ -1,6 +1,6 @@
-// The seam of every haptic device: what an adapter makes of its vendor's interface. SI units. Adapters turn
-// the vendor's axes to those of the dissertation's figures, x to the right, y up, z towards the user; where
-// the device stands in the world is none of their business.
+// The interface of every haptic device, which an adapter implements with the vendor's library. SI units.
+// Adapters convert the vendor's axes to those of the dissertation's figures: x to the right, y up, z towards
+// the user. They do not know the pose of the device in the world.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A loop that hangs cannot release its device: a separate thread does.
+// A watchdog: a loop that hangs cannot release its device, so a separate thread does.
 #pragma once
 
 #include <atomic>

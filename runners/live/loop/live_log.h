@@ -1,4 +1,4 @@
-// What a live run leaves behind: the trace, and the times and counts of its ticks.
+// The results of a live run: the trace, and the times and counts of its ticks.
 #pragma once
 
 #include <cstdint>

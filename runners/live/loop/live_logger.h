@@ -1,4 +1,4 @@
-// Takes what the servo and the camera leave: into the log, and on disk where a session is recorded.
+// Takes the data of the servo and the camera: into the log, and into a file when a session is recorded.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// Everything of a live run but its threads: a thread does no more than to call one of these steps again and
-// again. Without threads, on a clock of a test, the same steps make the same run.
+// Everything of a live run except its threads: each thread calls one of these steps repeatedly. On a
+// simulated clock the same steps make the same run without threads.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// A queue of fixed length from one thread to another without waiting.
+// A queue of fixed length between two threads, without waiting.
 #pragma once
 
 #include <atomic>

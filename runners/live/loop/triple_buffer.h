@@ -1,4 +1,4 @@
-// From one thread to another without waiting: the newest value wins.
+// Passes the newest value from one thread to another, without waiting; older values are overwritten.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The seam of every depth camera.
+// The interface of every depth camera.
 #pragma once
 
 #include <string>

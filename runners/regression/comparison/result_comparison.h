@@ -1,4 +1,4 @@
-// Two results held against each other: traces, sweeps, figures, or the running hashes of traces.
+// Comparison of two results: traces, sweeps, figures, or the running hashes of traces.
 #pragma once
 
 #include <filesystem>

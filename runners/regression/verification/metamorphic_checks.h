@@ -1,5 +1,5 @@
 // Checks of a renderer that need no known answer: each scene is played as it stands and told differently, and
-// the two answers must be related as metamorphic_relation.cpp says. Nothing but the renderer's seam is used,
+// the two answers must be related as metamorphic_relation.cpp says. Only the renderer's interface is used,
 // so whatever is added to the catalog is checked as it is.
 #pragma once
 

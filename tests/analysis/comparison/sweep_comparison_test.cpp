@@ -1,4 +1,4 @@
-// Two sweeps held against each other, on results made by hand.
+// Comparison of two sweeps, on results made by hand.
 #include "analysis/comparison/sweep_comparison.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What every entry of the catalog owes its seam. A new scenario, fixture rule or trajectory is tested here
+// The contract of every entry of the catalog. A new scenario, fixture rule or trajectory is tested here
 // from its birth, a renderer in renderer_contract_test.cpp.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What every renderer of the catalog owes its seam. A new one is tested here from its birth.
+// The contract of every renderer of the catalog. A new one is tested here too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
