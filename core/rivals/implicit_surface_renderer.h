@@ -36,7 +36,7 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
   return p.stiffness_N_per_m;
 }
@@ -46,7 +46,7 @@ inline std::string validate(const ImplicitSurfaceParameters&) {
 
 class ImplicitSurfaceRenderer final : public RivalRenderer {
  public:
-  // The rate does not matter to the method: it has no memory of time.
+  // haptic_rate_hz has no effect: the method does not depend on time.
   ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double haptic_rate_hz,
                           const Kernels& kernels);
 
@@ -66,7 +66,7 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
 
   const ImplicitSurfaceParameters p_;
   const PointSurface surface_;
-  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which surfels are to go on with; zero away from them
+  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which gives surfels their side; zero away from them
   int steps_ = 0;             // of this tick
 };
 
