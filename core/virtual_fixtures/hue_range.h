@@ -1,4 +1,4 @@
-// The points of a colour: the sensor sees what is to be protected.
+// The points of a colour, 7.3.2: objects to protect or to guide to are marked by their hue.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"
