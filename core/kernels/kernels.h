@@ -1,6 +1,6 @@
 // The inner loops over points and pixels, compiled once for each x86-64 level and chosen at run time: one
-// table of functions for each domain. Who calls a domain's kernels includes its header, e.g. depth_kernels.h;
-// who only passes the choice on includes this one.
+// table of functions for each domain. Code that calls a domain's kernels includes its header, e.g.
+// depth_kernels.h; code that only passes the choice on includes this one.
 //
 // The same bits on every level, for every order of the points: every term is computed by itself in IEEE
 // double without contraction, minima and maxima do not depend on order, and sums are exact. A sum is exact
