@@ -1,4 +1,4 @@
-// What crosses the seam between a sensor and a renderer, and between a device and a renderer.
+// The data that a renderer gets from a sensor and from a device.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace remote_touch {
 
-// What a renderer makes of a frame beforehand, see Renderer::prepare().
+// What a renderer computes from a frame in advance, see Renderer::prepare().
 class FramePreparation {
  public:
   virtual ~FramePreparation() = default;
 };
 
-// One point cloud of the stream. Latency is data: the renderer sees the frame at arrives_s.
+// One point cloud of the stream. Latency is part of the data: the renderer gets the frame at arrives_s.
 struct Frame {
   int index = 0;
   double captured_s = 0;
@@ -27,7 +27,7 @@ struct Frame {
   std::shared_ptr<const FramePreparation> prepared = nullptr;
 };
 
-// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit
+// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, one bit
 // each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
