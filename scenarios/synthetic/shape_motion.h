@@ -1,5 +1,5 @@
-// How a shape moves: a lift from frame to frame, 4.3.2, and what comes on top of it: a slide, a shake, a
-// rocking.
+// How a shape moves: a lift from frame to frame, 4.3.2, and added to it a slide, a shake and a rotation back
+// and forth.
 #pragma once
 
 #include <vector>
@@ -43,8 +43,8 @@ class ShapeMotion {
   ShapeMotion(const Settings& settings, double frame_rate_hz);
 
   ShapePose of_frame(int frame) const;
-  // The lift goes evenly from one frame's height to the next, and rests after the last; the rest follows the
-  // time.
+  // The lift is linear from one frame's height to the next, and constant after the last; the other motions
+  // are functions of time.
   ShapePose at(double time_s) const;
 
   int lift_frames() const { return static_cast<int>(height_m_.size()); }

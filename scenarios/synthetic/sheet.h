@@ -1,4 +1,4 @@
-// One panel that rests, seen from one side: to be touched from the back too.
+// One panel at rest, seen from one side only, to test contact from the back too.
 #pragma once
 
 #include <string>
