@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// Numbers, counts and enumerations, fingerprints, texts.
+// Numbers; counts and enumerations; hashes; texts.
 using Values = std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::uint64_t>,
                             std::vector<std::string>>;
 

@@ -13,7 +13,7 @@ namespace remote_touch {
 // The deviation of a row, a number or a vector, is the length of its difference, in the column's units; it is
 // inside when it is at most absolute + relative * |the baseline's row|.
 //
-// Numbers are equal as tolerance.h says. Names (enumerations), texts and fingerprints are equal or outside.
+// Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are equal or outside.
 // Different kinds, widths, units, value names or lengths are a problem, and so are no rows at all; the rows
 // that both have are compared all the same.
 struct ColumnComparison {

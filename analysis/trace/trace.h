@@ -26,7 +26,7 @@ struct Trace {
   struct Truth {
     double proxy_distance_m = 0;   // to the true surface, of the proxy
     double slave_distance_m = 0;   // and of the slave's command
-    std::uint64_t frame_hash = 0;  // fingerprint of the newest frame delivered, 0 where it was not made
+    std::uint64_t frame_hash = 0;  // of the newest frame delivered; 0 if it was not computed
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});

@@ -58,7 +58,7 @@ struct PixelRow {
 
 inline constexpr double kMaxDepth_m = 1000;  // a depth of this or more is a hole
 
-// Where a row of a cloud goes.
+// Destination of one row of a cloud.
 struct CloudRow {
   double* x;
   double* y;

@@ -40,8 +40,8 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
            static_cast<std::uint32_t>(key.replicate)}};
 }
 
-// The random words of one point of the stream, as numbers evenly spread in (0, 1); the normals of the same
-// point are made of the same words.
+// The random words of one point of the stream, as numbers uniform in (0, 1); the normals of the same point
+// are made from the same words.
 std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
 
 // A condition on a normal, at least min (or, where towards is below 0, at most -min), as a condition on the

@@ -27,8 +27,8 @@ struct Frame {
   std::shared_ptr<const FramePreparation> prepared = nullptr;
 };
 
-// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, one bit
-// each.
+// The haptic interface point (HIP), world frame, the orientation that takes the handle's axes to the world,
+// and the buttons of the handle that are down, one bit each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();

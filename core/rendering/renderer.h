@@ -12,8 +12,8 @@ namespace remote_touch {
 
 enum class ContactState { free = 0, contact = 1, entrenched = 2 };
 
-// Why an output is not an ordinary one. device_not_finite also stands for a HIP more than 1000 km away. The
-// most serious reason wins.
+// Why an output is not an ordinary one; the most serious reason is reported. device_not_finite includes a HIP
+// more than 1000 km away.
 enum class RenderStatus {
   ok = 0,
   stale_frame_dropped = 1,
@@ -33,7 +33,7 @@ struct ToolOutput {
   double tool_penetration_m = 0;  // of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
   bool budget_exhausted = false;  // the tick ended before the tool had converged
-  int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
+  int disabled_points = 0;        // of the newest frame, without a normal; TouchRule::voxels ignores them
 };
 
 // What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.

@@ -62,7 +62,7 @@ class GodObjectRenderer final : public RivalRenderer {
 
   const GodObjectParameters p_;
   GridMesh mesh_;
-  Vec3 meshed_W_ = Vec3::Zero();  // the middle of the mesh, while it is meshed
+  Vec3 meshed_W_ = Vec3::Zero();  // centre of the ball in which mesh_ is valid, if is_meshed_
   bool is_meshed_ = false;
   int columns_ = 0;  // of the newest frame
   PlaneConstraints planes_;

@@ -1,5 +1,5 @@
-// Along which axis a cloud is thinnest: the smallest eigenvalue of a symmetric matrix, by cyclic Jacobi
-// rotations in plain double. Eigen's solver gives other last bits on other x86-64 levels.
+// The axis along which a cloud is thinnest: the eigenvector of the smallest eigenvalue of a symmetric matrix,
+// by cyclic Jacobi rotations in plain double. Eigen's solver differs in the last bits between x86-64 levels.
 #pragma once
 
 #include <Eigen/Core>

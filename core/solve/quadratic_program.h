@@ -1,7 +1,7 @@
 // The point nearest to a target among those that fulfil linear inequalities: (6.4) subject to (6.5) in the
 // coordinates y = M^(1/2) a_g, where the kinetic distance is the Euclidean one. Dual active set method of
-// Goldfarb and Idnani (1983): it starts at the target and takes in the row violated most; rows that pull
-// instead of push then leave, and may come back. Of fixed size: nothing allocates after construction.
+// Goldfarb and Idnani (1983): it starts at the target and adds the row violated most; rows whose multiplier
+// would become negative then leave, and may come back. Of fixed size: nothing allocates after construction.
 #pragma once
 
 #include <Eigen/Core>

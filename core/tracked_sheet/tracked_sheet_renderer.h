@@ -2,9 +2,9 @@
 // frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
 //
 // Each frame: the sheet in front of the proxy is found again where its motion predicts it and registered to
-// the frame before; a proxy that it holds back is carried with it, a free one only when the sheet swept over
-// it; its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of
-// the proxy, with the measured velocity in (4.15).
+// the frame before; a proxy that it holds back moves with it, a free one only when the sheet swept over it;
+// its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of the
+// proxy, with the measured velocity in (4.15).
 #pragma once
 
 #include <limits>

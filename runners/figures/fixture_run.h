@@ -14,7 +14,7 @@ inline constexpr double kProxyContactRadius_m = 0.005;
 
 struct FixtureRun {
   Trace trace;
-  std::unique_ptr<Scenario> scenario;  // what the trace was made with, to ask for its truth
+  std::unique_ptr<Scenario> scenario;  // of the run, for its ground truth
   std::vector<double> radius_m;        // of each tick: r_f of the frame in use
 
   // When the frame that the renderer has in tick i was captured.

@@ -39,7 +39,7 @@ class ImagePress final : public Trajectory {
   const Scenario& scenario_;
   ImageLayout image_;
   int row_ = 0, column_ = 0;
-  mutable std::map<int, double> depths_;  // by frame: ticks ask for the same one many times
+  mutable std::map<int, double> depths_;  // cache, by frame: many ticks use the same one
 };
 
 Parameters parameters(ImagePress::Settings& s);

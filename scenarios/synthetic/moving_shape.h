@@ -1,5 +1,5 @@
-// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: what renderers are
-// compared on beside the lifts of 4.3.2.
+// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: for comparing
+// renderers on more than the lifts of 4.3.2.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace remote_touch {
 
-// The points are the grid's nodes on the shape, row after row, sheet after sheet, carried along by the
-// motion; noise is added in the world frame. A small grid is a patch, its border an edge to slide over. A
-// flat lift has the same bits as a moving-lift of the same settings.
+// The points are the grid's nodes on the shape, row by row, sheet by sheet, moved by the motion; noise is
+// added in the world frame. A small grid is a patch, its border an edge to slide over. A flat lift has the
+// same bits as a moving-lift of the same settings.
 class MovingShape final : public Scenario {
  public:
   enum class Truth { newest_frame, moving };

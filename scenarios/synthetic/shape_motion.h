@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// The frame S of a shape in the world: at (x, y, 0), turned about z (from x to y).
+// The pose of a shape's frame S in the world: origin at (x, y, 0), rotated about z (from x to y).
 struct ShapePose {
   double x_m = 0, y_m = 0;
   double sine = 0, cosine = 1;
@@ -49,7 +49,7 @@ class ShapeMotion {
 
   int lift_frames() const { return static_cast<int>(height_m_.size()); }
   bool ever_rests() const;
-  bool is_a_lift_alone() const;  // neither turned nor moved along x
+  bool is_a_lift_alone() const;  // neither rotated nor moved along x
 
  private:
   double lift_m(double time_s) const;

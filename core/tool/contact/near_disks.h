@@ -26,7 +26,8 @@ class NearDisks {
   bool is_flat(std::size_t i) const { return slope_[i] < kFlatSlope; }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
-  // cell_and_octant() of its centre and the direction out of the tool there.
+  // cell_and_octant() of its centre and the direction against the gradient, in which a contact there would
+  // push.
   std::uint64_t cell(std::size_t i) const { return cell_[i]; }
   SurfaceDisk disk(std::size_t i) const {
     return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};

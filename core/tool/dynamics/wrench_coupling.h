@@ -25,8 +25,8 @@ inline WrenchSpring coupling_of(const ToolParameters& p, double stiffness_N_per_
   return {stiffness_N_per_m, p.gyration_radius_m, p.max_force_N, p.max_torque_Nm, p.torque_rule};
 }
 
-// The transpose of the inverse left Jacobian J^-1 of a rotation vector phi, which takes the derivative of an
-// energy by phi to a torque: R(phi') = exp(delta) R(phi) gives phi' - phi = J^-1 delta. pre: |phi| < 2 pi.
+// The inverse left Jacobian J^-1 of a rotation vector phi: R(phi') = exp(delta) R(phi) gives phi' - phi =
+// J^-1 delta. Its transpose takes the derivative of an energy by phi to a torque. pre: |phi| < 2 pi.
 Eigen::Matrix3d inverse_left_jacobian(const Vec3& phi);
 
 // (6.9), f = K M a_gu: a spring that pulls the hand from the device's pose towards the tool's. By default it

@@ -65,7 +65,7 @@ class HapticDevice {
 
   // read() and write() are called within a tick; no allocation, no lock, no wait beyond the vendor's call.
   virtual DeviceFault read(DeviceReading& reading) noexcept = 0;
-  // Force on the hand, device axes; the caller has already limited it.
+  // Wrench on the hand, device axes; the caller has already limited it.
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
   // Zero force from now on, even if another thread hangs in a tick; read() and write() may return kReleased.

@@ -14,8 +14,8 @@ namespace remote_touch {
 // field of view. Colour is used if the camera registers depth to it, from the frame nearest in time. Of
 // frames that come between two calls of next() only the newest is kept.
 //
-// A recording plays at its own speed, once. Its colour is not used, because it does not say whether its depth
-// was registered.
+// A recording plays at its own speed, once. Its colour is not used, because it does not contain whether its
+// depth was registered.
 //
 // Opening the first camera changes the working folder of the process for a moment, while the library loads
 // its drivers: open it before other threads use relative paths. Take the frames of all cameras in one and the
