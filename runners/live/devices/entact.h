@@ -1,5 +1,5 @@
-// Entact's W5D and W7D, the devices of the dissertation's experiments, through the vendor's EntactAPI.
-// Written from its documentation and tested with a test double, never with a device.
+// Entact's W5D, the device of 7.5, and W7D, through the vendor's EntactAPI. Written from its documentation
+// and tested with a test double, never with a device.
 //
 // Two things differ from the contract of HapticDevice. The device reports its pose only while its motors are
 // on, and only as of the last force command: the first read() switches them on with zero force, and a reading

@@ -1,5 +1,5 @@
-// Touch, Touch X and the Phantoms before them, through the HD library of the vendor's OpenHaptics. Written
-// from its documentation and tested with a test double, never with a device.
+// Touch, Touch X and the Phantoms before them, such as the Omni of 4.3 and 6.3, through the HD library of the
+// vendor's OpenHaptics. Written from its documentation and tested with a test double, never with a device.
 //
 // The vendor's scheduler drives run(). If it does not start or stops calling, the cycle gets a fault with its
 // readings; release() reaches the device even if a callback hangs.
