@@ -41,7 +41,7 @@ class Buffer {
 // whatever the search produced: no result depends on it.
 class GatheredPoints {
  public:
-  // Allocates for every point of a cloud; does nothing if there is enough already.
+  // Sets the columns, with capacity for every point of a cloud; allocates only if they are shorter.
   void reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness);
   void clear() { count_ = 0; }
   // Appends those points of the run whose regions meet the ball. pre: reserve() for the run's cloud.

@@ -19,8 +19,8 @@ struct ChosenPair {
 };
 
 // All pairs of one leaf limit the motion of one point, its centre. From the deepest on, a pair is kept unless
-// one already kept makes it redundant: pair j with the gap g_j is dropped if there is a deeper one i with g_j
-// - g_i >= |n_j - n_i| m, because then no motion up to the length m that obeys i violates j.
+// one already kept makes it redundant: pair j with the gap g_j is dropped if some deeper pair i has g_j - g_i
+// >= |n_j - n_i| m, because then no motion up to the length m that obeys i violates j.
 //
 // As long as the leaf is no deeper than half the look-ahead, m is that half, which is what it moves in a
 // step: nothing is lost that a step could run into. A looser rule would be wrong: in the obtuse crease of two

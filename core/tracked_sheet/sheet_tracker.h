@@ -36,7 +36,7 @@ struct SheetUpdate {
 class SheetTracker {
  public:
   SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels);
-  // For frames of so many points; does nothing if there is capacity already.
+  // For frames of so many points; allocates only if there was less capacity.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
   // A new frame, interval_s after the one before.

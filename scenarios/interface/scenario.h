@@ -42,7 +42,7 @@ class Scenario {
   // The newest frame captured by then, with a tolerance of kSameTime_s for rounded times.
   int newest_frame(double time_s) const;
 
-  // What a renderer touches. The noise of a point may be computed only when the point is gathered.
+  // What a renderer touches. The noise of a point may be computed late, when a search gathers the point.
   virtual std::shared_ptr<const NeighbourSearch> points(int frame) const = 0;
   // The same frame with every point computed: for drawing, for planning a path and as the oracle of points().
   virtual PointCloud cloud(int frame) const = 0;

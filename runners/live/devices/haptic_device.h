@@ -55,7 +55,7 @@ class DeviceCycle {
 class HapticDevice {
  public:
   explicit HapticDevice(Clock& clock) : clock_(clock) {}
-  virtual ~HapticDevice() = default;  // releases and closes the device
+  virtual ~HapticDevice() = default;  // of an adapter: releases and closes the device
 
   virtual const DeviceTraits& traits() const = 0;
 

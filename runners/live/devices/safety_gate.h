@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// The limits, reduced to at most 0.9 of the device's maximum values.
+// The limits, with max_force_N and max_torque_Nm reduced to 0.9 of the device's, if it reports them.
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits);
 
 enum class GateState { waiting, ramping, engaged, latched };
