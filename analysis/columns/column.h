@@ -1,4 +1,4 @@
-// Named columns of numbers or texts with units: what results are stored in and what analyses read.
+// Named columns of numbers or texts with units: the form in which results are stored and read.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace remote_touch {
 
-// Numbers, counts and enumerations, fingerprints, texts.
+// Numbers; counts and enumerations; hashes; texts.
 using Values = std::variant<std::vector<double>, std::vector<std::int32_t>, std::vector<std::uint64_t>,
                             std::vector<std::string>>;
 
-// length * width values, row after row; width 3 for a vector. Integers may carry names (an enumeration).
+// length * width values, row by row; width 3 for a vector. Integers may have names (an enumeration).
 struct Column {
   std::string name;
   std::string units;  // SI symbol, "1" for a pure number

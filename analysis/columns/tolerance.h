@@ -13,12 +13,12 @@ struct Tolerance {
   bool operator==(const Tolerance&) const = default;
 };
 
-// By name; "*" is for those that are not named, and exact where there is none.
+// By name; "*" is for all other names. Exact if neither is there.
 using Tolerances = std::map<std::string, Tolerance>;
 Tolerance tolerance_of(const Tolerances& tolerances, const std::string& name);
 
-// Numbers are equal when == says so (0 and -0 are), and NaN equals NaN. NaN or infinity against another
-// number is outside whatever the tolerance.
+// Numbers are equal as by == (so 0 and -0 are), and NaN equals NaN. NaN or infinity against any other number
+// is outside, whatever the tolerance.
 bool within(const Tolerance& tolerance, double baseline, double candidate);
 
 }  // namespace remote_touch

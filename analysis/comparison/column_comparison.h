@@ -13,9 +13,9 @@ namespace remote_touch {
 // The deviation of a row, a number or a vector, is the length of its difference, in the column's units; it is
 // inside when it is at most absolute + relative * |the baseline's row|.
 //
-// Numbers are equal as tolerance.h says. Names (enumerations), texts and fingerprints are equal or outside.
-// Columns of other kinds, widths, units, names of values or lengths are a problem, and so are no rows at all;
-// rows that both have are compared all the same.
+// Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are equal or outside.
+// Different kinds, widths, units, value names or lengths are a problem, and so are no rows at all; the rows
+// that both have are compared all the same.
 struct ColumnComparison {
   std::string name, units;
   Tolerance tolerance;
@@ -24,7 +24,7 @@ struct ColumnComparison {
   std::size_t rows = 0;         // compared
   std::size_t outside = 0;      // of them
   std::size_t not_numbers = 0;  // rows outside because of a NaN or an infinity
-  double max = 0, rms = 0;      // of the finite deviations, in units; 0 for what is equal or not
+  double max = 0, rms = 0;      // of the finite deviations, in units; 0 for names, texts and hashes
   std::optional<std::size_t> first_difference = {}, first_outside = {};
 
   bool is_same() const { return problem.empty() && rows > 0 && outside == 0; }
@@ -33,7 +33,7 @@ struct ColumnComparison {
 ColumnComparison compare_columns(const Column& baseline, const Column& candidate, const Tolerance& tolerance);
 
 // The deviation of every row that both have; NaN where one has a NaN or an infinity and the other does not,
-// and 1 or 0 for what is equal or not.
+// and for names, texts and hashes 0 if equal, else 1.
 std::vector<double> deviations(const Column& baseline, const Column& candidate);
 
 }  // namespace remote_touch

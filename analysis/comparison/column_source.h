@@ -1,4 +1,4 @@
-// Columns to compare: in a file, of which only those at hand are read, or in memory.
+// Columns to compare: in a file, read one at a time as needed, or in memory.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ class ColumnSource {
   bool has(const std::string& name) const;
 };
 
-// Throws InputError for a file that is no trace, is of another version of the layout, or is not as it was
-// written.
+// Throws InputError for a file that is not a trace, has another version of the layout, or was changed since
+// it was written.
 class StoredTrace final : public ColumnSource {
  public:
   explicit StoredTrace(Hdf5Reader hdf5);

@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 // One panel for each column that differs, at most 8, in the trace's order: the decimal logarithm of the
-// largest deviation in each of up to 2000 pieces of time (absent where there is none), and the first
+// largest deviation in each of up to 2000 intervals of time (no sample where nothing differs), and the first
 // divergent tick.
 Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candidate,
                         const TraceComparison& comparison);

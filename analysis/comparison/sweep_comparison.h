@@ -1,9 +1,9 @@
 // Comparison of two finished sweeps of the same definition.
 //
-// Noise is keyed by seed, cell and replicate: the same run of both met the same noise, so they are a pair.
+// Noise is keyed by seed, cell and replicate: the same run of both has the same noise, so they are a pair.
 // Where nothing changed, pairs are equal to the last bit. Where something did, single runs near a limit are
-// chaotic: a last bit flips some of them, in either direction alike. So there are two verdicts: an exact
-// one, and one by paired tests, which tells such flips from a change of what happens.
+// chaotic: a last bit flips some of them, in either direction alike. So there are two verdicts: an exact one,
+// and one by paired tests, which distinguishes such flips from a systematic change.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct MeasureComparison {
   std::string name, units;
   Tolerance tolerance;
   // All finite values of the baseline are 0 or 1 (and those of the candidate, where the baseline has no 1):
-  // the share of 1 is a probability.
+  // the fraction of 1 is a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
@@ -43,7 +43,7 @@ struct FirstDifference {
 enum class Judgement {
   equal,          // every pair is within the tolerance
   within_margin,  // the intervals of the differences lie within the margins
-  changed,        // one direction prevails: adjusted p < alpha, whatever the margins; or a number is none now
+  changed,        // one direction prevails: adjusted p < alpha, whatever the margins; or a number became NaN
   undecided       // none of these
 };
 
@@ -58,7 +58,7 @@ struct RegionComparison {
   std::int64_t up = 0, down = 0;
   std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
 
-  // Events only: how often in either, with Wilson's intervals of the shares of pairs.
+  // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
   // Other measures only: over all pairs, in the measure's unit; and the baseline's standard deviation.
@@ -66,17 +66,17 @@ struct RegionComparison {
   double baseline_spread = 0;
 
   double sign_p = 1;
-  double symmetry_p = 1;  // over the pairs outside; 1 for an event, where it tells nothing more
+  double symmetry_p = 1;  // over the pairs outside; 1 for an event, where it adds nothing
   double adjusted_p = 1;  // the smaller of the two, adjusted for all tests of all regions and measures
   Judgement judgement = Judgement::undecided;
 };
 
 struct PairedRule {
-  double margin = 0.02;  // of a difference of shares of an event
-  // Of other measures: of the share that got larger less the share that got smaller, and of the mean
-  // difference in units of the baseline's standard deviation.
+  double margin = 0.02;  // of a difference of two fractions of an event
+  // Of other measures: of the fraction of runs that got larger less the fraction that got smaller, and of the
+  // mean difference in units of the baseline's standard deviation.
   double shift_margin = 0.1;
-  double alpha = 0.01;  // probability of calling anything changed where nothing is
+  double alpha = 0.01;  // probability of a false "changed" anywhere
 };
 
 enum class ExactVerdict {
@@ -87,20 +87,21 @@ enum class ExactVerdict {
 
 // In this order, the first that holds; equal and within_margin are a pass.
 //
-// A pass beside equal has to be shown, not only not refuted: over the whole, every measure that differs
+// Any pass but equal must be demonstrated, not merely not refuted: over the whole, every measure that differs
 // anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
-// with one flip, and more with more; 4 runs of which one differs are undecided, 5396 with 30 flips evenly
-// both ways are known to +-0.2 %. It needs no correction for the number of measures, as all of them have to
-// pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: a change that is
-// lost in the flips of the whole is found where it is. What a pass does not exclude in a part is what the
-// part's interval says. For measures that are no events: the share of runs that got larger less the share
-// that got smaller (about 400 runs where all differ, both ways alike), and the mean difference in units of
-// how far the baseline's runs lie apart, so that few runs that got much worse are no pass. A tolerance takes
-// away what does not matter. A systematic change, however small, is changed. A number against none is
-// changed. Of a refined sweep the first round is judged: which runs follow depends on what came out.
+// with one flip, and more runs with more flips; 4 runs of which one differs are undecided, 5396 with 30 flips
+// evenly both ways are known to +-0.2 %. It needs no correction for the number of measures, because all of
+// them must pass. Parts have fewer runs, so an undecided part fails nothing, but a changed one does: this
+// finds a local change that the flips of the whole would hide. What a pass does not exclude in a part, the
+// part's interval shows. Measures that are not events are judged by the fraction of runs that got larger less
+// the fraction that got smaller (about 400 runs if all differ, both ways alike), and by the mean difference
+// in units of the standard deviation of the baseline's runs, so that a few runs that got much worse prevent a
+// pass. Differences within a tolerance do not count. A systematic change, however small, is "changed", and so
+// is a number that became NaN. Of a refined sweep only the first round is judged, because the later rounds
+// depend on the results.
 enum class PairedVerdict {
   not_comparable,
-  runs_missing,   // some runs of the first round are done in one only, which no test excuses
+  runs_missing,   // some runs of the first round are done in one sweep only
   equal,          // as ExactVerdict
   changed,        // some measure in some region
   undecided,      // some measure over the whole
@@ -108,9 +109,9 @@ enum class PairedVerdict {
 };
 
 struct SweepComparison {
-  // Why the two are not comparable, a line each. Nothing below is set then but notes and the lists of runs.
+  // Why the two are not comparable, a line each. Then only the notes and the lists of runs below are set.
   std::vector<std::string> problems;
-  std::vector<std::string> notes;  // what does not matter to the verdicts, a line each
+  std::vector<std::string> notes;  // differences without effect on the verdicts, a line each
   std::size_t done_in_both = 0;
   std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, rising
   std::vector<MeasureComparison> measures;                 // those of the baseline
@@ -126,10 +127,10 @@ struct SweepComparison {
 };
 
 // Comparable are sweeps of the same axes (name, parameter, unit, and values to the bit), the same number of
-// replicates, and all measures of the baseline in the same order and units; the candidate may have others.
-// At least one run is done in both. What is within its tolerance counts as equal in every test. Rounds of
-// refinement and texts of errors are not compared. pre: the same noise in both (one seed); arrays are over
-// all runs, as read_sweep gives them; tolerances, margin and alpha are not negative.
+// replicates, and all measures of the baseline in the same order and units; the candidate may have others. At
+// least one run is done in both. Values within their tolerance count as equal in every test. Rounds of
+// refinement and error texts are not compared. pre: the same noise in both (one seed); arrays are over all
+// runs, as read_sweep gives them; tolerances, margin and alpha are not negative.
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
                         const Tolerances& tolerances = {}, const PairedRule& rule = {});
 

@@ -1,5 +1,5 @@
-// The running hash of a trace without the trace: a small file that is copied from one machine to another to
-// find the first tick at which two runs differ. 8 bytes a tick, or less when only every n-th is stored.
+// The running hash of a trace without the trace, to be sent to another machine and find the first tick at
+// which two runs differ. 8 bytes a tick, or less when only every n-th is kept.
 #pragma once
 
 #include <filesystem>
@@ -27,8 +27,8 @@ struct StoredHashes {
 };
 StoredHashes read_hashes(const std::filesystem::path& file);  // throws InputError for any other file
 
-// Over the ticks that both have. Runs are the same up to `same`, and differ at `different`, both included;
-// what lies between is not known.
+// Over the ticks that both have. The runs are equal up to and including tick `same`, and differ from tick
+// `different` on; the ticks between were not stored.
 struct HashComparison {
   std::size_t compared = 0;
   std::optional<int> same, different;

@@ -1,4 +1,4 @@
-// Two traces side by side: what differs, from when on, and in what situation it began.
+// Comparison of two traces: what differs, from which tick on, and in what situation it began.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace remote_touch {
 
-// In what situation two runs part, looked at in this order. The situation is a fact of the two traces at the
-// first tick at which any value differs; what in the program brought it about is for the reader to find.
+// The situation in which two runs begin to differ; the first that applies, in this order. It describes the
+// two traces at the first tick at which any value differs, not the reason in the program.
 enum class Cause {
   configuration,  // the experiments are not the same
   input,          // what the renderer was given: time, HIP, a frame (points, time of capture); or the truth
-  frame_update,   // inputs are the same, and a frame came in with this tick, or one did not take it
-  state_transition,  // none came, and the proxy's state differs, or changed with this tick
+  frame_update,   // inputs are the same, and a frame came in with this tick, or one run did not take it
+  state_transition,  // no frame came, and the proxy's state differs, or changed with this tick
   drift              // none of these: within a steady state
 };
 const char* name_of(Cause cause);
@@ -26,15 +26,15 @@ struct Divergence {
   std::size_t tick = 0;                     // the first with a value outside its tolerance
   double time_s = 0;                        // of the baseline; 0 where it has none
   std::string quantity;                     // the column, the first in the trace's order
-  double deviation = 0;                     // there, in its units; NaN against a number: NaN
+  double deviation = 0;                     // there, in its units; NaN if one of the values is NaN
   std::size_t first_difference = 0;         // the first tick with any difference, inside or not; at most tick
   Cause cause = Cause::drift;               // configuration, where the experiments differ; else the situation
   std::string explanation;                  // one line
-  Cause situation = Cause::drift;           // at the tick where they parted
-  std::string observation;                  // one line: what was seen there
+  Cause situation = Cause::drift;           // at first_difference
+  std::string observation;                  // one line: what differs there
   std::string frame;                        // one line: the frames before and after
-  std::size_t first_row = 0;                // of the rows below: parted - 1, or 0
-  std::vector<Column> baseline, candidate;  // rows first_row .. parted of every column that both have
+  std::size_t first_row = 0;                // of the rows below: first_difference - 1, or 0
+  std::vector<Column> baseline, candidate;  // rows first_row .. first_difference of the common columns
 };
 
 struct TraceComparison {
@@ -44,11 +44,11 @@ struct TraceComparison {
   bool is_same() const;
 };
 
-// The columns of two sources by name; no divergence is looked for.
+// Compares the columns of two sources by name; does not search for a divergence.
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const Tolerances& tolerances);
 
-// configuration: differences between the experiments that made them, one text each. The running hash is not
+// configuration: differences between the experiments of both traces, one text each. The running hash is not
 // compared: it follows from the others. A column that only the baseline has is a problem of that column.
 // Holds two columns at a time.
 TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,

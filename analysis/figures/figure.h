@@ -1,4 +1,4 @@
-// What an analysis hands over for a figure: tables, how to draw them, and claims with their verdicts.
+// The result of an analysis as a figure: tables, how to draw them, and claims with their verdicts.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace remote_touch {
 
-// squares: filled cells of a map, as large as the samples lie apart; map: the same coloured by z; band: from
-// y to z; image: a pixel in every cell of a grid, of the colour z = 0xRRGGBB.
+// squares: filled cells of a map, as large as the distance of the samples; map: the same coloured by z; band:
+// from y to z; image: one pixel for every cell of a grid, of colour z = 0xRRGGBB.
 enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band, image };
 
 struct Curve {
@@ -31,14 +31,14 @@ struct Panel {
   std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
 };
 
-// open: measured, but on a part of what the claim is about.
+// open: measured, but only on a part of the claim's range.
 enum class Verdict { pass, fail, open, not_run };
 
-// One statement of the paper, or of this project, held against a measurement. A claim that fails stays in the
-// list.
+// One statement of the paper, or of this project, compared with a measurement. A claim that fails stays in
+// the list.
 struct Claim {
   std::string figure, claim;
-  std::string paper;  // the paper's value as text; "-" where it has none
+  std::string paper;  // the paper's value as text; "-" if it has none
   double measured = 0;
   std::string criterion;  // in words, with numbers
   std::string unit;

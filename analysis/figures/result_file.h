@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// What of a result's root attributes tells where it came from: all that its writer does not add by itself.
+// The root attributes of a result that describe its provenance: all that its writer does not add itself.
 TextAttributes provenance_of(const TextAttributes& attributes);
 
 // columns: of Trace::columns(). provenance: config, command, version and so on, as root attributes. Adds

@@ -1,5 +1,5 @@
-// Measures of a run with contact, computed from its trace: where the rendered surface lies above the true
-// one, how steady the force is and when it ends, and the energy that the hand receives.
+// Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
+// one, how steady the force is and when it ends, and the energy given to the hand.
 #pragma once
 
 #include "analysis/trace/trace.h"
@@ -12,23 +12,22 @@ namespace remote_touch {
 double mean_height_m(const Trace& trace);
 double height_sd_m(const Trace& trace);
 // Distance of the centre to the true surface, over the ticks with a force and a known truth: mean and
-// standard deviation, m; NaN without any. Unlike the height it asks nothing about points, so that it compares
-// renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
+// standard deviation, m; NaN without any. Unlike the height it does not depend on the points, so it can
+// compare renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
 double mean_distance_m(const Trace& trace);
 double distance_sd_m(const Trace& trace);
-// Distance of the centre to the true surface in the last tick, m, negative behind it; NaN where it is not
-// known.
+// Distance of the centre to the true surface in the last tick, m, negative behind it; NaN if it is not known.
 double end_distance_m(const Trace& trace);
-// Share of the ticks with a force.
+// Fraction of the ticks with a force.
 double force_fraction(const Trace& trace);
 // Time of the last tick with a force, s; NaN without any.
 double last_force_time_s(const Trace& trace);
-// Root mean square change of the force from one tick to the next while there is force on both sides, N: over
-// those where a new frame came in, and over the others. NaN without any.
+// Root mean square change of the force from one tick to the next, if there is force in both, N: over the
+// ticks with a new frame (jump), and over the others (noise). NaN without any.
 double rms_force_jump_N(const Trace& trace);
 double force_noise_N(const Trace& trace);
-// Work that the rendered force does on the hand: the sum of force . way of the HIP until the next tick, J.
-// Below 0 where the hand did more work on the surface.
+// Work that the rendered force does on the hand: the sum of force . displacement of the HIP until the next
+// tick, J. Negative if the hand did more work on the surface.
 double energy_injected_J(const Trace& trace);
 
 }  // namespace remote_touch

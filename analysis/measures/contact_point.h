@@ -1,4 +1,4 @@
-// Where the proxy touches: the point of its contact radius that faces the surface.
+// The contact point: the point on the sphere of radius r_c around the proxy that faces the surface.
 #pragma once
 
 #include "analysis/trace/trace.h"
@@ -10,7 +10,7 @@ inline Vec3 contact_point(const Trace& trace, std::size_t i, double contact_radi
   return trace.proxy_position_m[i] - contact_radius_m * trace.normal[i];
 }
 
-// The HIP is held back from where it wants to be.
+// The surface holds the proxy back: the HIP is more than 1.01 r_c away from it.
 inline bool pressing(const Trace& trace, std::size_t i, double contact_radius_m) {
   return (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm() > 1.01 * contact_radius_m;
 }

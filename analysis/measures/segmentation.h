@@ -7,28 +7,28 @@
 
 namespace remote_touch {
 
-// Counts of pixels with depth; those without cannot be points of a fixture and are counted apart.
+// Counts of pixels with depth; those without cannot be points of a fixture and are counted separately.
 struct SegmentationScore {
-  int right = 0;   // of the class, and picked
-  int missed = 0;  // of the class, not picked
-  int wrong = 0;   // picked, of another class
+  int right = 0;   // of the class, and selected
+  int missed = 0;  // of the class, not selected
+  int wrong = 0;   // selected, of another class
   int of_class_without_depth = 0;
 
   SegmentationScore& operator+=(const SegmentationScore& other);
 
   int picked() const { return right + wrong; }
-  // Shares; NaN where there is nothing to share: no pixel of the class, nothing picked.
-  double recall() const;          // of the pixels of the class with depth: picked
-  double precision() const;       // of the pixels picked: of the class
-  double depth_fraction() const;  // of all pixels of the class: with depth
-  // Wilson's 95 % intervals of the first two, as if each pixel were decided by itself. They tell how many
-  // pixels were counted; a hue at the edge of a range errs for a whole surface at once, and the same pixel in
-  // several frames is not several pixels.
+  // Fractions; NaN if the denominator is 0: no pixel of the class, or none selected.
+  double recall() const;          // selected fraction of the pixels of the class with depth
+  double precision() const;       // fraction of the selected pixels that are of the class
+  double depth_fraction() const;  // fraction of all pixels of the class that have a depth
+  // Wilson's 95 % intervals of the first two, as if pixels were independent. They reflect the number of
+  // pixels only: a hue at the edge of a range is wrong for a whole surface at once, and the same pixel in
+  // several frames is not several independent pixels.
   std::pair<double, double> recall_interval() const;
   std::pair<double, double> precision_interval() const;
 };
 
-// An entry for each pixel in all three. Throws std::invalid_argument where they differ in length.
+// All three have an entry for each pixel. Throws std::invalid_argument if their lengths differ.
 SegmentationScore score_segmentation(const std::vector<char>& picked, const std::vector<char>& of_class,
                                      const std::vector<char>& has_depth);
 

@@ -1,5 +1,5 @@
-// A scorecard: the result of each method in each scene at each noise level, with intervals, and which method
-// is significantly best or worst.
+// A scorecard: the results of each method in each scene, at each noise level, with intervals, and which
+// methods are significantly best or worst.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// A share of runs with Wilson's interval; runs that are one and the same (Repeats) count once.
+// A fraction of runs with Wilson's interval; runs that are one and the same (Repeats) count once.
 struct Proportion {
   int events = 0, runs = 0;
   double fraction = 0, low = 0, high = 1;
@@ -49,16 +49,15 @@ struct SceneRules {
   std::vector<std::pair<std::string, Better>> measures;
 };
 
-// From the finished sweeps of all methods in a scene, which have one axis, the noise. key: of the
-// bootstrap; the same for the same scene, whichever others are there. Throws std::out_of_range for an unknown
-// measure.
+// Scores the finished sweeps of all methods in a scene; their one axis is the noise. key: of the bootstrap;
+// it depends on the scene only, not on the other scenes. Throws std::out_of_range for an unknown measure.
 SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
                  std::uint64_t key);
 
-inline constexpr const char* kScorecardFigure = "scorecard";  // the name of this:
+inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
-// The tables of a result file: success, measures and standings, one row for each scene, method, and level
-// or measure; and the curves of every scene's panel.
+// The tables of the result file: success, measures and standings, with a row for each scene, method, and
+// level or measure; and the curves of every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// What counts as a success of a run: bounds that all its measures keep.
+// What counts as success of a run: bounds on its measures, all of which must hold.
 #pragma once
 
 #include <limits>
@@ -17,12 +17,12 @@ struct Bound {
   bool holds(double value) const { return value >= min && value <= max; }  // never for NaN
 };
 
-// For each run: did it keep all bounds? Runs that failed did not. Throws std::out_of_range for a measure that
-// the sweep has not. pre: no run is pending.
+// For each run whether all bounds hold; false for runs that failed. Throws std::out_of_range for a measure
+// that the sweep does not have. pre: no run is pending.
 std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds);
 
-// The run in the middle of those of a cell that were no success, by the measure of the first bound that they
-// break, runs that ended with an error last: a typical failure. -1: there is none.
+// A typical failure of a cell: the median of its unsuccessful runs, ordered by the first bound that they
+// break and its measure, runs that ended with an error last. -1: there is none.
 long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds, std::size_t cell);
 
 }  // namespace remote_touch

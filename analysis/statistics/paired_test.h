@@ -1,4 +1,4 @@
-// Pairs, two versions of a run that met the same noise: which are equal, tests and intervals for the rest.
+// Tests and intervals for pairs: two versions of a run with the same noise.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace remote_touch {
 // Root mean square, without overflow or underflow of the squares; 0 for none. pre: no NaN.
 double root_mean_square(const std::vector<double>& values);
 
-// Exact two-sided sign test: how likely a split at least as uneven as plus against minus is when every
+// Exact two-sided sign test: the probability of a split at least as uneven as plus against minus if every
 // differing pair goes either way with probability 1/2. On the discordant pairs of an event it is the exact
 // form of McNemar's test (Q. McNemar, Psychometrika 12 (1947), 153-157). 1 when nothing differs. Relative
-// error below 1e-10 up to 1e7 each; 0 where the result is below about 1e-300. Nothing but +, -, *, /: the
-// same bits on every machine. pre: plus, minus >= 0.
+// error below 1e-10 up to 1e7 each; 0 where the result is below about 1e-300. Only +, -, *, /: the same bits
+// on every machine. pre: plus, minus >= 0.
 double sign_test(std::int64_t plus, std::int64_t minus);
 
-// The same null hypothesis, that a difference is as likely as its opposite, asked of the sum of the
-// differences: it sees few large differences one way among many small ones both ways, which the sign test
-// does not. Not the exact p but Hoeffding's bound of it, 2 exp(-(sum d)^2 / (2 sum d^2)), which holds for
-// any number of pairs and any distribution (W. Hoeffding, J. Am. Stat. Assoc. 58 (1963), theorem 2).
-// 1 without differences. pre: all finite.
+// A test of the same null hypothesis, that a difference is as likely as its opposite, by the sum of the
+// differences: it detects a few large differences one way among many small ones both ways, which the sign
+// test does not. Returns not the exact p but Hoeffding's upper bound of it, 2 exp(-(sum d)^2 / (2 sum d^2)),
+// which holds for any number of pairs and any distribution (W. Hoeffding, J. Am. Stat. Assoc. 58 (1963),
+// theorem 2). 1 without differences. pre: all finite.
 double symmetry_test(const std::vector<double>& differences);
 
 // Interval of a difference of two proportions counted on the same pairs, (plus - minus) / pairs: Wald's after
@@ -33,8 +33,8 @@ double symmetry_test(const std::vector<double>& differences);
 std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
                                                      std::int64_t pairs, double z = kTwoSided95);
 
-// Mean of the differences and its 95 % interval if they were normal, in their unit; what there are too few
-// pairs for is NaN: the mean of none, the interval of one.
+// Mean of the differences and its 95 % interval as if they were normal, in their unit; NaN with too few
+// pairs: the mean of none, the interval of one.
 struct MeanDifference {
   std::int64_t pairs = 0;
   double mean = 0, low = 0, high = 0;
@@ -42,9 +42,9 @@ struct MeanDifference {
 // NaNs are skipped.
 MeanDifference mean_difference(const std::vector<double>& differences);
 
-// p values of tests that were made together, adjusted so that "adjusted < alpha" is wrong anywhere with
-// probability alpha at most, whatever their dependence (S. Holm, Scand. J. Stat. 6 (1979), 65-70). In the
-// given order, none below its own p. pre: all within [0, 1].
+// p values of tests made together, adjusted so that the probability of any false "adjusted < alpha" is at
+// most alpha, whatever their dependence (S. Holm, Scand. J. Stat. 6 (1979), 65-70). In the given order, none
+// below its own p. pre: all within [0, 1].
 std::vector<double> holm_adjusted(const std::vector<double>& p);
 
 }  // namespace remote_touch

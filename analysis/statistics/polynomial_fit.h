@@ -1,4 +1,4 @@
-// Least squares with chosen powers, and how sure it is.
+// Least squares with chosen powers, and its confidence interval.
 #pragma once
 
 #include <utility>
@@ -6,13 +6,14 @@
 
 namespace remote_touch {
 
-// sum of c_k x^power_k, powers from 0. By multiplication: the C library's pow may differ in its last bit.
+// sum of c_k x^power_k, powers from 0. Computed by multiplication: the C library's pow may differ in its last
+// bit.
 double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x);
 
 struct PolynomialFit {
   std::vector<int> powers;
   std::vector<double> coefficients;
-  std::vector<double> covariance;  // of the coefficients, row after row
+  std::vector<double> covariance;  // of the coefficients, row by row
   double residual_rms = 0;
 
   double at(double x) const;
@@ -21,7 +22,7 @@ struct PolynomialFit {
 };
 
 // Fits sum of c_k x^power_k to independent observations. The covariance allows observations of different
-// scatter (White 1980, HC1). pre: more observations than powers, and enough different x.
+// variance (White 1980, HC1). pre: more observations than powers, and enough different x.
 PolynomialFit fit_polynomial(const std::vector<double>& x, const std::vector<double>& y,
                              std::vector<int> powers);
 

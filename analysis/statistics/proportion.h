@@ -1,4 +1,4 @@
-// Confidence in a proportion that was counted.
+// Confidence interval of a counted proportion.
 #pragma once
 
 #include <utility>

@@ -8,7 +8,7 @@ namespace remote_touch {
 
 // Writes to a temporary name in the same folder, flushes to the disk and renames over the target, or over
 // what it links to. On failure (missing folder, no permission, full disk) throws InputError naming the
-// target, and leaves neither a part nor a temporary.
+// target, and leaves neither a partial nor a temporary file.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
 
 // Throws as write_file_atomically would for a folder that is missing or not writable, before any work is done
@@ -20,13 +20,13 @@ void require_different_file(const std::filesystem::path& target, const std::file
 
 // The temporary name in the target's folder under which this process writes it.
 std::filesystem::path temporary_of(const std::filesystem::path& target);
-// Renames that over the target, flushed to the disk. On failure as write_file_atomically.
+// Flushes the temporary file to the disk and renames it over the target. Fails as write_file_atomically().
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-// What a name that is a link leads to, if that is there; any other name as it is.
+// The file that a link points to, if it exists; any other name unchanged.
 std::filesystem::path resolved(const std::filesystem::path& target);
 
-// Removes what killed programs left of the target under temporary names. pre: nobody else writes it now.
+// Removes temporary files of the target that killed programs left. pre: no other process writes it now.
 void remove_leftovers(const std::filesystem::path& target);
 
 }  // namespace remote_touch

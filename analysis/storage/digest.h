@@ -1,4 +1,4 @@
-// A fingerprint of results: equal columns, bit for bit, have equal digests.
+// The digest of results: columns equal bit for bit have equal digests.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// The SHA-256 of a finished result. HDF5 leaves the first 512 bytes of a file to the user (the "user block");
-// they contain the SHA-256 of all bytes that follow. So any changed byte is found before the HDF5 library,
-// which has checksums only for the values of long columns, reads the file.
+// The seal of a finished result: HDF5 keeps the first 512 bytes of a file for its user (the "user block"),
+// which holds the SHA-256 of all that follows. So a changed byte anywhere is found before the HDF5 library,
+// which checksums only the values of long columns, reads the file.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,14 @@ inline constexpr std::string_view kResultOpening =
 inline constexpr std::size_t kDigestBlockSize = 512;  // the smallest user block there is
 
 // The image of an HDF5 file with the seal before it, as h5jam puts a user block before a file: the library
-// finds its beginning and counts from there.
+// finds the start of the HDF5 part and counts offsets from there.
 std::vector<char> with_file_digest(const std::vector<char>& image);
 
 // Seals a finished file in place; it was made with a user block of kDigestBlockSize. Throws InputError when
 // it cannot be read or written.
 void write_file_digest(const std::filesystem::path& file);
 
-// Whether it is a file that begins as a finished result does; the rest of it is not read.
+// Whether a file begins as a finished result does; the rest of it is not read.
 bool has_result_header(const std::filesystem::path& file);
 
 enum class FileDigest { valid, absent, broken };

@@ -5,11 +5,11 @@
 
 namespace remote_touch {
 
-// Held from construction to destruction, for the right to write a file: by a file beside it with the ending
-// ".lock", so that the file itself can be replaced and read at any time. A killed process holds no lock,
-// however many such files it leaves. Also removes what killed processes left of the file under temporary
-// names. Throws InputError naming the target when another process holds it or the folder cannot be written. A
-// device needs no lock, and a file system without locks gives none.
+// The right to write a file, held from construction to destruction. The lock is on a file beside it with the
+// ending ".lock", so that the file itself can be replaced and read at any time. A killed process holds no
+// lock, even if its ".lock" file remains. Also removes temporary files of the target that killed processes
+// left. Throws InputError naming the target when another process holds the lock or the folder cannot be
+// written. No lock is taken for a device, or on a file system without locks.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& target);

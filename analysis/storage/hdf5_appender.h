@@ -11,10 +11,10 @@
 
 namespace remote_touch {
 
-// Written under a temporary name beside the target, which appears, sealed, with finish(); without it nothing
-// is left, but for a program that was killed: the next one of the same target removes that. Not for use from
-// several threads at once, nor while another thread uses HDF5. Every member throws InputError naming the
-// target when it cannot be written.
+// Written under a temporary name beside the target; finish() seals it and renames it to the target. Without
+// finish() nothing is left; what a killed program leaves, the next appender of the same target removes. Not
+// for use from several threads at once, nor while another thread uses HDF5. Every member throws InputError
+// naming the target when it cannot be written.
 class Hdf5Appender {
  public:
   enum class Number { f64, i32, u64, u32, u16 };
@@ -33,7 +33,7 @@ class Hdf5Appender {
     unsigned long long rows_a_chunk = 4096;
   };
   void dataset(const Dataset& made);
-  // rows: so many, in the type of the dataset and the machine's byte order.
+  // rows: count rows in the type of the dataset and the machine's byte order.
   void append(const std::string& path, const void* rows, std::size_t count);
   void attributes(const std::string& object, const TextAttributes& list);
   void finish();

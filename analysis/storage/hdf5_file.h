@@ -1,4 +1,4 @@
-// HDF5 files, written completely or not at all. Only analysis/storage/hdf5_* use the HDF5 library.
+// HDF5 files, written whole or not at all. Only analysis/storage/hdf5_* call the HDF5 library.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,12 @@
 namespace remote_touch {
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
-// The attribute of that name; empty where there is none.
+// The attribute of that name; empty if there is none.
 std::string attribute(const TextAttributes& attributes, const std::string& name);
 
 // Builds the file in memory; save() puts it on the disk. So a full disk or a killed program never leaves a
-// part, and equal contents are equal bytes (no time stamps). Not for use from several threads at once.
+// partial file, and equal contents are equal bytes (no time stamps). Not for use from several threads at
+// once.
 class Hdf5Writer {
  public:
   // A finished file is sealed (file_digest.h); one that is to be written in place later cannot be.
@@ -35,15 +36,15 @@ class Hdf5Writer {
   // Writes the columns as datasets of a group, with units and long_name. The column called rows becomes the
   // dimension scale of the rows of all others; empty: none.
   void columns(const std::string& group, const std::vector<Column>& columns, const std::string& rows);
-  // A column as an array over axes: names of datasets of the same group that scale() made scales. Its values
-  // run through the last axis first. Stored in one piece where it is to be written in place later; else in
-  // compressed chunks when it is long.
+  // A column as an array over axes: names of datasets of the same group that scale() made scales. The last
+  // axis runs fastest. in_place: stored in one piece, to be written in place later; compact: in compressed
+  // chunks if it is long.
   enum class Storage { compact, in_place };
   void array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
              Storage storage);
   // Makes a dataset the scale of its own dimension.
   void scale(const std::string& path);
-  std::size_t size();  // of the file as it is now, in bytes
+  std::size_t size();  // of the file so far, in bytes
   // Throws InputError naming the file when it cannot be written.
   void save(const std::filesystem::path& target);
 
@@ -62,7 +63,7 @@ struct Hdf5Content {
 // Reads every dataset; see hdf5_reader.h.
 Hdf5Content read_hdf5(const std::filesystem::path& file);
 
-// Where in the file the values of a dataset begin that was stored in_place.
+// Offset in the file, bytes, of the values of a dataset that was stored in_place.
 std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset);
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// Closes what it holds. A negative identifier is the library's way to say that a call failed.
+// Closes the object that it holds. A negative identifier means that a call of the library failed.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {

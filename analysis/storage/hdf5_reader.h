@@ -1,5 +1,5 @@
-// Reading an HDF5 file a column, or some rows of one, at a time: a file may be larger than what one wants to
-// hold.
+// Reads an HDF5 file one column, or some rows of one, at a time, because a file may be larger than memory
+// allows.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,13 @@ namespace remote_touch {
 // Every member throws InputError naming the file when it is damaged.
 class Hdf5Reader {
  public:
-  // Throws InputError when the file is missing, not HDF5, its seal is broken or that of a finished result of
-  // this program is missing, or when another version of this program wrote it in its own layout.
+  // Throws InputError when the file is missing or not HDF5, when its seal is broken or a finished result of
+  // this program has none, or when its layout is that of another version of this program.
   explicit Hdf5Reader(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }
-  // Throws InputError unless the file is of that kind, as schema_name() has them; made_by: what makes one.
+  // Throws InputError unless the file is of that kind, see schema_name(); made_by: the command that makes
+  // one, for the message.
   void require_kind(const std::string& kind, const std::string& made_by) const;
   const TextAttributes& attributes() const { return attributes_; }  // text attributes of the root
   std::vector<std::string> datasets() const;                        // paths, sorted
@@ -37,7 +38,7 @@ class Hdf5Reader {
     if (!values || read.width != width) damaged(dataset + " has values of another kind");
     return std::move(*values);
   }
-  std::int64_t offset(const std::string& dataset) const;  // of its values in the file; it lies in one piece
+  std::int64_t offset(const std::string& dataset) const;  // of its values, bytes; pre: stored in one piece
 
   [[noreturn]] void damaged(const std::string& how) const;
 

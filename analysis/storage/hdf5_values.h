@@ -1,5 +1,5 @@
 // Values of attributes and datasets of an HDF5 file that any program may have written: kinds and sizes are
-// checked before memory is taken. For analysis/hdf5_* only.
+// checked before memory is allocated. For analysis/storage/hdf5_* only.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace remote_touch {
 
-// Several texts are joined by ", ". Empty for what is no text, or one of variable length.
+// Several texts are joined by ", ". Empty for an attribute that is not a text, or has variable length.
 std::string read_text(hid_t attribute);
-// Empty where the object has no such attribute.
+// Empty if the object has no such attribute.
 std::string text_attribute(hid_t object, const char* name);
 
 struct Rows {

@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-// Of all of them: raised when a name or the meaning of a value changes in any. 1 was that of version 0.1.
+// One number for all layouts: raised when a name or the meaning of a value changes in any. Version 0.1 had 1.
 inline constexpr int kSchemaVersion = 2;
 inline constexpr const char* kSchemaPrefix = "remote-touch-";
 

@@ -1,4 +1,4 @@
-// SHA-256, the fingerprint of results, of stored files and of input files.
+// SHA-256, for digests of results, of stored files and of input files.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ class Sha256 {
   std::shared_ptr<void> state_;
 };
 
-// Of the bytes of a file from an offset on. Throws InputError when it cannot be read.
+// SHA-256 of the bytes of a file from an offset on. Throws InputError when it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file, std::size_t from = 0);
 
 }  // namespace remote_touch

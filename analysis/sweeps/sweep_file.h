@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// Of axes, measures, states and errors.
+// Digest of axes, measures, states and errors.
 std::string digest(const SweepResult& result);
 
 // The finished file: equal results are equal bytes. attributes: configuration, provenance and shard; schema
@@ -19,8 +19,8 @@ std::string digest(const SweepResult& result);
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
                         const TextAttributes& attributes);
 
-// What a file holds, finished or not. Runs of which only a part was written come as pending. Throws
-// InputError for a file that is no sweep, or is not as it was written.
+// The content of a file, finished or not. Runs that were written only in part are pending. Throws InputError
+// for a file that is not a sweep, or was changed since it was written.
 struct StoredSweep {
   SweepResult result;
   TextAttributes attributes;  // without schema and digest
@@ -33,7 +33,7 @@ StoredSweep read_sweep(const std::filesystem::path& file);
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes);
 std::int32_t checksum(const SweepResult& result, std::size_t run);
-// How large that file is; the finished one is smaller.
+// Size of that file, bytes; the finished one is smaller.
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);
 
 }  // namespace remote_touch

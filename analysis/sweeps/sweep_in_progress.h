@@ -1,4 +1,4 @@
-// The result file of a sweep that runs.
+// The result file of a sweep while it runs.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace remote_touch {
 
-// The file is written whole at the start, with room for every run, so a disk without room is noticed before
-// work is done, and the file can be read at any time. Every finished run is then written in place at once: a
-// killed program loses none. pre: the caller holds the file's lock (file_lock.h).
+// The file is written whole at the start, with space for every run, so a full disk is noticed before any work
+// is done, and the file can be read at any time. Every finished run is then written in place at once: a
+// killed program loses no finished run. pre: the caller holds the file's lock (file_lock.h).
 class SweepInProgress {
  public:
-  // already_there: the file is in progress and holds this result. Else it is written. Throws InputError when
+  // already_there: the file is in progress and holds this result; else it is written. Throws InputError when
   // it cannot be written.
   SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
                   const TextAttributes& attributes, bool already_there);
@@ -22,9 +22,10 @@ class SweepInProgress {
   SweepInProgress(const SweepInProgress&) = delete;
   SweepInProgress& operator=(const SweepInProgress&) = delete;
 
-  // Stores the values and the state of one run. One call at a time. Throws InputError when the disk refuses.
+  // Stores the values and the state of one run. One call at a time. Throws InputError when it cannot be
+  // written.
   void record(const SweepResult& result, std::size_t run);
-  // After this, everything recorded outlasts a power cut. Throws also when the file was replaced or removed.
+  // After this, everything recorded survives a power cut. Throws also when the file was replaced or removed.
   void flush();
 
  private:

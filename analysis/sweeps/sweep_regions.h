@@ -16,9 +16,10 @@ struct Region {
   bool contains(const std::vector<std::size_t>& place) const;
 };
 
-// Region 0 is the whole. Then come the parts, last axis running first: numeric axes of 6 values or more in
-// three parts of equal length, axes of 2 to 4 values in their single values, all others whole. In the order
-// of the axes, one whose split would make more than 36 parts stays whole. No parts when no axis is split.
+// Region 0 is the whole. Then follow the parts, the last axis running fastest: numeric axes of 6 values or
+// more are split into three parts of equal length, axes of 2 to 4 values into single values, all others not.
+// Axes are split in their order; one whose split would give more than 36 parts stays whole. No parts if no
+// axis is split.
 std::vector<Region> regions_of(const std::vector<Column>& axes);
 
 }  // namespace remote_touch

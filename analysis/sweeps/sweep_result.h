@@ -10,24 +10,24 @@
 namespace remote_touch {
 
 enum class RunState : std::int32_t {
-  not_sampled = 0,  // refinement did not ask for it
+  not_sampled = 0,  // refinement has not added it
   pending = 1,
   done = 2,
-  failed = 3,    // error tells why
+  failed = 3,    // `error` has the reason
   elsewhere = 4  // another shard's
 };
 
-// Cells are the nodes of the axes' grid, counted with the last axis running first; every cell has room for
-// the same number of replicates. A run is one replicate of one cell; all arrays are over runs.
+// Cells are the nodes of the axes' grid, numbered with the last axis running fastest; every cell has the same
+// number of replicates. A run is one replicate of one cell; all arrays are over runs.
 struct SweepResult {
   std::vector<Column> axes;  // one row for each value; names instead of numbers as an enumeration
   int replicates = 1;
   std::vector<Column> measures;  // NaN where the run is not done
   std::vector<RunState> state;
-  std::vector<std::int32_t> round;  // of refinement, in which a run was asked for; empty without refinement
+  std::vector<std::int32_t> round;  // of refinement that added the run; empty without refinement
   std::vector<std::string> error;
 
-  // Gives the arrays their length, every run not_sampled. pre: axes, replicates and measures are set.
+  // Sizes the arrays, every run not_sampled. pre: axes, replicates and measures are set.
   void start(bool refined);
 
   std::size_t cell_count() const;

@@ -1,4 +1,4 @@
-// What noise does to the quantities of 4.4, measured over lifts without acceleration.
+// The effect of noise on the quantities of 4.4, measured over lifts without acceleration.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// Updates up to this frame are left out: the estimate begins at 0 when the cloud meets the proxy.
+// Updates up to this frame are left out: the velocity estimate starts at 0 when the cloud meets the proxy.
 struct SettledFrom {
   int frame = 0;
 };
@@ -17,7 +17,7 @@ struct SettledFrom {
 NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
                          double frame_rate_hz);
 
-// Means of one lift, an observation that is independent of other lifts'. NaN when no update counts.
+// Means of one lift: one observation, independent of other lifts. NaN if no update counts.
 struct LiftMeans {
   double thickness_m, normal_error;
 };

@@ -1,4 +1,4 @@
-// A task's steps as they went, from the columns of a trace.
+// The log of a task's steps, from the columns of a trace.
 #pragma once
 
 #include <limits>
@@ -8,14 +8,14 @@
 
 namespace remote_touch {
 
-// Of a step that has begun. Times of the ticks; NaN for a step that had not ended when the trace did.
+// A step that has begun. Times are those of ticks; NaN for a step that had not ended at the end of the trace.
 struct SequenceEntry {
   int step = 0;  // its number in the task
   double began_s = 0;
   double ended_s = std::numeric_limits<double>::quiet_NaN();
   bool missed = false;  // ended by its deadline
-  // From the tool to its goal when it ended; NaN for a step without one. Of steps that ended in one tick all
-  // have that of the first with a goal.
+  // From the tool to the step's goal when it ended; NaN for a step without one. All steps that ended in the
+  // same tick have the value of the first of them with a goal.
   double distance_m = std::numeric_limits<double>::quiet_NaN();
   double angle_rad = std::numeric_limits<double>::quiet_NaN();
 };

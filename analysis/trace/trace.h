@@ -1,4 +1,4 @@
-// What a run leaves behind: one row for each haptic tick, in the columns of trace_columns.h.
+// The record of a run: one row for each haptic tick, in the columns of trace_columns.h.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace remote_touch {
 
-// Of a simulated hand, beside the device that it moves: what it wanted, and what it felt.
+// The state of a simulated hand: its intended pose, and the force and torque that it felt.
 struct HandState {
   Vec3 intended_W = Vec3::Zero();
   Eigen::Quaterniond intended_orientation_W = Eigen::Quaterniond::Identity();
@@ -22,11 +22,11 @@ struct HandState {
 struct Trace {
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
-  // What is true about a tick, beside what the renderer answered.
+  // Ground truth of a tick, which the renderer does not know.
   struct Truth {
     double proxy_distance_m = 0;   // to the true surface, of the proxy
     double slave_distance_m = 0;   // and of the slave's command
-    std::uint64_t frame_hash = 0;  // fingerprint of the newest frame delivered, 0 where it was not made
+    std::uint64_t frame_hash = 0;  // of the newest frame delivered; 0 if it was not computed
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});
@@ -37,7 +37,8 @@ struct Trace {
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
-  // Copies, with units, in the order they are stored and hashed; the last is the running hash of the others.
+  // Copies of the columns, with units, in the order in which they are stored and hashed; the last is the
+  // running hash of the others.
   std::vector<Column> columns() const;
 
   // The rows: a vector for each column.
@@ -46,8 +47,8 @@ struct Trace {
 #undef TRACE_COLUMN
 };
 
-// Runs that have a column: every run, those with a 6-DOF tool, those with guidance or a sequence, those with
-// a simulated operator or device.
+// Which runs have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
+// simulated operator or device.
 enum class TracePart { always, tool, guidance, hand };
 
 struct TraceColumn {

@@ -1,4 +1,4 @@
-// Hue, saturation and lightness of a colour, for segmentation by colour, 7.2.
+// Hue, saturation and lightness of a colour: what colour segmentation uses, 7.3.2.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ struct HueSaturationLightness {
 
 // rgb = 0xRRGGBB, as the sensor gives it: no gamma or colour profile.
 HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb);
-// The nearest of 2^24 colours. pre: in the ranges above; a hue of 360 is one of 0.
+// The nearest colour of 8 bits a channel, 0xRRGGBB. pre: values in the ranges above; a hue of 360 counts as
+// 0.
 std::uint32_t rgb(const HueSaturationLightness& colour);
 
 }  // namespace remote_touch

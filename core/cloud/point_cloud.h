@@ -19,7 +19,7 @@ struct CameraIntrinsics {
   double cx = 0, cy = 0;
 };
 
-// Tells that point v * width + u lies on the viewing ray of pixel (u, v), up to pixel_slack pixels.
+// Promises that point v * width + u lies on the viewing ray of pixel (u, v), within pixel_slack pixels.
 struct ImageLayout {
   CameraIntrinsics camera;
   RigidTransform X_WC = RigidTransform::Identity();
@@ -37,8 +37,8 @@ struct PointCloud {
   // where a point has no normal.
   std::vector<double> nx, ny, nz;
   std::optional<ImageLayout> image;  // set when the points are the pixels of one image
-  // The points are rows of a grid so many wide, one after the other, as those of an image are; 0: no order
-  // that tells which points are neighbours.
+  // Number of columns if the points form a grid, stored row by row like the pixels of an image; 0:
+  // unorganised, it is not known which points are neighbours.
   int grid_columns = 0;
 
   std::size_t size() const { return x.size(); }
@@ -46,7 +46,7 @@ struct PointCloud {
     return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
   }
   bool has_normals() const { return !nx.empty(); }
-  // How wide the rows are in which the points stand, of an image or a grid; 0: no order.
+  // Number of columns of the image or grid; 0: unorganised.
   int columns() const { return image ? image->camera.width : grid_columns; }
   Vec3 point(std::size_t i) const { return {x[i], y[i], z[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }

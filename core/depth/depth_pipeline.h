@@ -7,8 +7,8 @@
 // eigenvalue of the covariance, towards the sensor.
 //
 // A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: no point, and no influence.
-// Single precision in the camera frame, 0.05 degrees; the same bits on every machine, for any number of
-// threads, and for a rectangle as for the whole frame.
+// Computed in single precision in the camera frame: normals are within 0.05 degrees of those in double. The
+// same bits on every machine, for any number of threads, and for a rectangle as for the whole frame.
 #pragma once
 
 #include <cstdint>
@@ -39,9 +39,8 @@ struct PixelRectangle {
   int width = 0, height = 0;
 };
 
-// Keeps its memory: after the first frame of a size, and with a cloud that is handed back, nothing is
-// allocated. Throws std::invalid_argument where sizes do not fit together, and for settings that validate()
-// refuses.
+// Reuses its memory: after the first frame of a size nothing is allocated, if the caller passes the same
+// cloud again. Throws std::invalid_argument if sizes do not match, and for settings that validate() refuses.
 class DepthPipeline {
  public:
   DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
@@ -51,14 +50,14 @@ class DepthPipeline {
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                PointCloud& cloud);
   PointCloud process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC);
-  // Only these pixels, at the cost of these: bit for bit as they are in the whole frame. The layout is that
-  // of a camera that has no others. pre: the rectangle lies in the image.
+  // Only these pixels, at the cost of these: bit for bit as they are in the whole frame. The image layout is
+  // that of a camera with these pixels alone. pre: the rectangle lies in the image.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                const PixelRectangle& rectangle, PointCloud& cloud);
   // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
   void process(PointCloud& cloud);
 
-  // Whether the point of each pixel of the last cloud is there; it may be there without a normal.
+  // 1 for each pixel of the last cloud that has a point, with or without a normal; else 0.
   const std::vector<std::uint8_t>& valid() const { return valid_; }
 
  private:

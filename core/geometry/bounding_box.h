@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// Grows by extend(). Made empty: its min() is above its max().
+// Starts empty (its min() is above its max()) and grows by extend().
 using BoundingBox = Eigen::AlignedBox3d;
 
 // Around every position of a range; empty for none.

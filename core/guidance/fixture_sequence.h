@@ -1,5 +1,5 @@
-// A task as a sequence of fixtures: regions that are locked and unlocked, guidance that is activated, step
-// after step.
+// A task as a sequence of steps that lock and unlock forbidden regions and activate and release guidance
+// fixtures: the sequential tasks of 8.2.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace remote_touch {
 
-// lock: a forbidden region counts; activate: a guidance fixture pulls, and any other lets go.
+// lock, unlock: enables, disables a forbidden region; activate, release: starts, stops a guidance fixture,
+// and activate also stops every other.
 enum class FixtureAction { lock, unlock, activate, release, wait };
 enum class StepStart { previous, button };
 enum class StepEnd { immediately, reached, button };
 
-// A step begins when the one before has ended, no earlier than not_before_s, and then where it asks for it
-// with the next press of a button. It does its action, and ends at once, when the tool has reached the
-// fixture's goal, or with a press of the button; or it is missed after its deadline.
+// A step begins when the one before has ended and not_before_s has passed; with StepStart::button it then
+// waits for a press of the button. It performs its action and ends immediately, when the tool has reached the
+// fixture's goal, or at a press of the button. A step that exceeds its deadline ends as missed.
 struct SequenceStep {
   FixtureAction action = FixtureAction::wait;
   std::string fixture;  // its label; none for wait, unless its goal is to be reached
@@ -26,7 +27,7 @@ struct SequenceStep {
   double not_before_s = 0;
   StepEnd done = StepEnd::immediately;
   int button = 0;
-  double deadline_s = 0;  // after the beginning; 0: none
+  double deadline_s = 0;  // after the step began; 0: none
   Vec3 offset_m{0, 0, 0};
 };
 
@@ -37,14 +38,15 @@ class FixtureSequence {
  public:
   explicit FixtureSequence(std::vector<SequenceStep> steps) : steps_(std::move(steps)) {}
 
-  // The buttons that are down in this tick, one bit each. Once a tick, before the others.
+  // The buttons that are down in this tick, one bit each. Call it once a tick, before begins() and ends().
   void set_buttons(std::uint32_t buttons);
   // Whether the current step begins now.
   bool begins(double time_s);
-  // Whether it ends now, done or missed; the next is then the current one. reached: the tool is at its goal.
+  // Whether the current step ends now, done or missed; if so, the next one becomes the current one. reached:
+  // the tool is at the step's goal.
   bool ends(double time_s, bool reached);
 
-  // Its number; as many as there are steps after the last.
+  // Number of the current step, from 0; the number of steps once the last has ended.
   int current() const { return current_; }
   bool is_over() const { return current_ == static_cast<int>(steps_.size()); }
   const SequenceStep& step() const { return steps_[static_cast<std::size_t>(current_)]; }  // pre: not over
@@ -59,7 +61,7 @@ class FixtureSequence {
   int current_ = 0, missed_ = 0;
   bool running_ = false;
   double began_s_ = 0;
-  std::uint32_t down_ = 0, pressed_ = 0;  // pressed: went down in this tick, and no step has taken it
+  std::uint32_t down_ = 0, pressed_ = 0;  // pressed_: went down in this tick, not yet used by a step
 };
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// A guidance virtual fixture: a spring that pulls the hand towards a pose in front of what a class of points
-// shows, 7.3.2 and 7.4.
+// A guidance virtual fixture: a spring that pulls the hand towards a goal pose in front of a class of points,
+// 7.3.2 and 7.4.
 #pragma once
 
 #include <string>
@@ -30,15 +30,15 @@ struct GuidanceSettings {
 Parameters parameters(GuidanceSettings& s);
 std::string validate(const GuidanceSettings& s);
 
-// Where the tool is to go: the approach axis as rotation_deg turns it (fixed), or turned on by the shortest
-// way against the normal of the target's plane (plane; as fixed, where the target is not flat); standoff_m
-// before the mean against that axis, plus the offset in the base frame. None for fewer points than
-// min_points.
+// The goal pose of the tool, base frame. Orientation: rotation_deg (fixed), followed by the shortest rotation
+// that takes the approach axis against the normal of the target's plane (plane, if the target is flat).
+// Position: the target's mean, moved back by standoff_m along the approach axis, plus both offsets. None for
+// fewer points than min_points.
 std::optional<ToolPose> guidance_goal(const GuidanceSettings& settings, const GuidanceTarget& target,
                                       const Vec3& more_offset_m = Vec3::Zero());
 
-// Towards the goal, on the hand and about the device; force and torque are cut to their largest lengths.
-// stiffness: of the fixture; negative: that of the settings.
+// The wrench on the hand towards the goal, about the device's position, world frame; limited to max_force_N
+// and max_torque_Nm. stiffness_N_per_m: the fixture's own; negative: that of the settings.
 Wrench guidance_wrench(const GuidanceSettings& settings, double stiffness_N_per_m, const ToolPose& goal,
                        const ToolPose& device);
 

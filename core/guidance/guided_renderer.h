@@ -22,7 +22,7 @@ std::string validate(const std::vector<FixtureValues>& fixtures, const std::vect
 
 class GuidedRenderer final : public Renderer {
  public:
-  // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment looks at. A
+  // fixtures: all of the experiment in their order; switches: those that its FixtureAssignment reads. A
   // fixture starts disabled if the task first enables it, and the other way round; one that no step uses is
   // enabled from the start. pre: validate(fixtures, steps) is empty.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,

@@ -1,6 +1,6 @@
-// The depth pipeline, 6.2.1: from a depth image to points (7.1), the bilateral filter (7.2), normals, and
+// The depth pipeline, 6.2.1: from a depth image to points, the bilateral filter (7.1), (7.2), normals, and
 // into a cloud. Pixel (column, row) of a plane is plane[row * stride + column]; columns and rows count from
-// the region that is asked for, so those of its border are negative. No alignment asked.
+// the requested region, so those of its border can be negative. No alignment is required.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// Points in the camera frame, in a unit of length that suits their use. A pixel without a point has
-// kNowhere as z: so far away that it has weight 0 for every other one.
+// Points in the camera frame, in a unit of length that suits their use. A pixel without a point has kNowhere
+// as z: so far away that its weight for every other point is 0.
 struct PointPlanes {
   float* x;
   float* y;
@@ -19,25 +19,25 @@ struct PointPlanes {
 
 inline constexpr float kNowhere = 1e12f;
 
-// What lies on the ray of pixel (u, v) is z * (ray_x[u], ray_y[v], 1).
+// The point at depth z on the ray of pixel (u, v) is z * (x[u], y[v], 1).
 struct PixelRays {
   const float* x;
   const float* y;
 };
 
-// Rows first .. last - 1 and columns 0 .. width - 1 are asked for. The planes have half more columns and rows
-// on every side than the kernel reads for these, and kMaxLanes more columns to the right.
+// Requests rows first .. last - 1 and columns 0 .. width - 1. The planes go on for 2 half columns and rows on
+// every side of these, and for kMaxLanes more columns to the right.
 struct RowBand {
   int first, last;
   int width;
   int half;        // the window is 2 half + 1 pixels wide
-  float* weights;  // room for weight_buffer_size(width, half)
+  float* weights;  // scratch of weight_buffer_size(width, half) values
 };
 
 inline constexpr int kMaxLanes = 16;
 
-// A weight is the same from either point of a pair: computed for the upper one, kept for the lower. Of the
-// pairs whose rows are j apart those of j + 1 rows are kept, each row with half more columns on either side.
+// The weight of a pair of points is symmetric: it is computed at the upper point and kept for the lower one.
+// For pairs j rows apart, the weights of j + 1 rows are kept, each row with half more columns on either side.
 constexpr std::ptrdiff_t weight_stride(int width, int half) {
   return (width + 4 * half + 2 * kMaxLanes) / kMaxLanes * kMaxLanes;
 }
@@ -45,7 +45,8 @@ constexpr std::size_t weight_buffer_size(int width, int half) {
   return static_cast<std::size_t>(half * (half + 3) / 2 * (2 * half + 1) * weight_stride(width, half));
 }
 
-// One row of a depth image: its rays, its depths in metres, and what the filter adds to them, or null.
+// One row of a depth image: its rays, its depths in metres, and what the filter adds to them (null: no
+// filter).
 struct PixelRow {
   int width;
   const double* ray_x;  // as PixelRays, in double
@@ -55,9 +56,9 @@ struct PixelRow {
   double change_unit_m;
 };
 
-inline constexpr double kMaxDepth_m = 1000;  // what is farther away is not a depth
+inline constexpr double kMaxDepth_m = 1000;  // a depth of this or more is a hole
 
-// Where a row of a cloud goes.
+// Destination of one row of a cloud.
 struct CloudRow {
   double* x;
   double* y;
@@ -69,7 +70,7 @@ struct CloudRow {
 };
 
 // A point with its two neighbours is a plane only if the middle eigenvalue of their covariance is above this
-// share of the sum of all: a line as wide as a hundredth of its length is none.
+// fraction of the sum of all three: a strip a hundredth as wide as long has no normal.
 inline constexpr float kThinnest = 1e-4f;
 
 // (7.2) takes squared distances in units of sigma_f^2 / (kFilterExponent / 2).
@@ -85,8 +86,8 @@ struct DepthKernels {
   // (1 / fx, 1 / fy).
   void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
                         const PointPlanes& normals);
-  // One row into the cloud, m; X_WC row by row, three rows of four. z are those of the points the normals are
-  // of.
+  // One row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points that
+  // the normals belong to.
   void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);
   void (*normals_to_cloud)(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
                            const CloudRow&);

@@ -69,7 +69,7 @@ inline Floats smaller(Floats a, Floats b) {
 }
 #endif
 
-// work(first), ..., work(last), unrolled: compilers keep such short loops, and their numbers in registers.
+// work(first), ..., work(last), unrolled: compilers leave such short loops as loops.
 template <int kFirst, int kLast, class Work>
 __attribute__((always_inline)) inline void unrolled(const Work& work) {
   if constexpr (kFirst <= kLast) {
@@ -87,9 +87,9 @@ __attribute__((always_inline)) inline void for_each_step(int half, const Work& w
     for (int i = 1; i <= half; ++i) work(i);
 }
 
-// Weights of the pairs of one row, as depth_kernels.h tells. A row of them holds those of pairs whose lower
-// point is `below` rows under the upper one and `across` columns to its right, at the column of the upper
-// one.
+// Weights of the pairs of one row, as described in depth_kernels.h. A row of them holds those of pairs whose
+// lower point is `below` rows under the upper one and `across` columns to its right, at the column of the
+// upper one.
 class PairWeights {
  public:
   PairWeights(float* scratch, int width, int half, int row) : across_((width + 4 * half + 2 * 16) / 16 * 16) {
@@ -101,14 +101,14 @@ class PairWeights {
       fresh_[below] = at(row), kept_[below] = at(row - below);
     }
   }
-  // Of points in this row with others below.
+  // Weights of points in this row with others below.
   float* fresh(int below, int across) const { return fresh_[below] + across * across_; }
-  // Of points above, whose pairs have a point in this row.
+  // Weights of points above with others in this row.
   const float* kept(int above, int across) const { return kept_[above] + across * across_; }
 
  private:
   static constexpr int kMaxWidth = 16;
-  std::ptrdiff_t across_;  // weight_stride, whose one copy could be another level's
+  std::ptrdiff_t across_;  // weight_stride(), whose one linked copy could be of another level
   float* fresh_[8];
   const float* kept_[8];
 };

@@ -8,7 +8,8 @@
 namespace remote_touch {
 
 // Stored points with consecutive positions in the columns, as a neighbour search hands them over: count of
-// them, or, in an image, rows of count, whose first points are stride apart. No alignment or padding asked.
+// them, or, in an image, rows of count, whose first points are stride apart. No alignment or padding is
+// required.
 struct PointRun {
   const double* x;
   const double* y;
@@ -23,7 +24,7 @@ struct PointRun {
 };
 
 // Columns to append to; each has the capacity for every point of the cloud and kLanes more. radius and
-// stiffness are written where the run has them.
+// stiffness are written only if the run has them.
 struct PointSink {
   double* x;
   double* y;

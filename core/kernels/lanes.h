@@ -1,4 +1,4 @@
-// How columns are padded: to whole groups of kLanes, which every x86-64 level reads at once or in parts.
+// How columns are padded: to whole groups of kLanes, which each x86-64 level reads in one or several vectors.
 #pragma once
 
 #include <cstddef>

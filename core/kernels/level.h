@@ -5,8 +5,7 @@
 
 #include "core/kernels/kernels.h"
 
-// Each is defined behind the functions of its domain, or, where these are in several files, in a file of its
-// own.
+// Each is defined after the functions of its domain, or, if these are in several files, in a file of its own.
 #define REMOTE_TOUCH_DECLARE_TABLES(level)   \
   namespace remote_touch::level {            \
   extern const GatherKernels kGatherKernels; \

@@ -11,8 +11,8 @@ namespace remote_touch {
 // Rounds a number below 2^39 to a multiple of 2^-12 when it is added and taken away.
 inline constexpr double kRoundsToPatchGrid = 0x1.8p40;
 
-// The axes of a patch of surface in the world, and its cylinder about n: origin in m, radius and half height
-// in units of unit_m.
+// The axes of a patch of surface in the world, n its normal, and its cylinder about n: origin in m, radius
+// and half height in units of unit_m.
 struct PatchAxes {
   double origin[3], u[3], v[3], n[3];
   double unit_m, radius, half_height;
@@ -26,15 +26,16 @@ struct PatchColumns {
   std::uint32_t* source;
 };
 
-// Heights at the corners of square cells over |u|, |v| <= half, those along u running fastest. last: what
-// counts as the last place of the last cell.
+// Heights at the corners of square cells over |u|, |v| <= half, u running fastest. last: largest coordinate
+// in cells, just below their number, so that a place on the border lies in the last cell.
 struct HeightGrid {
   const double* corner;
   int cells;
   double half, per_unit, last;
 };
 
-// Of places no farther than reach from (u, v), the heights no farther than off from a plane.
+// Selects the places within reach of (u, v) whose heights are within off of a plane, which has its height at
+// (0, 0).
 struct NearPlane {
   double u, v, reach;
   double height, slope_u, slope_v, off;

@@ -16,8 +16,8 @@ struct Words {
   Vector w[4];
 };
 
-// The generator of one stream, with the keys of its rounds made ready. Product::of(a, b) multiplies the lower
-// halves of lanes.
+// The generator of one stream, with the keys of its rounds precomputed. Product::of(a, b) multiplies the
+// lower halves of lanes.
 template <class Vector, class Product>
 class Philox {
  public:

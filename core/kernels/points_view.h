@@ -5,9 +5,9 @@
 
 namespace remote_touch {
 
-// Columns in m, no alignment asked, padded with points at kFarAway to padded_count, a multiple of kLanes.
-// radius is r_f of each point and stiffness k_s in N/m (NaN: the renderer's own); both are null where the
-// cloud has no such column.
+// Columns in m, without required alignment, padded with points at kFarAway to padded_count, a multiple of
+// kLanes. radius is r_f of each point and stiffness k_s in N/m (NaN: the renderer's own); both are null where
+// the cloud has no such column.
 struct PointsView {
   const double* x;
   const double* y;

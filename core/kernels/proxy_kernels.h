@@ -1,4 +1,4 @@
-// What the proxy computes from the points near it: its state, normal and stiffness, and its step lengths.
+// What the proxy needs from the points near it: its state, normal and stiffness, and its step sizes.
 // Positions and radii in m, directions of unit length.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace remote_touch {
 struct ProxyRegions {
   double r1, r2, r3;
   double sum_grid;   // M of kernels.h, at least 1.5 * the number of points, a power of two times 1.5
-  double stiffness;  // of points without one of their own, N/m
+  double stiffness;  // for points without their own, N/m
 };
 
 // Local statistics of the points around a proxy position. r_n = |P - x| - r_f, (5.5).

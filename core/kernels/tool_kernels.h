@@ -1,4 +1,4 @@
-// What lies near a tool, 6.2.2: groups of points, points, and the distance field at surface disks. Points and
+// Which spheres and points lie near a tool, 6.2.2, and the distance field at surface disks. Points and
 // spheres come in whole groups: group g is kLanes g .. kLanes g + kLanes - 1 of columns padded to kLanes.
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace remote_touch {
 
-// Bytes for the cells of a regular grid, the first coordinate running fastest; three bytes more can be read
-// behind the last.
+// One byte for each cell of a regular grid, the first coordinate running fastest; three more bytes after the
+// last must be readable.
 struct CellTable {
   const std::int8_t* value;
   int cells[3];
 };
 
-// From world coordinates to those of the cells: row[0..2] . (x, y, z) + row[3] along each axis.
+// From world coordinates, m, to cell coordinates: along each axis row[0..2] . (x, y, z) + row[3].
 struct CellTransform {
   double row[3][4];
 };
@@ -28,8 +28,8 @@ struct SphereColumns {
   const double* radius;
 };
 
-// A table of distances: no place of a cell is nearer to the tool than (zero - value) unit, in cells. What is
-// looked for lies no farther than reach, in cells; radii in metres are to be multiplied by per_m.
+// Reads a table as distances: no place of a cell is nearer to the tool than (zero - value) * unit cells.
+// reach: distance to search, cells; per_m: cells per metre, for radii.
 struct NearnessCode {
   double zero, unit;
   double reach, per_m;
@@ -46,8 +46,8 @@ struct PointColumns {
   const double* spacing;
 };
 
-// Where a tool is, and its distance field in m at the nodes of a grid, the first coordinate running fastest;
-// size is the edge of a cell.
+// The pose of a tool, and its distance field in m at the nodes of a grid, the first coordinate running
+// fastest; size is the edge of a cell, m.
 struct PosedField {
   double R_TW[3][3];
   double p_W[3];
@@ -59,11 +59,11 @@ struct PosedField {
 
 // Added to a number below 2^51, it rounds it to a whole one and leaves that in the low bits.
 inline constexpr double kRoundsToWhole = 0x1.8p52;
-// Taken away before, it makes that rounding down; what is less than a hair below an integer counts as it.
+// Subtracted first, it makes that rounding down; a number less than 2^-34 below an integer counts as that
+// integer.
 inline constexpr double kAlmostHalf = 0.5 - 0x1p-34;
 
-// What there is to know about surface disks in the tool frame; capacity for as many as were asked for, padded
-// to kLanes. Lengths in m.
+// Surface disks in the tool frame; capacity for as many as are requested, padded to kLanes. Lengths in m.
 struct DiskColumns {
   double* p_T[3];
   double* n_T[3];
@@ -72,12 +72,12 @@ struct DiskColumns {
   double* gradient_T[3];
   double* slope;        // of the field in the plane of the disk; NaN without a normal
   double* lower;        // bound of the distance of any place of the disk
-  std::uint64_t* cell;  // cell_and_octant() of the place, for the way against the gradient
+  std::uint64_t* cell;  // cell_and_octant() of p_T and the direction against the gradient
 };
 
 struct ToolKernels {
-  // Of the spheres of the groups: numbers of those that hold places within reach of the tool, in order, and
-  // of some others that are near. Returns how many; found has the capacity for all.
+  // Of the spheres of the groups: numbers of those that contain places within reach of the tool, in order,
+  // and of some others that are near. Returns how many; found has the capacity for all.
   std::size_t (*near_spheres)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
                               const CellTransform&, const CellTable&, const NearnessCode&,
                               std::uint32_t* found);

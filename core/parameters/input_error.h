@@ -7,15 +7,15 @@
 
 namespace remote_touch {
 
-// One line of UTF-8: a line break becomes a blank, other control characters and bytes that are no UTF-8
-// become \x00 and so on.
+// One line of UTF-8: a line break becomes a blank, other control characters and bytes that are not UTF-8 are
+// written as \x and two hexadecimal digits.
 std::string printable(const std::string& text);
 
 class InputError : public std::runtime_error {
  public:
   // subject: the file or the parameter path, as the user would write it.
   InputError(const std::string& subject, const std::string& problem) : InputError(subject + ": " + problem) {}
-  // Both in one, as a function validate() gives them.
+  // Both in one, as the validate() functions return them.
   explicit InputError(const std::string& line) : std::runtime_error(printable(line)) {}
 };
 

@@ -1,5 +1,5 @@
 // Parameters as data: a configuration struct lists its fields once, in a function `parameters(Struct&)`, and
-// reading, range checks, help and the configuration stored with a result all walk that list.
+// reading, range checks, help and the configuration stored with a result all use that list.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Rows {
 };
 
 struct Parameter {
-  std::string name;  // with the unit as suffix, as it stands in a file
+  std::string name;  // with the unit as suffix, as written in a file
   std::variant<double*, int*, std::uint64_t*, bool*, std::string*, Vec3*, Choice, Rows> value;
   double low = 0;  // allowed range of a number, ends included
   double high = 0;

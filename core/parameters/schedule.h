@@ -1,4 +1,4 @@
-// Shares over time: rows of time in seconds and share.
+// A fraction over time: rows of time in seconds and fraction.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace remote_touch {
 
-// Even change between rows, a jump where two have the same time, the first before all, the last after all;
+// Linear between rows, a jump where two have the same time; constant before the first row and after the last;
 // 1 without rows.
 double scheduled(const std::vector<double>& rows, double time_s);
 
-// "schedule: time ...": the first row with a share outside 0 to 1 or a time before the one above; empty:
-// none. what: the share's name.
+// Describes the first row with a fraction above 1 or a time before the row above, as "NAME: time ..."; empty:
+// none. what: name of the fraction in that message.
 std::string validate_schedule(const std::vector<double>& rows, const std::string& name,
                               const std::string& what);
 

@@ -1,5 +1,5 @@
 // Motion that enters none of the regions which the proxy touches: an alternative to the tangent plane of
-// (5.16), which belongs to a mean of normals.
+// (5.16), whose normal (5.7) is a mean over regions.
 #pragma once
 
 #include "core/geometry/vector.h"
@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 // The motion nearest to u among those that enter no region within r2 of p: the projection of u onto the cone
-// of all s with n_i . s >= 0, n_i = (p - x_i) / |p - x_i|. It is u itself where nothing is in the way, and
+// of all s with n_i . s >= 0, n_i = (p - x_i) / |p - x_i|. It is u itself if no region is in the way, and
 // zero in a corner that holds p from all sides. A point at p itself is skipped.
 Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2);
 

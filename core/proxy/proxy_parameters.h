@@ -47,7 +47,7 @@ struct ProxyParameters {
 Parameters parameters(ProxyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ProxyParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {
   return p.stiffness_N_per_m;
 }

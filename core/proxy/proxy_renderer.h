@@ -27,13 +27,14 @@ class ProxyRenderer final : public Renderer {
 
   void reserve(std::size_t points) override { near_.reserve(points, true, true); }
   void on_frame(const Frame& frame) override;
-  // The same with a motion that was measured otherwise; (4.3) and (4.13) then have no part in it.
+  // The same with a motion that was measured by other means, in place of (4.3) and (4.13).
   void on_frame(const Frame& frame, const SurfaceMotion& motion);
-  // Other points in place of the newest frame's.
+  // Replaces the newest frame's points.
   void replace_points(std::shared_ptr<const NeighbourSearch> points);
-  // Moves the proxy with a surface.
+  // Moves the proxy with a surface, world frame.
   void displace(const Vec3& displacement_m);
-  // Ticks end once they have converged (4.8); else when a step changes nothing or the budget is spent.
+  // stop: a tick also ends when the proxy in contact has converged (4.8). It always ends when a step changes
+  // nothing or steps_per_tick are made.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
   bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
   const Vec3& proxy_W() const { return proxy_W_; }
@@ -73,7 +74,7 @@ class ProxyRenderer final : public Renderer {
   bool is_clear_ = false;                  // outside those of the newest frame
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy starts at the first HIP
-  bool in_contact_ = false;                // until the proxy is free and unhindered again
+  bool in_contact_ = false;                // until the proxy is free and nothing holds it back
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   FrameOrder order_;

@@ -20,7 +20,7 @@ Vec3 unit_normal(const ContactQuery& query, const Vec3& previous);
 Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p);
 
 // (4.5), (4.10): along the normal until no point entrenches the proxy. Without a normal the step leads away
-// from the HIP, from where the proxy came; without that it is zero.
+// from the HIP; if u is zero too, it is zero.
 Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
                      const Vec3& u, const ProxyParameters& p);
 
@@ -29,14 +29,15 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
 // rule (5.17) a HIP that is not below the plane, nor at P, frees the proxy by r2 - r1 along the normal.
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p);
 
-// Instead of contact_step(): as far towards goal, an admissible_motion(), as (4.11), (4.12) say, up to the
-// first other point met. Where nothing is in the way, goal = u, it is the step of free motion.
+// Replaces contact_step() under ContactRule::regions: towards goal, the admissible_motion(), by the step size
+// of (4.11), (4.12), but only up to the first other point met. If nothing is in the way, goal = u, it is the
+// step of free motion.
 Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
                  const ProxyParameters& p);
 
 // (4.8) in contact: the angle between -u and the normal is below theta. Free: P is the HIP.
 bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p);
-// The same where goal is what touching regions leave of u: the angle between -u and the cone of their
+// The same for a goal from admissible_motion(): the angle between -u and the cone of the touching regions'
 // normals.
 bool has_converged(const Vec3& goal, const Vec3& u, const ProxyParameters& p);
 

@@ -12,8 +12,8 @@ class VirtualCoupling {
   VirtualCoupling(const ProxyParameters& parameters, double haptic_rate_hz)
       : p_(parameters), haptic_rate_hz_(haptic_rate_hz) {}
 
-  // (4.15), (4.16): the force on the hand, N, towards the proxy; zero while the HIP is within r_c of the
-  // proxy. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector, stiffness in N/m.
+  // (4.15), (4.16): the force on the hand, N, towards the proxy (a damper can reverse it); zero while |u_hat|
+  // of (4.15) is r_c or less. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector.
   Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m);
   // No contact: the next force starts without a finite difference.
   void release() { has_previous_ = false; }

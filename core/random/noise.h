@@ -1,6 +1,6 @@
 // Gaussian noise from a counter-based generator: the value belongs to (seed, cell, replicate, frame, point),
-// so any point of any frame of any sweep cell can be made alone, in any order, by any thread, with the same
-// bits.
+// so any point of any frame of any sweep cell can be computed alone, in any order, by any thread, with the
+// same bits.
 #pragma once
 
 #include <array>
@@ -40,15 +40,15 @@ inline NoiseStream noise_stream(const NoiseKey& key, NoiseUse use, std::uint32_t
            static_cast<std::uint32_t>(key.replicate)}};
 }
 
-// The random words of one point of the stream, as numbers evenly spread in (0, 1); the normals of the same
-// point are made of the same words.
+// The random words of one point of the stream, as numbers uniform in (0, 1); the normals of the same point
+// are made from the same words.
 std::array<double, 4> uniforms(const NoiseStream& stream, std::uint32_t point);
 
-// What a normal must be, at least `least` towards positive values (or negative, where towards is below 0), as
-// a question about the two random words that it is made of: its radius falls with the first, its sign follows
-// from the second. Nothing is asked for least <= 0. The answer errs to yes only, by a millionth, so it does
-// not depend on the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the sign wanted;
-// 63: a sign is wanted.
+// A condition on a normal, at least min (or, where towards is below 0, at most -min), as a condition on the
+// two random words that it is made of: its radius falls with the first, its sign follows from the second. min
+// <= 0: no condition. The result is too permissive by a millionth, never too strict, so it does not depend on
+// the last bit of the C library's exp. Bits 0 to 31: largest first word; 62: the required sign; 63: a sign is
+// required.
 std::uint64_t word_bounds(double min, double towards);
 
 }  // namespace remote_touch

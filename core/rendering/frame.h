@@ -1,4 +1,4 @@
-// The data that a sensor and a device give to a renderer, and that a renderer gives to a device.
+// The data that a renderer gets from a sensor and from a device.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace remote_touch {
 
-// What a renderer makes of a frame beforehand, see Renderer::prepare().
+// What a renderer computes from a frame in advance, see Renderer::prepare().
 class FramePreparation {
  public:
   virtual ~FramePreparation() = default;
 };
 
-// One point cloud of the stream. Latency is data: the renderer sees the frame at arrives_s.
+// One point cloud of the stream. Latency is part of the data: the renderer gets the frame at arrives_s.
 struct Frame {
   int index = 0;
   double captured_s = 0;
@@ -27,8 +27,8 @@ struct Frame {
   std::shared_ptr<const FramePreparation> prepared = nullptr;
 };
 
-// The haptic interface point (HIP) in the world frame, and the buttons of the handle that are down, a bit
-// each.
+// The haptic interface point (HIP), world frame, the orientation that takes the handle's axes to the world,
+// and the buttons of the handle that are down, one bit each.
 struct DeviceState {
   Vec3 position_W = Vec3::Zero();
   Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();

@@ -1,5 +1,4 @@
-// Which frame of a stream is the newest. A frame that was not captured later than it is dropped and reported
-// once.
+// Which frame of a stream is the newest. A frame captured no later than that is dropped, and reported once.
 #pragma once
 
 #include <utility>
@@ -13,13 +12,13 @@ class FrameOrder {
  public:
   // Whether the frame is newer than all before.
   bool is_newer(const Frame& frame) const;
-  // The same; it is then the newest.
+  // The same; if so, it becomes the newest.
   bool take(const Frame& frame);
   int newest() const { return index_; }  // -1 before the first
   double captured_s() const { return captured_s_; }
 
-  // The status of a tick, where nothing more serious is to be said: whether a frame was dropped since the
-  // last one.
+  // The status of a tick: `otherwise`, or stale_frame_dropped if that is ok and a frame was dropped since the
+  // last tick.
   RenderStatus status(RenderStatus otherwise) {
     const bool dropped = std::exchange(dropped_, false);
     return dropped && otherwise == RenderStatus::ok ? RenderStatus::stale_frame_dropped : otherwise;

@@ -1,5 +1,5 @@
-// What a renderer reads of a cloud in place of its columns, made once a frame, beforehand or when it is
-// taken.
+// What a renderer reads in place of a cloud's columns, such as a tree; built once a frame, in advance by
+// prepare() or in on_frame().
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// Form: has assign(const PointCloud&), such as a tree.
+// Form: any class with assign(const PointCloud&).
 template <class Form>
 struct PreparedForm final : FramePreparation {
   Form form;
@@ -25,7 +25,7 @@ std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& p
   return made;
 }
 
-// That of the frame, made now unless it was prepared. Allocates only then.
+// The form of the frame, built now unless it was prepared; only that allocates.
 template <class Form>
 std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels) {
   auto prepared = std::dynamic_pointer_cast<const PreparedForm<Form>>(frame.prepared);

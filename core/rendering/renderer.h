@@ -1,4 +1,4 @@
-// The interface of every haptic renderer: frames at the rate of the camera, steps at the haptic rate.
+// The interface of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace remote_touch {
 
 enum class ContactState { free = 0, contact = 1, entrenched = 2 };
 
-// Why an output is not an ordinary one. device_not_finite also stands for a HIP more than 1000 km away. The
-// most serious reason wins.
+// Why an output is not an ordinary one; the most serious reason is reported. device_not_finite includes a HIP
+// more than 1000 km away.
 enum class RenderStatus {
   ok = 0,
   stale_frame_dropped = 1,
@@ -33,17 +33,17 @@ struct ToolOutput {
   double tool_penetration_m = 0;  // of the deepest point of the newest frame; 0 or more
   int detections = 0;             // collision detections made in this tick
   bool budget_exhausted = false;  // the tick ended before the tool had converged
-  int disabled_points = 0;        // of the newest frame: they have no normal and cannot hold the tool
+  int disabled_points = 0;        // of the newest frame, without a normal; TouchRule::voxels ignores them
 };
 
 // What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
 struct GuidanceOutput {
   bool active = false;  // a guidance fixture is active and the newest frame shows its target
   Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
-  // Where it pulls to, world frame; NaN where it does not.
+  // The goal pose, world frame; NaN while not active.
   Vec3 goal_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Quaterniond goal_orientation_W{Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN())};
-  int sequence_step = 0;          // the task's current step; as many as it has after the last
+  int sequence_step = 0;          // the task's current step, from 0; after the last, the number of steps
   bool sequence_running = false;  // the step has begun
   int sequence_missed = 0;        // number of steps that missed their deadline so far
   // From the tool to the goal of the first step that ended in this tick and had one to reach; else NaN.
@@ -55,8 +55,8 @@ struct GuidanceOutput {
 struct RenderOutput {
   Vec3 proxy_W = Vec3::Zero();
   Vec3 force_N = Vec3::Zero();
-  // Where the slave robot is to go, 5.2: never a position of the proxy inside a region, so a command is
-  // repeated while there is no better one. NaN before the first.
+  // The commanded position of the slave robot, 5.2: never a proxy position inside a region, so the last
+  // command is repeated until there is a valid one. NaN before the first.
   Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   ContactState state = ContactState::free;  // of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near
@@ -79,15 +79,15 @@ class Renderer {
   // The slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers of
   // the same kind and settings. May run in parallel to on_frame() and step(). Results do not depend on it.
   virtual void prepare(Frame& /*frame*/) const {}
-  // Room for frames of so many points, or of images of so many pixels, both sides rounded up to multiples of
-  // 16; with it on_frame() of a prepared frame allocates nothing. It lets the one before go: see that it is
-  // held elsewhere when memory must not be given back either.
+  // Reserves memory for frames of so many points, or for images of so many pixels, both sides rounded up to
+  // multiples of 16; then on_frame() of a prepared frame allocates nothing. It releases the frame before: the
+  // caller keeps a reference to that one if memory must not be freed there either.
   virtual void reserve(std::size_t /*points*/) {}
   // A new cloud, prepared or not. A frame that is not newer than the last one is dropped, and the status of
   // the next output reports it.
   virtual void on_frame(const Frame& frame) = 0;
-  // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: trouble is a
-  // status.
+  // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: errors are
+  // reported as a status.
   virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
 };
 

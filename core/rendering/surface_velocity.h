@@ -16,11 +16,12 @@ class SurfaceVelocity {
   // Frames that follow each other without a step between them count as one.
   Vec3 on_frame(double captured_s, const Vec3& normal);
   // The first proxy step after a frame corrects the estimate, (4.13); later steps change nothing. It may be a
-  // step of any state: a free step back to the surface tells that the estimate was too high. Never negative,
+  // step of any state: a free step back to the surface shows that the estimate was too high. Never negative,
   // never reset.
   void on_step(const Vec3& step);
 
-  // In place of both, where the motion is measured otherwise: the velocity along the normal, of either sign.
+  // In place of both, if the motion is measured by other means: the velocity along the normal, of either
+  // sign.
   void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
 
   double m_per_s() const { return velocity_m_per_s_; }

@@ -2,23 +2,23 @@
 // IROS 1995, on the grid mesh of an organised frame (grid_mesh.h): what was done with recorded depth images
 // before point clouds were touched directly ([82], [83] of the dissertation).
 //
-// The god-object is a point that never passes a triangle, from either side. In each round it goes straight
-// to the place nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
-// way, whose plane then joins them; without one it has arrived, and the planes are looked for anew from
-// there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
+// The god-object is a point that never passes a triangle, from either side. In each round it goes straight to
+// the place nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
+// way, whose plane then joins them; if there is none it has arrived, and the planes are searched for anew
+// from there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
 //
-// So that it is always clear on which side it is, the god-object stays surface_offset_m away from planes
-// that hold it; where two are nearer to each other than that, it stays where it is.
+// So that its side is always clear, the god-object stays surface_offset_m away from planes that hold it;
+// where two are nearer to each other than that, it does not move.
 //
-// Limits: a new frame replaces the mesh and the god-object stays where it is, for nothing tells how the
-// surface moved: a mesh that passes over it leaves it behind (pop-through). It falls through what was not
-// measured, and through triangles with an edge above max_edge_length_m. A frame whose points stand in no
-// order has no mesh: nothing holds then, and the status is no_frame, with frame_index 0 or more. Forbidden
+// Limits: a new frame replaces the mesh and the god-object stays where it is, because the motion of the
+// surface is not known: a mesh that passes over it leaves it behind (pop-through). It falls through what was
+// not measured, and through gaps wider than max_edge_length_m, which have no triangles. An unorganised frame
+// has no mesh: the god-object is free and the status no_frame, although frame_index is 0 or more. Forbidden
 // regions r_f are ignored; the stiffness of points (5.8) is not.
 //
 // Of the outputs: contact_count counts the planes that hold the god-object, 0 to 3, steps the rounds,
-// nearest_distance_m goes to the nearest point; it is never entrenched, for what has passed it is out of its
-// reach.
+// nearest_distance_m goes to the nearest point; the state is never entrenched, because a surface that has
+// passed the god-object no longer holds it.
 #pragma once
 
 #include <string>
@@ -41,14 +41,14 @@ struct GodObjectParameters {
 Parameters parameters(GodObjectParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const GodObjectParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const GodObjectParameters& p) {
   return p.stiffness_N_per_m;
 }
 
 class GodObjectRenderer final : public RivalRenderer {
  public:
-  // pre: validate(parameters) is empty. The rate does not matter to the method: it has no memory of time.
+  // pre: validate(parameters) is empty. haptic_rate_hz has no effect: the method does not depend on time.
   GodObjectRenderer(const GodObjectParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
 
@@ -62,7 +62,7 @@ class GodObjectRenderer final : public RivalRenderer {
 
   const GodObjectParameters p_;
   GridMesh mesh_;
-  Vec3 meshed_W_ = Vec3::Zero();  // the middle of the mesh, while it is meshed
+  Vec3 meshed_W_ = Vec3::Zero();  // centre of the ball in which mesh_ is valid, if is_meshed_
   bool is_meshed_ = false;
   int columns_ = 0;  // of the newest frame
   PlaneConstraints planes_;

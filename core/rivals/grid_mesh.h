@@ -1,6 +1,6 @@
-// The triangles between neighbouring points of an organised frame, near a place. Four neighbours in two rows
-// and columns make two triangles, cut from the upper right to the lower left; where one of the four was not
-// measured, the other three make one. A triangle with an edge longer than a limit is left out: it would
+// The triangles between neighbouring points of an organised frame, near a position. Four neighbours in two
+// rows and columns make two triangles, cut from the upper right to the lower left; where one of the four was
+// not measured, the other three make one. A triangle with an edge longer than a limit is left out: it would
 // bridge a depth edge, or join two sheets whose rows follow each other.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace remote_touch {
 
 struct Triangle {
   Vec3 a, b, c;
-  Vec3 normal;  // unit; which of the two sides it points to means nothing
+  Vec3 normal;  // unit; its sign has no meaning
 };
 
 // Where a segment crosses a triangle. height: of both ends over the triangle's plane, on the side that the
@@ -30,17 +30,17 @@ class GridMesh {
  public:
   explicit GridMesh(double max_edge_length_m) : edge_limit_m_(max_edge_length_m) {}
 
-  // Room for frames of so many points. assign() and the rest then never allocate.
+  // Reserves memory for frames of so many points. assign() and the rest then never allocate.
   void reserve(std::size_t points);
-  // The triangles that meet the ball, from the points of a frame whose rows are so wide. pre: points has all
+  // The triangles that meet the ball, from the points of a frame with so many columns. pre: points has all
   // that lie within ball.radius + edge limit of the ball's centre. Whatever the order of the points, the
   // triangles are the same in the same order.
   void assign(const GatheredPoints& points, int columns, const Ball& ball);
   std::span<const Triangle> triangles() const { return {triangles_.data(), count_}; }
 
-  // The triangle that the segment crosses first. An end on its plane has crossed it; a start on its plane has
-  // no side, and crosses nothing. Triangles are larger by 1e-9 of themselves, so that none passes between
-  // two.
+  // The triangle that the segment crosses first. A segment that ends on a triangle's plane crosses it; one
+  // that starts there has no side and does not. Triangles are enlarged by 1e-9 of their size, so that no
+  // segment passes between two.
   std::optional<Crossing> first_crossing(const Vec3& from, const Vec3& to) const;
 
  private:

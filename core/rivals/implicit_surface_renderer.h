@@ -9,9 +9,9 @@
 //
 // and F = k_s (proxy - HIP). Clouds that vary with time: at the beginning of a tick a proxy that a new frame
 // has buried is brought back along the gradient. Limits: one that is buried deeper than the middle of the
-// expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at all;
-// nothing follows the motion of the cloud; surfels have no edges, a sheet goes on for R beyond its last
-// points, and an isolated point or line of points holds nothing. Forbidden regions r_f are ignored.
+// expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at all; the
+// motion of the cloud is not tracked; surfels have no edges: a sheet goes on for R beyond its last points,
+// and an isolated point or line of points exerts no force. Forbidden regions r_f are ignored.
 //
 // Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
 // f < 0 at the end of a tick.
@@ -36,7 +36,7 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
   return p.stiffness_N_per_m;
 }
@@ -46,7 +46,7 @@ inline std::string validate(const ImplicitSurfaceParameters&) {
 
 class ImplicitSurfaceRenderer final : public RivalRenderer {
  public:
-  // The rate does not matter to the method: it has no memory of time.
+  // haptic_rate_hz has no effect: the method does not depend on time.
   ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double haptic_rate_hz,
                           const Kernels& kernels);
 
@@ -66,7 +66,7 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
 
   const ImplicitSurfaceParameters p_;
   const PointSurface surface_;
-  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which surfels are to go on with; zero away from them
+  Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which gives surfels their side; zero away from them
   int steps_ = 0;             // of this tick
 };
 

@@ -1,15 +1,15 @@
-// Direct rendering, the first of the methods that the proxy is to be compared with (introduction of the
-// dissertation, [34] to [37]): no proxy at all. The HIP is a ball of radius r_c, and a spring pushes it out
-// as far as the nearest point is in it,
+// Direct rendering (the penalty method), the oldest of the methods that the proxy is compared with, 2.1.1 of
+// the dissertation: no proxy at all. The HIP is a ball of radius r_c, and a spring pushes it out in
+// proportion to the depth of the nearest point in it,
 //
 //   F = k_s (r_c - r_n) n,    r_n = |HIP - x| - r_f of the nearest region (5.5),
 //
 // along the unit normal n (4.1) of the points within r_3 of the HIP, with the weights of (4.2), r_1 = r_c.
-// With a damper the part of the HIP's velocity along n is slowed, and the sum pushes or is zero.
+// With damping, k_d times the HIP's velocity along n is subtracted; the force never pulls.
 //
-// Known limits, and what it is here for: n turns round when the HIP passes the points, so that deeper than
-// the surface it pushes to the far side (pop-through); the force is at most k_s r_c; between points it bears
-// their pattern, and dF/dx is k_s along n only, for n itself turns fast where the HIP is near the points.
+// Known limits, which the comparison is to show: n reverses when the HIP passes the points, so that the force
+// then pushes to the far side (pop-through); the force is at most k_s r_c; it shows the pattern of the
+// points; and dF/dx is k_s along n only, because n itself turns fast where the HIP is near the points.
 //
 // Of the outputs: the proxy is the HIP; contact_count counts the points within r_c; contact is r_n < r_c.
 #pragma once
@@ -32,7 +32,7 @@ struct PenaltyParameters {
 Parameters parameters(PenaltyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const PenaltyParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const PenaltyParameters& p) {
   return p.stiffness_N_per_m;
 }

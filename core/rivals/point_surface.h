@@ -17,13 +17,13 @@
 namespace remote_touch {
 
 enum class SurfaceKind { metaballs, surfels };
-// w(q), 1 at q = 0 and 0 with its slope from q = 1 on.
+// w(q), 1 at q = 0; zero, with zero slope, from q = 1 on.
 enum class SurfaceWeight {
   wyvill,   // 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2
   wendland  // (1 - q)^4 (4 q + 1), the psi of (4.2)
 };
 
-// f and its gradient at a place. Outside all support f is positive, and there is no gradient.
+// f and its gradient at a position. Outside all support f is positive, and there is no gradient.
 struct SurfaceSample {
   bool supported = false;  // there are points within R
   double value = 1;
@@ -31,8 +31,8 @@ struct SurfaceSample {
 
   // Out of the surface, unit; zero where the gradient gives no direction.
   Vec3 normal() const;
-  // To the surface by f / |grad f|, units of R, negative inside: exact for a plane of surfels, else the step
-  // of Newton. Without a gradient 1 with the sign of f.
+  // Estimated distance to the surface, f / |grad f|, in units of R, negative inside: exact for a plane of
+  // surfels, else one Newton step. Without a gradient: 1 with the sign of f.
   double distance() const;
 };
 
@@ -42,8 +42,8 @@ class PointSurface {
   PointSurface(SurfaceKind kind, SurfaceWeight weight, double support_radius_m, double threshold)
       : kind_(kind), weight_(weight), radius_m_(support_radius_m), threshold_(threshold) {}
 
-  // points: all within R of p, and any beyond. sum_grid: M of core/kernels/kernels.h for as many points.
-  // side: surfels have no inside of their own; n is taken to be within 90 degrees of side, or, where that is
+  // points: all within R of p, and any beyond. sum_grid: M of core/kernels/kernels.h for that number of
+  // points. side: surfels have no inside of their own; n is taken within 90 degrees of side, or, if side is
   // zero, towards the side that p is on. One point, or points on a line, have no plane: p is then outside.
   SurfaceSample at(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;
 

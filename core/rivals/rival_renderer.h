@@ -1,7 +1,6 @@
-// What the renderers of other authors have in common: 3-DOF renderers written from other papers, to be
-// compared with the proxy of chapter 4 on the same scenes with the same noise. Here are the rules of the
-// interface that are not part of a method: order of frames, lost device, and the output before the first
-// frame.
+// What the rivals of the chapter 4 proxy have in common: 3-DOF renderers written from other papers, to be
+// compared on the same scenes with the same noise. This class handles what is no part of any method: the
+// order of frames, a device that is lost, and the output before the first frame.
 #pragma once
 
 #include "core/kernels/kernels.h"
@@ -19,18 +18,18 @@ class RivalRenderer : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) final;
 
  protected:
-  // reach: points as near as that matter to the method, m.
+  // reach_m: distance of the farthest points that matter to the method.
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
       : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 
-  // The newest frame, when it is taken. Returns false where the method can do nothing with it: until the next
-  // one the answers are those without a frame.
+  // Takes the newest frame. Returns false if the method cannot use it: until the next one the outputs are
+  // those without a frame.
   virtual bool take(const NeighbourSearch& /*points*/) { return true; }
   // One tick for a HIP that is finite and a frame that was taken. The proxy starts at the first HIP. Fills in
   // force_N, state, nearest_distance_m, steps, converged, contact_count and status, and leaves the proxy and
   // the normal in the members below.
   virtual void touch(const Vec3& hip_W, RenderOutput& out) = 0;
-  // The HIP is lost, or there is no frame: forget what belongs to an unbroken motion.
+  // The HIP is lost, or there is no frame: forget the state that assumes a continuous motion.
   virtual void reset_motion() {}
 
   // (5.8) where points carry a stiffness, else the renderer's own.

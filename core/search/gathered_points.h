@@ -1,4 +1,4 @@
-// The points near the proxy, copied side by side into columns that the kernels read.
+// The points near the proxy, copied into contiguous columns that the kernels read.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,7 @@ class Buffer {
 // whatever the search produced: no result depends on it.
 class GatheredPoints {
  public:
-  // Room for every point of a cloud. Keeps what it has when that is enough.
+  // Sets the columns, with capacity for every point of a cloud; allocates only if they are shorter.
   void reserve(std::size_t cloud_size, bool with_radius, bool with_stiffness);
   void clear() { count_ = 0; }
   // Appends those points of the run whose regions meet the ball. pre: reserve() for the run's cloud.

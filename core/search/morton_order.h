@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// Numbers of the measured points along a Morton curve through the cloud's box; points of one place in the
+// Numbers of the measured points along a Morton curve through the cloud's box; points at one place keep the
 // order of the cloud.
 std::vector<std::uint32_t> morton_order(const PointCloud& cloud);
 

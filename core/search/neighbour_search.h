@@ -1,6 +1,6 @@
 // Finding the points near a position. Every search returns the same set: all points whose forbidden regions
 // meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0. They
-// differ in which points they look at.
+// differ in which points they test.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,13 @@ namespace remote_touch {
 class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
-  // Adds the points whose regions meet the ball to out, which has room for size() points. Does not call
-  // finish(). One reader at a time: an implementation may keep what it made for the next call.
+  // Adds the points whose regions meet the ball to out, which has capacity for size() points. Does not call
+  // finish(). One reader at a time: an implementation may cache results for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
-  // Every point that was measured, for those who look at them all, in the order of the search. This one
-  // writes what gather() finds into room: positions, and radii and stiffness where there are some, but no
-  // normals and no colours. A search over a stored cloud gives the cloud itself, so all its columns, and the
-  // rows of missing measurements too.
+  // Every measured point, in the order of the search. The default writes what gather() finds into buffer:
+  // positions, and radii and stiffness if there are any, but no normals and no colours. A search over a
+  // stored cloud returns the cloud itself, with all its columns, and with the missing measurements as NaN.
   virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& buffer) const;
   virtual bool has_fixture_radius() const { return false; }
   // Some radius is above 0: there are forbidden regions, chapter 5.
@@ -30,8 +29,8 @@ class NeighbourSearch {
   virtual bool has_stiffness() const { return false; }
   // No r_f of the cloud is larger, m.
   virtual double max_fixture_radius_m() const { return 0; }
-  // Of an organised frame: how wide its rows are. The point in a row and column has the number row x columns
-  // + column in GatheredPoints::index(), whatever the order of the search. 0: points in no order.
+  // Number of columns of an organised frame; 0: unorganised. The point in a row and column has the number row
+  // x columns + column in GatheredPoints::index(), whatever the order of the search.
   virtual int organised_columns() const { return 0; }
 };
 
@@ -50,7 +49,7 @@ class CloudSearch : public NeighbourSearch {
 
  protected:
   PointRun run(std::size_t first, std::size_t count) const;
-  // In which the points lie whose regions meet the ball: wider by the largest r_f of the cloud.
+  // The ball that holds every point whose region meets the given one: larger by the largest r_f of the cloud.
   Ball widened(const Ball& ball) const { return {ball.centre, ball.radius + max_fixture_radius_}; }
   PointCloud cloud_;
 
@@ -58,15 +57,15 @@ class CloudSearch : public NeighbourSearch {
   double max_fixture_radius_ = 0;
 };
 
-// Looks at every point: the oracle for the others, and the best choice for a few hundred points.
+// Tests every point: the oracle for the others, and the best choice for a few hundred points.
 class BruteForceSearch final : public CloudSearch {
  public:
   using CloudSearch::CloudSearch;
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
 };
 
-// Looks at the window of the image that the ball projects into, 4.2.2. Needs no preparation per frame.
-// pre: cloud.image is set and true.
+// Tests the window of the image that the ball projects into, 4.2.2. Needs no preparation per frame. pre:
+// cloud.image is set and correct.
 class ImageWindowSearch final : public CloudSearch {
  public:
   explicit ImageWindowSearch(PointCloud cloud);
@@ -77,8 +76,8 @@ class ImageWindowSearch final : public CloudSearch {
   double nearest_depth_m_;  // of the whole image
 };
 
-// Looks at the cells of a uniform grid that the ball's bounding box meets. Points are stored cell after cell,
-// so cells that follow each other along z are one run.
+// Tests the cells of a uniform grid that the ball's bounding box meets. Points are stored cell by cell, so
+// that neighbouring cells along z are one run.
 class UniformGridSearch final : public CloudSearch {
  public:
   // cell_m is coarsened until there are at most about four cells a point. Throws std::invalid_argument if <=
@@ -95,7 +94,7 @@ class UniformGridSearch final : public CloudSearch {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
   double cells_per_m_ = 1;
   int cells_[3] = {1, 1, 1};
-  int columns_;                                // of the points as they came: here they stand in another order
+  int columns_;                                // of the cloud as given: here its points are sorted by cell
   std::vector<std::uint32_t> cell_start_;      // first stored position of each cell, and the end
   std::vector<std::uint32_t> original_index_;  // of each stored position
 };

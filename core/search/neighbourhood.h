@@ -9,15 +9,15 @@
 
 namespace remote_touch {
 
-// A kept list belongs to a small cube of space, not to the way the proxy came: a position always meets the
-// same list, so results do not depend on history or on the search used. A few are kept, because a proxy on
-// noisy points goes to and fro between neighbouring cubes.
+// A kept list belongs to a small cube of space, not to the path of the proxy: a position always gets the same
+// list, so results do not depend on history or on the search used. A few lists are kept, because a proxy on
+// noisy points moves back and forth between neighbouring cubes.
 class Neighbourhood {
  public:
-  // reach: every point with r_n <= reach of the position asked about is in the list (and some beyond).
+  // reach: every point with r_n <= reach, m, of the queried position is in the list (and some beyond).
   Neighbourhood(double reach, const Kernels& kernels);
 
-  // For clouds of so many points.
+  // Allocates for clouds of so many points.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
   // A new cloud. Allocates when it is the largest so far.
   void set_points(std::shared_ptr<const NeighbourSearch> points);
@@ -26,7 +26,7 @@ class Neighbourhood {
   // All points with r_n <= radius of p, gathered anew, and some beyond. Valid until the next call.
   const GatheredPoints& within(const Vec3& p, double radius);
   // (4.9), (5.9): how far a ball of that radius moves from p along the unit vector u before it meets a point;
-  // limit when nothing is met before. Looks at the whole swept tube.
+  // limit when nothing is met before. Tests the whole swept tube.
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit);
 
   bool has_regions() const { return points_->has_regions(); }
@@ -50,7 +50,7 @@ class Neighbourhood {
   std::shared_ptr<const NeighbourSearch> points_;
   std::array<CachedList, 4> cache_;
   std::size_t current_ = 0;
-  GatheredPoints tube_;  // what was gathered for one call
+  GatheredPoints tube_;  // gathered for one call
 };
 
 }  // namespace remote_touch

@@ -10,13 +10,13 @@
 
 namespace remote_touch {
 
-// Rows are of unit length. What a product of a row with a y of coordinates up to 1 is rounded by:
+// Rows are of unit length. Rounding error of row . y for coordinates of y up to 1:
 inline constexpr double kRounding = 1e-14;
 // A row is a combination of others when the square of its part outside of them is below:
 inline constexpr double kParallelSquared = 1e-16;
 
-// The rows that hold y, as the columns of q R: q is orthonormal, and R is kept as its inverse. What lies
-// beyond count is zero, so that products run over all N and have no branches.
+// The rows that hold y, as the columns of q R: q is orthonormal, and R is kept as its inverse. Columns beyond
+// count are zero, so that products run over all N and have no branches.
 template <int N>
 struct ActiveRows {
   int count = 0;
@@ -25,7 +25,7 @@ struct ActiveRows {
   Square<N> q, inverse;
 
   // Moves y until it fulfils a row, with the rows that hold y tight and their multipliers at 0 or above: a
-  // row whose multiplier reaches 0 on the way leaves. Returns false where no way leads there.
+  // row whose multiplier reaches 0 on the way leaves. Returns false if no such y exists.
   bool take_in(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
     double its_multiplier = 0;
     for (;;) {
@@ -82,8 +82,8 @@ struct ActiveRows {
     }
   }
 
-  // Takes away the distances of y to the rows that hold it, in which the steps have left their rounding, and
-  // finds the multipliers that belong to y.
+  // Removes the distances of y to the rows that hold it, which are rounding of the steps, and computes the
+  // multipliers that belong to y.
   void settle(const Packed<N>& distance, const Packed<N>& target, Packed<N>& y) {
     y.add(1, q.times(inverse.transposed_times(distance)));
     Packed<N> moved = y;

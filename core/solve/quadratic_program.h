@@ -1,7 +1,7 @@
 // The point nearest to a target among those that fulfil linear inequalities: (6.4) subject to (6.5) in the
 // coordinates y = M^(1/2) a_g, where the kinetic distance is the Euclidean one. Dual active set method of
-// Goldfarb and Idnani (1983): it starts at the target and takes in the row violated most; rows that pull
-// instead of push then leave, and may come back. Of fixed size: nothing allocates after construction.
+// Goldfarb and Idnani (1983): it starts at the target and adds the row violated most; rows whose multiplier
+// would become negative then leave, and may come back. Of fixed size: nothing allocates after construction.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,23 +13,23 @@ namespace remote_touch {
 enum class ProgramStatus {
   optimal = 0,
   infeasible = 1,  // no point fulfils all rows
-  stalled = 2      // gave up after a bounded number of steps, y violates rows; or the target is no number
+  stalled = 2      // gave up after a bounded number of steps, y violates rows; or the target is not finite
 };
 
 template <int N>
 struct ProgramResult {
   ProgramStatus status = ProgramStatus::optimal;
   Eigen::Matrix<double, N, 1> y = Eigen::Matrix<double, N, 1>::Zero();
-  int active_count = 0;       // rows that hold y, at most N; they are linearly independent
+  int active_count = 0;       // active rows: those that hold y, at most N; they are linearly independent
   int active[N] = {};         // their numbers, counted from 0 in the order of add()
   double multiplier[N] = {};  // of each, 0 or more: y - target = sum of multiplier x row
-  int iterations = 0;         // times that all rows were looked at
+  int iterations = 0;         // passes over all rows
 };
 
 // min |y - target|^2 / 2 subject to row . y >= bound for every row.
 //
-// How long a row is does not matter. On optimal, (bound - row . y) / |row| is below 1e-13 times the largest
-// coordinate of target and y, rounding apart that no y avoids; so is y's distance from the rows that hold it.
+// The length of a row does not matter. On optimal, (bound - row . y) / |row| is below 1e-13 times the largest
+// coordinate of target and y, apart from the rounding of y itself; so is y's distance from the active rows.
 // Rows that differ by less than 1e-8 from a combination of others count as that combination.
 template <int N>
 class QuadraticProgram {
@@ -41,11 +41,12 @@ class QuadraticProgram {
   void clear();
   int size() const { return count_; }
   int capacity() const { return capacity_; }
-  // Returns false and leaves the row out where it or its bound is not finite, or there is no room. A row of
-  // zeros is kept: without effect where its bound is 0 or less, and fulfilled by nothing above.
+  // Returns false and leaves the row out if it or its bound is not finite, or capacity() is reached. A row of
+  // zeros is kept: it has no effect if its bound is 0 or less, and makes the program infeasible if it is
+  // above.
   bool add(const Vector& row, double bound);
-  // A target that is not finite, or beyond 1e150, is answered with stalled and y = 0. On infeasible, y is
-  // where the method found the contradiction, and the rows that held it there are the active ones.
+  // A target that is not finite, or beyond 1e150, gives stalled and y = 0. On infeasible, y is where the
+  // method found the contradiction, and the rows that held it there are the active ones.
   ProgramResult<N> nearest(const Vector& target) const;
 
  private:

@@ -1,4 +1,4 @@
-// Which of the pairs of leaves become constraints, (7.4): far more are near than a motion can take.
+// Which of the pairs of leaves become constraints, (7.4): far more are near than the motion program can take.
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,32 @@
 
 namespace remote_touch {
 
-// A pair that is a constraint: n . u >= -gap for the motion u of the middle of the leaf.
+// A pair that is a constraint: n . u >= -gap for the motion u of the leaf's centre.
 struct ChosenPair {
   std::uint32_t leaf;  // of the tool
   double gap_m;
-  Vec3 n_W;         // unit, the way out of the region
+  Vec3 n_W;         // unit, out of the region
   double motion_m;  // shortest motion of the leaf that can violate it where its other constraints are obeyed
 };
 
-// All pairs of one leaf limit the motion of one point, its middle. From the deepest on, a pair is kept unless
-// one that is kept already stands for it: pair j with the gap g_j goes if there is a deeper one i with
-// g_j - g_i >= |n_j - n_i| m, for then no motion up to the length m that obeys i violates j.
+// All pairs of one leaf limit the motion of one point, its centre. From the deepest on, a pair is kept unless
+// one already kept makes it redundant: pair j with the gap g_j is dropped if some deeper pair i has g_j - g_i
+// >= |n_j - n_i| m, because then no motion up to the length m that obeys i violates j.
 //
 // As long as the leaf is no deeper than half the look-ahead, m is that half, which is what it moves in a
-// step: nothing is lost that a step could run into. A rule that is content with nearly as much would be
-// wrong. In the obtuse crease of two regions 1 mm apart, the pole of either lies 9 um deep in the other
-// region and 0.8 mm aside, and a tool that sees one region at a time goes to and fro between them.
+// step: nothing is lost that a step could run into. A looser rule would be wrong: in the obtuse crease of two
+// regions 1 mm apart, the pole of either lies 9 um deep in the other region and 0.8 mm aside, and a tool that
+// sees one region at a time moves back and forth between them.
 //
-// A deeper leaf is on its way out, or in a wedge, and steps are longer: m is twice the look-ahead, and j goes
-// only if its line is also within kAlike of that of i, so that every direction keeps its deepest. What is
-// less than half as deep as the deepest pair, and not within a look-ahead of it, goes too: the next look
-// finds it.
+// A deeper leaf is on its way out, or in a wedge, and steps are longer: m is twice the look-ahead, and j is
+// dropped only if its normal is also within kAlike of that of i, so that every direction keeps its deepest. A
+// pair less than half as deep as the deepest one, and not within a look-ahead of it, is dropped too: the next
+// query finds it.
 //
-// Of every leaf the deepest pair is kept, so no pair is deeper than all that are kept. Room ends with
-// kMaxPairsOfLeaf of a leaf, then the shallower ones are lost, and with kCapacity of all, then those are lost
-// that only the longest motions can violate; those of deep leaves count as their gaps, so the deepest stay.
-// Allocates on construction only.
+// Of every leaf the deepest pair is kept, so no pair is deeper than all that are kept. Beyond kMaxPairsOfLeaf
+// of a leaf the shallower ones are lost; beyond kCapacity in all, those are lost that only the longest
+// motions can violate. Pairs of deep leaves count by their gaps, so the deepest stay. Allocates on
+// construction only.
 class PairChoice {
  public:
   static constexpr std::size_t kMaxPairsOfLeaf = 64, kCapacity = 4096;
@@ -44,14 +44,14 @@ class PairChoice {
   PairChoice(double look_ahead_m, const Kernels& kernels);
 
   void begin();
-  // The gap up to which pairs of a leaf can be kept whose deepest one has this gap, or a smaller one.
+  // The gap up to which pairs of a leaf can be kept if its deepest pair has gap_m, or less.
   double within_m(double gap_m) const;
   // found: all pairs of a leaf within that. Returns the number of its deepest region; pre: found is not
   // empty.
   std::uint32_t choose(const CloseLeaf& leaf, const TreeCollision::Found& found);
 
   std::span<const ChosenPair> chosen() const { return chosen_; }
-  // No more than most of them: those that the shortest motions can violate, these first.
+  // Keeps at most max of them: those that the shortest motions can violate, these first.
   void keep_shortest_motions(std::size_t max);
   bool is_deep(double gap_m) const { return gap_m < -motion_m_; }
 

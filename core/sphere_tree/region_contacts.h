@@ -1,4 +1,4 @@
-// What holds a tool of spheres among forbidden regions, (7.4).
+// The contacts of a tool of spheres with forbidden regions, (7.4).
 #pragma once
 
 #include <memory>
@@ -17,33 +17,33 @@ namespace remote_touch {
 struct RegionTouch {
   double nearest_distance_m;  // smallest gap, negative inside; infinite where none is within the look-ahead
   int leaf_pairs = 0;         // with gaps of kTouch_m or less
-  int max_tool_leaves = 0;    // that have one
-  double stiffness_N_per_m;   // mean of k_s over them, by how deep each is; the tool's own without any
+  int max_tool_leaves = 0;    // number of tool leaves that have such a pair
+  double stiffness_N_per_m;   // mean of k_s over these pairs, weighted by depth; the tool's own without any
 };
 
-// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless others
-// stand for it: see PairChoice. Where more are left than the motion takes, and no leaf is deep, those go that
-// only the longest motions can violate. While one is deep, half the room is for the deepest, and for the
-// other half ContactThinning keeps the deepest of every place and octant of directions, so that what is left
-// is spread over the tool. Does not depend on the kernels' level. Allocates on construction and in
-// on_frame() only.
+// Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless
+// another makes it redundant: see PairChoice. If more are left than the motion takes, and no leaf is deep,
+// those are dropped that only the longest motions can violate. While one is deep, half of the contacts are
+// the deepest, and for the other half ContactThinning keeps the deepest of every cell and octant of
+// directions, so that they are spread over the tool. Does not depend on the kernels' level. Allocates on
+// construction and in on_frame() only.
 class RegionContacts final : public NearContactSource {
  public:
-  // Half the band of gaps in which a pair counts as touching, the less the less deep it is.
+  // A pair with a gap of this or less touches. Its weight rises linearly from 0 at this gap to 1 at minus
+  // this.
   static constexpr double kTouch_m = 1e-4;
 
   // tool: in the tool frame.
   RegionContacts(std::shared_ptr<const SphereTree> tool, double look_ahead_m, const Kernels& kernels);
 
-  void on_frame(std::shared_ptr<const RegionTree> regions);  // allocates where room was not reserved
-  void reserve(std::size_t points);                          // for clouds of so many
+  void on_frame(std::shared_ptr<const RegionTree> regions);  // allocates unless reserved
+  void reserve(std::size_t points);                          // for clouds of so many points
   const RegionTree& regions() const { return *regions_; }
 
-  // A region has one outside, so the side says nothing. The deepest gap is that of all pairs, not only of the
-  // contacts.
+  // side has no effect: a region has only one outside. deepest_m is over all pairs, not only the contacts.
   NearContacts near(const ToolPose& pose, double side) override;
 
-  // own_stiffness: k_s of points that have none.
+  // own_stiffness_N_per_m: k_s of points that have none.
   RegionTouch touched(const ToolPose& pose, double own_stiffness_N_per_m);
 
  private:
@@ -57,7 +57,7 @@ class RegionContacts final : public NearContactSource {
   std::shared_ptr<const RegionTree> regions_ = std::make_shared<RegionTree>();
   TreeCollision collision_;
   PairChoice choice_;
-  std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region when last looked at
+  std::vector<std::uint32_t> deepest_;  // of every leaf of the tool, its deepest region at the last query
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, others_;
 };

@@ -10,8 +10,8 @@
 namespace remote_touch {
 
 // A leaf for every measured point with r_f above 0, of that radius; world frame. A node of the lowest level
-// for every patch of 16 x 16 pixels that has some, in blocks of 4 x 4 patches; for a cloud that is no image
-// for every kPatchPoints of them along a space-filling curve.
+// for every patch of 16 x 16 pixels with such points, in blocks of 4 x 4 patches; for a cloud without an
+// image, for every kPatchPoints of them along a space-filling curve.
 class RegionTree {
  public:
   static constexpr int kPatchSide_px = 16;

@@ -1,4 +1,5 @@
-// Few spheres that cover many points: greedy, each next sphere the one that covers most of what is left.
+// Few spheres that cover many points: greedy, each next sphere is the one that covers most of the points
+// left.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ class SphereCover {
   SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, double cell_m);
 
   // Spheres of the choice, grown by inflation_m, until all points are covered that any of them covers, or
-  // until there are more than most; of two that cover as many the one that comes first.
+  // until there are more than max; of two that cover equally many, the one that comes first.
   struct Result {
     std::vector<Sphere> spheres;
     std::size_t left = 0;  // points that are not covered

@@ -1,4 +1,4 @@
-// Spheres under bounding spheres, 7.3.2 and 7.4: what is far away is passed over in one test.
+// Spheres under bounding spheres, 7.3.2 and 7.4: whatever is far away is skipped with one test.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@ struct Sphere {
   double radius_m = 0;
 };
 
-// Around the mean of the centres, (7.3): quick to make rather than the smallest. pre: not empty.
+// Around the mean of the centres, (7.3): fast to compute, but not the smallest. pre: not empty.
 Sphere bounding_sphere(std::span<const Sphere> spheres);
 
-// Around the middles of spheres, and the largest radius of one: tighter than a bounding sphere where many
+// A box around the centres of spheres, and their largest radius: tighter than a bounding sphere where many
 // large spheres lie close together, as regions do.
 struct SphereBox {
   Vec3 low, high;
@@ -32,7 +32,7 @@ struct SphereBox {
   }
 };
 
-// first .. first + count - 1: its children, of the level below; on the lowest level leaves.
+// Its children are first .. first + count - 1 of the level below; on the lowest level, of the leaves.
 struct SphereNode {
   Sphere sphere;
   SphereBox box;  // of all leaves below
@@ -45,15 +45,15 @@ class SphereTree {
   static constexpr std::size_t kBranching = 8;
 
   void clear();  // keeps the memory
-  // One more node of the lowest level. Nodes that are added one after the other should be near each other:
-  // they get into one node of the next level. None is made of no leaves.
+  // One more node of the lowest level. Nodes added one after the other should be near each other, because
+  // they share a node of the next level. No leaves: adds no node.
   void add(std::span<const Sphere> leaves);
   // The levels above; once, after the last add().
   void finish();
 
   bool empty() const { return leaves_.empty(); }
   std::span<const Sphere> leaves() const { return leaves_; }
-  // From the lowest up, at least one unless the tree is empty.
+  // Levels from the lowest up, at least one unless the tree is empty.
   std::size_t level_count() const { return level_count_; }
   std::span<const SphereNode> level(std::size_t i) const { return levels_[i]; }
   std::span<const SphereNode> top() const { return levels_[level_count_ - 1]; }

@@ -17,11 +17,11 @@ namespace remote_touch {
 // where it has one, is the stiffness of the coupling while its region holds the tool, (5.3).
 //
 // Of the output: nearest_distance_m is the smallest gap between a leaf of the tool and a region, infinite
-// beyond the look-ahead; contact_count are the pairs of leaves that touch, contact_clusters the leaves of the
-// tool among them; tool_penetration_m is the deepest leaf in a region.
+// beyond the look-ahead; contact_count is the number of leaf pairs that touch, contact_clusters that of the
+// tool's leaves among them; tool_penetration_m is the depth of the deepest leaf in a region.
 class SphereTreeRenderer final : public Renderer {
  public:
-  // Of the parameters those count that region_parameters() lists. spheres: of the tool, in its frame. pre:
+  // Uses only the parameters that region_parameters() lists. spheres: of the tool, in its frame. pre:
   // validate(parameters) is empty.
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                      std::shared_ptr<const SphereTree> spheres, const Kernels& kernels);
@@ -41,13 +41,13 @@ class SphereTreeRenderer final : public Renderer {
   LookAheadMotion motion_;
 
   ToolPose pose_;
-  Vec3 normal_W_ = Vec3::Zero();  // of contact: where the regions push the tool
+  Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the regions push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
   FrameOrder order_;
 };
 
-// Those parameters of a tool that regions have a use for.
+// The parameters of a tool that have an effect among regions.
 Parameters region_parameters(ToolParameters& p);
 
 }  // namespace remote_touch

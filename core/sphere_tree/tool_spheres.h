@@ -1,6 +1,6 @@
-// A tool as a sphere tree, made from its mesh beforehand, 7.4: what the dissertation takes from the Sphere
-// Tree Toolkit [118]. Leaves are balls inscribed in the tool, all grown by the same growth: about the least
-// with which so many of them cover the surface.
+// A tool as a sphere tree, made from its mesh in advance, 7.4: the dissertation uses the Sphere Tree Toolkit
+// [118] for this. Leaves are balls inscribed in the tool, all enlarged by the same inflation_m: about the
+// smallest with which so many of them cover the surface.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ namespace remote_touch {
 struct ToolSpheres {
   SphereTree spheres;  // in the tool frame
   double inflation_m = 0;
-  // How far the union of the leaves is from the mesh: the most that a leaf stands out of it, and the most
-  // that the surface stands out of all leaves, both measured on dense samples. The first can be no more than
-  // inflation_m; the leaves were grown until nothing was left of the second on these samples.
+  // How far the union of the leaves is from the mesh, measured on dense samples: the largest distance of a
+  // leaf outside the mesh, at most inflation_m, and of the surface outside all leaves, which enlarging the
+  // leaves brought to 0 on these samples.
   double outside_m = 0, inside_m = 0;
 };
 std::string text(const ToolSpheres& spheres);
 
 inline constexpr int kMinLeaves = 1, kMaxLeaves = 10000;
 
-// pre: max_leaves in the range above. Fewer leaves are made where they do. Throws InputError for a tool
+// pre: max_leaves in the range above. Makes fewer leaves if they suffice. Throws InputError for a tool
 // without a node of its grid inside.
 ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);
 

@@ -16,37 +16,37 @@ struct LeafPair {
   double gap_m;                // between their surfaces, negative where they overlap
 };
 
-// A leaf of the tool at a pose, world frame, and the patches of regions that are near the node it belongs to.
+// A leaf of the tool at a pose, world frame, and the patches of regions near the node that it belongs to.
 struct CloseLeaf {
   std::uint32_t number;
   std::uint32_t first_patch, patch_count;  // in the list of TreeCollision
   Sphere sphere_W;
 };
 
-// Allocates in the constructor and in reserve(), and in on_frame() where that was not called.
+// Allocates in the constructor and in reserve(), and in on_frame() if reserve() was not called.
 class TreeCollision {
  public:
-  // tool: in the tool frame; stays in use, and so do regions.
+  // tool: in the tool frame. Keeps references to tool and regions.
   TreeCollision(const SphereTree& tool, const Kernels& kernels);
   void on_frame(const SphereTree& regions);
   void reserve(std::size_t leaves, std::size_t patches);  // of the regions
 
-  // The tool's tree is gone down depth first against the topmost regions, then the regions' tree against
-  // every node of the tool's lowest level: what its leaves have in common is looked for once. Every leaf with
-  // a pair within margin_m is among those returned, in the order of their numbers. Valid until the next call.
+  // Descends the tool's tree depth first against the top level of the regions' tree, then the regions' tree
+  // against every node of the tool's lowest level, so that the search is shared by the leaves of a node.
+  // Every leaf with a pair within margin_m is among those returned, in the order of their numbers. Valid
+  // until the next call.
   std::span<const CloseLeaf> close_leaves(const ToolPose& pose, double margin_m);
 
-  // All regions with gaps of margin_m or less to one of them, in the order of their numbers; no larger a
-  // margin than before. The columns may be changed, and are valid until the next call.
+  // All regions with gaps of margin_m or less to one of these leaves, in the order of their numbers; margin_m
+  // is at most that of close_leaves(). The columns may be changed, and are valid until the next call.
   struct Found {
     NearRegions regions;  // normals in the world
     std::size_t count;
   };
   Found regions_near(const CloseLeaf& leaf, double margin_m);
 
-  // All pairs with gaps of margin_m or less, as many as there is room for: where it ends the deepest, of
-  // equally deep ones those with the smaller numbers. Ordered by the leaf of the tool, then the region.
-  // Returns how many there are.
+  // All pairs with gaps of margin_m or less; if pairs is too short, the deepest, of equally deep ones those
+  // with the smaller numbers. Ordered by the leaf of the tool, then the region. Returns how many there are.
   std::size_t near(const ToolPose& pose, double margin_m, std::span<LeafPair> pairs);
 
  private:

@@ -12,28 +12,28 @@ namespace remote_touch {
 
 // A plane through the points of a window.
 struct PlaneFit {
-  double height = 0, slope_u = 0, slope_v = 0;  // at the place asked about
+  double height = 0, slope_u = 0, slope_v = 0;  // at the queried place
   double variance = 0;                          // of the height, in units of the noise's
   double residual = 0;                          // sum of squares
   double count = 0;                             // points
   bool valid = false;                           // they do not lie on a line
 };
 
-// Sums over the members of a patch, of which those over any window of whole cells follow at once.
+// Sums over the members of a patch, from which those over any window of whole cells follow in constant time.
 class HeightFit {
  public:
   HeightFit() : sums_(static_cast<std::size_t>(kCorners) * kCorners) {}
   // The members of points, which all lie on the map's square, less the trend: planes are fitted to the rest.
   void take(const PatchPoints& points, const Trend& trend = {});
 
-  // Half sides of windows in contact radii are rounded to cells.
+  // half_side of the window, in contact radii, is rounded to whole cells.
   PlaneFit plane_around(double u, double v, double half_side) const;
   // Standard deviation of the heights about the planes of small blocks, a low quantile over the blocks, so
-  // that those with edges do not count.
+  // that blocks with edges have no effect.
   double noise() const;
-  // In each node the plane of the widest window that does not disagree with the narrower ones by more than
-  // noise of that standard deviation explains (Lepski's rule, by intersecting confidence intervals:
-  // Goldenshluger and Nemirovski 1997). Windows too narrow to tell a height at all have no say.
+  // At each node the plane of the widest window that differs from the narrower ones by no more than noise of
+  // that standard deviation explains (Lepski's rule, by intersecting confidence intervals: Goldenshluger and
+  // Nemirovski 1997). Windows too narrow to determine a height are skipped.
   void fit(double sigma, HeightMap& map) const;
   // Members in a square of one contact radius, the median over where there are any.
   double typical_density() const { return density_; }

@@ -23,7 +23,7 @@ class HeightMap {
     double height = 0, slope_u = 0, slope_v = 0;
     double error = 0;      // standard error of the height
     bool known = false;    // there is a plane
-    bool covered = false;  // the sheet is there; else the plane continues it beyond its border
+    bool covered = false;  // the sheet reaches here; else the plane continues it beyond its border
   };
   static double node_at(int i) { return i * kNodePitch - kHalf; }
   Node& node(int i, int j) { return nodes_[static_cast<std::size_t>(j * kNodes + i)]; }
@@ -36,10 +36,10 @@ class HeightMap {
   void set_plane(double height, double slope_u, double slope_v, double radius);
   // Continues the map by so many contact radii beyond its border, as planes.
   void extend(int rings);
-  // Adds a plane: what the sheet moved and turned by.
+  // Adds a plane: the motion and rotation of the sheet.
   void add_plane(double height, double slope_u, double slope_v);
 
-  // NaN where the map knows nothing. Beyond its border: that of the nearest place on it.
+  // NaN where no height is known. Beyond the map's border: that of the nearest place on it.
   double height(double u, double v) const;
   // The same, for kernels.
   HeightGrid grid() const { return {corner_.data(), kCells, kHalf, 1 / kCell, kLast}; }

@@ -20,7 +20,7 @@ class HeightProfile {
     if (bin >= 0 && bin < bins_) count_[static_cast<std::size_t>(bin)] += 1;  // NaN is neither
   }
 
-  // By numbers of bins; bins() is none.
+  // Adds points by the numbers of their bins; bins() stands for no bin.
   void add_bins(const std::int32_t* bin, std::size_t number);
 
   int bins() const { return bins_; }
@@ -35,7 +35,7 @@ class HeightProfile {
   // largest sum of products. Of nearly equal ones the smallest.
   double shift_of(const HeightProfile& other, double reach) const;
   // How far from a height, upwards (1) or downwards (-1), another sheet begins: at the bottom of a valley
-  // that chance does not explain. Twice the range where there is none. Of a smoothed profile.
+  // that chance does not explain. Twice the range if there is none. pre: a smoothed profile.
   double valley_from(double height, int direction) const;
 
  private:
@@ -43,7 +43,7 @@ class HeightProfile {
   double window_ = 1;  // how many bins a count is the mean of
   int bins_ = 0;
   static constexpr int kMaxBins = 1024;
-  std::array<double, kMaxBins + 1> count_;  // of each bin, and behind the last of what is in none
+  std::array<double, kMaxBins + 1> count_;  // of each bin; after the last, of points in no bin
 };
 
 }  // namespace remote_touch

@@ -18,10 +18,10 @@ class PatchPoints {
   void reserve(std::size_t points);
   // The gathered points of a region; no members of the sheet yet. pre: reserve() for their frame.
   void take(const GatheredPoints& gathered, const PatchRegion& region);
-  // Or one after the other, as members or not; none of them has a source.
+  // Or add points one by one, as members or not; these have no source.
   void clear() { count_ = 0; }
   void add(const PatchPlace& place, bool is_member);
-  // How far each lies above what a map predicts; NaN where it predicts nothing.
+  // Residual: how far each point lies above the height that a map predicts; NaN where it predicts none.
   void set_residuals(const HeightMap& map);
 
   std::size_t size() const { return count_; }
@@ -32,11 +32,11 @@ class PatchPoints {
   void set_member(std::size_t i, bool member) { member_[i] = member; }
   double residual(std::size_t i) const { return residual_[i]; }
 
-  // How many residuals, of points no farther than reach from a place along the patch, lie at which height.
+  // Profile of the residuals of points within reach of a place, measured along the patch.
   HeightProfile profile_near(const PatchPlace& place, double reach, double half_range) const;
-  // Of the residuals near a plane.
+  // Sums of the residuals near a plane.
   PlaneSums sums_near(const NearPlane& plane) const;
-  // Of the members' heights.
+  // Sums of the members' heights.
   QuadraticSums sums_of_quadratic(double radius) const;
 
  private:

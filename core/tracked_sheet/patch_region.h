@@ -1,4 +1,4 @@
-// The region of a frame that is described by a patch.
+// The region in which the points of a patch replace those of the frame.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// The part of space in which a patch says what is there: a cylinder about its normal, in contact radii.
+// A cylinder about the patch's normal, in contact radii.
 struct PatchRegion {
   PatchFrame frame;
   double radius = 0, half_height = 0;
@@ -17,7 +17,7 @@ struct PatchRegion {
     return p.u * p.u + p.v * p.v < radius * radius && std::abs(p.h) <= half_height;
   }
   bool holds(const Ball& ball) const;
-  // Around all of it, m.
+  // The bounding ball, m, world frame.
   Ball around() const {
     return {frame.origin_W(), std::hypot(radius, half_height) * frame.unit_m() * (1 + 1e-9)};
   }

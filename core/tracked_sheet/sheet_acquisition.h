@@ -17,15 +17,15 @@ struct FoundSheet {
   double known = 0;  // radius around the origin in which it was seen, contact radii
 };
 
-// Room for the work of a search; its contents mean nothing.
+// Scratch memory of a search.
 struct AcquisitionBuffers {
   GatheredPoints& gathered;
   PatchPoints& points;
   HeightFit& fit;
 };
 
-// The nearest mode of heights along the normal, which is first that of (4.1) over a wide reach and then that
-// of the mode itself. None: too few points, or they make no surface that faces the proxy.
+// Takes the nearest mode of the heights along a normal: first the normal (4.1) over a wide reach, then that
+// of the mode itself. None: too few points, or no surface that faces the proxy.
 std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
                                      double contact_radius_m, const Kernels& kernels,
                                      const AcquisitionBuffers& buffers);

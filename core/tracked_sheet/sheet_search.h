@@ -1,5 +1,5 @@
-// The points that a tracked sheet leaves of a frame: those of its patch without their noise, those beyond as
-// they are.
+// The points of a frame as a tracked sheet shows them: those of its patch without their noise, those beyond
+// as they are.
 #pragma once
 
 #include <array>
@@ -10,16 +10,16 @@
 
 namespace remote_touch {
 
-// Filled anew for every frame; without allocating where reserve() gave it room for the frame's points. What
-// it shows stays when it gets more room.
+// Filled anew for every frame, without allocating if reserve() was called for as many points. reserve() keeps
+// the points.
 class SheetSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
-  // Begins with no points in the region. room: for points of the frame while gather() runs, with radius and
-  // stiffness whether the frame has them or not.
+  // Begins with no points in the region. buffer: scratch for points of the frame while gather() runs, with
+  // radius and stiffness whether the frame has them or not.
   void start(const PatchRegion& region, std::shared_ptr<const NeighbourSearch> frame,
              std::shared_ptr<GatheredPoints> buffer);
-  // A point of the frame, by its row in what was gathered of it, at the place that it is shown at.
+  // Adds a point of the frame, given by its row in `gathered`, at the place where it is to be shown.
   void add(const PatchPlace& place, const GatheredPoints& gathered, std::size_t row);
   void finish();
 
@@ -41,7 +41,7 @@ class SheetSearch final : public NeighbourSearch {
   PatchRegion region_;
   std::shared_ptr<const NeighbourSearch> frame_;
   std::shared_ptr<GatheredPoints> buffer_;
-  Columns added_, sorted_;  // in the order of coming, and cell by cell
+  Columns added_, sorted_;  // in the order of add(), and cell by cell
   Buffer<std::uint32_t> cell_of_;
   std::size_t count_ = 0;
   std::array<std::uint32_t, kCells * kCells + 1> start_{};

@@ -25,7 +25,7 @@ struct ProxyPlace {
   bool pressing = false;
 };
 
-// What a frame shows, and how the proxy is to follow.
+// The points of a frame to show, and how the proxy is to follow; world frame.
 struct SheetUpdate {
   std::shared_ptr<const NeighbourSearch> points;  // null: the sheet is missing, but not yet given up
   Vec3 displacement_m = Vec3::Zero();
@@ -36,17 +36,17 @@ struct SheetUpdate {
 class SheetTracker {
  public:
   SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels);
-  // For frames of so many points; without allocating where there was room.
+  // For frames of so many points; allocates only if there was less capacity.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
   // A new frame, interval_s after the one before.
   SheetUpdate on_frame(std::shared_ptr<const NeighbourSearch> frame, const ProxyPlace& proxy,
                        double interval_s);
-  // Keeps a frame for requery(), while it is not known where the proxy is, and shows it as it is.
+  // Keeps a frame for requery() while the proxy has no position yet, and shows it as it is.
   std::shared_ptr<const NeighbourSearch> keep(std::shared_ptr<const NeighbourSearch> frame);
   // The proxy has left the middle of the patch.
   bool must_requery(const Vec3& proxy_W) const;
-  // Gives a missing sheet up: what the newest frame shows is all there is. No allocation.
+  // Gives up a missing sheet and searches for one in the newest frame. No allocation.
   SheetUpdate reacquire(const Vec3& proxy_W);
   // The newest frame's points around the proxy's new place. No allocation.
   SheetUpdate requery(const ProxyPlace& proxy);
@@ -88,7 +88,7 @@ class SheetTracker {
   HeightFit fit_;
   PatchPoints points_;
   StrayPoints strays_;
-  std::vector<PatchPlace> sheet_;  // the members at the places that they are shown at
+  std::vector<PatchPlace> sheet_;  // the members at the places where they are shown
   HeightProfile profile_;
   double sigma_ = 0;
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
@@ -96,7 +96,7 @@ class SheetTracker {
   double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen
   bool nearer_stray_ = false;
   Vec3 query_position_W_ = Vec3::Zero();
-  std::optional<Vec3> last_proxy_W_;  // when the frame before came
+  std::optional<Vec3> last_proxy_W_;  // at the frame before
 };
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Points of a patch that are not of its sheet: other surfaces, or nothing.
+// Points of a patch that are not of its sheet: other surfaces, or outliers.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace remote_touch {
 
-// Tells the two apart by how many there are: a surface has as many points around each of its own, in a layer
-// as thick as the noise, as the sheet has, or at least a fair share.
+// Distinguishes the two by density: around each point of a surface, in a layer as thick as the noise, there
+// are at least a fair fraction of the sheet's points per area.
 class StrayPoints {
  public:
   // per_unit_area: members in a square of one contact radius.

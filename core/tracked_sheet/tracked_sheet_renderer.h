@@ -1,10 +1,10 @@
 // 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
-// frame and freed of its noise. Beyond the dissertation; it sees what the proxy sees, points and times.
+// frame and freed of its noise. Not in the dissertation; its inputs are those of the proxy, points and times.
 //
 // Each frame: the sheet in front of the proxy is found again where its motion predicts it and registered to
-// the frame before; a proxy that it holds back is carried with it, a free one only when the sheet swept over
-// it; its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of
-// the proxy, with the measured velocity in (4.15).
+// the frame before; a proxy that it holds back moves with it, a free one only when the sheet swept over it;
+// its points are moved onto the local planes that fit them, as far as noise explains. Ticks are those of the
+// proxy, with the measured velocity in (4.15).
 #pragma once
 
 #include <limits>
@@ -22,7 +22,7 @@ struct TrackedSheetParameters {
 
 Parameters parameters(TrackedSheetParameters& p);
 std::string validate(const TrackedSheetParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const TrackedSheetParameters& p) {
   return max_stiffness_N_per_m(p.proxy);
 }

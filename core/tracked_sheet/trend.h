@@ -1,4 +1,4 @@
-// The curvature of a whole patch: what planes in wide windows would flatten.
+// The curvature of a whole patch, which planes in wide windows would flatten.
 #pragma once
 
 #include "core/tracked_sheet/patch_points.h"
@@ -17,8 +17,8 @@ struct Trend {
 };
 
 // Least squares through the members within kTrendRadius of the origin; zero where they are too few or lie too
-// much to one side. sigma: of the noise; curvature that it explains is none. Sums are exact, so that no order
-// matters.
+// much to one side. sigma: of the noise; curvature that noise explains is ignored. Sums are exact, so the
+// order of the points has no effect.
 inline constexpr double kTrendRadius = 6;  // contact radii
 Trend fit_trend(const PatchPoints& points, double sigma);
 

@@ -15,27 +15,27 @@ namespace remote_touch {
 class FixtureAssignment {
  public:
   FixtureAssignment() = default;
-  // switches: forbidden rules that are off are passed over; null: all count.
+  // switches: forbidden rules that are off are skipped; null: all are on.
   explicit FixtureAssignment(std::vector<std::unique_ptr<const FixtureRule>> rules,
                              std::shared_ptr<const FixtureSwitches> switches = nullptr)
       : rules_(std::move(rules)), switches_(std::move(switches)) {}
 
-  // Fills the columns of the cloud, which begin as they come with it: without a column r_f is 0 and k_s the
-  // renderer's own. Then every rule in turn draws the values of its points towards its own, by its share of
-  // the point times its strength at captured_s, so a later rule overrides an earlier one. A point without a
-  // stiffness of its own has nothing to be drawn from: it takes the rule's at once. Guidance rules are passed
-  // over. Without rules nothing is changed. Throws InputError as FixtureRule::shares.
+  // Fills the columns of the cloud. They start with the cloud's own values; without a column r_f is 0 and k_s
+  // the renderer's own. Then each forbidden rule in turn moves the values of its points towards its own, by
+  // its weight for the point times its strength at captured_s, so a later rule overrides an earlier one. A
+  // point without its own stiffness takes the rule's at once. Without rules nothing is changed. Throws
+  // InputError as FixtureRule::weights().
   void assign(PointCloud& cloud, double captured_s) const { assign(cloud, captured_s, off()); }
-  // The same with these forbidden rules off, as off() told them at some time.
+  // The same with these forbidden rules off, as off() returned them earlier.
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
   std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
 
-  // Of every guidance rule in their order, with the rule's strength; of one of strength 0 there is none to be
-  // seen. Throws as assign().
+  // The targets of all guidance rules in their order, each with the rule's strength; at strength 0 it is not
+  // visible. Throws as assign().
   std::vector<GuidanceTarget> targets(const PointCloud& cloud, double captured_s) const;
 
   bool empty() const { return rules_.empty(); }
-  // Two frames of one and the same cloud can differ.
+  // Two frames of the same cloud can get different values.
   bool changes_with_time() const;
 
  private:

@@ -1,4 +1,4 @@
-// Which of the fixtures of a task count: a task locks and unlocks them while it runs.
+// Which fixtures are on: a task locks and unlocks them while it runs.
 #pragma once
 
 #include <atomic>
@@ -7,13 +7,13 @@
 
 namespace remote_touch {
 
-// Fixtures by their place in the list. Set in the haptic loop, read where frames are processed; a change
-// counts from the next frame that is processed.
+// Fixtures are numbered by their place in the list. Set in the haptic loop, read where frames are processed;
+// a change takes effect with the next frame that is processed.
 class FixtureSwitches {
  public:
   static constexpr std::size_t kMaxCount = 64;
 
-  // A bit for each that is off.
+  // One bit for each fixture, set if it is off.
   std::uint64_t off() const { return off_.load(std::memory_order_relaxed); }
   static bool is_on(std::uint64_t off, std::size_t fixture) {
     return fixture >= kMaxCount || (off >> fixture & 1) == 0;

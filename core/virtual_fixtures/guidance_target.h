@@ -1,5 +1,5 @@
-// What a guidance virtual fixture is made of: the place of the points of a class, and the plane that they lie
-// in, 7.3.2.
+// The target of a guidance virtual fixture: the mean position of the points of a class, and the plane that
+// they lie in, 7.3.2.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace remote_touch {
 
 // Of one fixture in one frame; world frame.
 struct GuidanceTarget {
-  std::size_t points = 0;      // that were picked; 0: the frame shows no target
-  Vec3 mean_W = Vec3::Zero();  // of their places, weighted by their shares
-  // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for
-  // fewer than three points, or where they do not lie in a plane: spread along it at most kFlat times as far
-  // as in the plane's shorter direction, and in that more than kLine times as far as in the longer.
+  std::size_t points = 0;      // selected by the rule; 0: the frame shows no target
+  Vec3 mean_W = Vec3::Zero();  // of their positions, weighted
+  // Unit normal of the plane of weighted total least squares through them, towards the sensor. Zero for fewer
+  // than three points, or if they are no plane: their standard deviation along the normal is above kFlat
+  // times that along the plane's shorter axis, or this is at most kLine times that along the longer axis.
   Vec3 normal_W = Vec3::Zero();
   double strength = 1;  // of its rule when the frame was captured, 0 to 1
   static constexpr double kFlat = 0.25, kLine = 1e-3;
@@ -26,8 +26,8 @@ struct GuidanceTarget {
   bool is_flat() const { return !normal_W.isZero(0); }
 };
 
-// From how far each point counts, 0 to 1, as FixtureRule::shares(); none that is not finite does. The sensor
-// is where the image was taken from, else in the origin.
+// weights: of each point, 0 to 1, as FixtureRule::weights() returns them; points that are not finite are
+// ignored. The sensor is at the camera of the cloud's image, else at the origin.
 GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
 
 }  // namespace remote_touch

@@ -14,7 +14,8 @@ class HalfSpace final : public FixtureRule {
     double transition_m = 0;
   };
   explicit HalfSpace(const Settings& settings);
-  // The plane itself belongs to the half-space; with a transition the share rises evenly from 0 at the plane.
+  // The plane itself belongs to the half-space; with a transition the weight rises linearly from 0 at the
+  // plane.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

@@ -1,4 +1,4 @@
-// The points of a colour: what is to be protected is found by its hue.
+// The points of a colour, 7.3.2: objects to protect or to guide to are marked by their hue.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"

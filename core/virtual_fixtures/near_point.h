@@ -1,4 +1,4 @@
-// The points near a given position in the world, or near the point that a pixel sees in each frame.
+// The points around a selected one: a position in the world, or the point of a pixel in each frame.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"
@@ -16,9 +16,9 @@ class NearPoint final : public FixtureRule {
     double falloff_m = 0;
   };
   explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
-  // 1 up to inner_radius_m, then falling evenly to 0 over falloff_m. A picked pixel that saw nothing is
-  // replaced by the nearest one, in pixels, that did; where none did nothing is picked. Throws InputError for
-  // a pixel of a cloud that is no image, or outside it.
+  // 1 up to inner_radius_m, then falling linearly to 0 over falloff_m. A selected pixel without a depth is
+  // replaced by the nearest one, in pixels, that has one; if there is none, all weights are 0. Throws
+  // InputError for a pixel of a cloud that is not an image, or outside it.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

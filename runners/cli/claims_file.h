@@ -1,4 +1,4 @@
-// claims.json: what the figures of a folder claim, and whether it holds.
+// claims.json: the claims of a folder's figures, with their verdicts.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,14 @@ namespace remote_touch {
 
 class ClaimsFile {
  public:
-  // Keeps what an earlier call left in the folder until the figure is made again. order: the figures' names.
+  // Keeps the claims of an earlier call in the folder until their figure is made again. order: the figures'
+  // names.
   ClaimsFile(std::filesystem::path file, std::vector<std::string> order);
   ~ClaimsFile();
   ClaimsFile(const ClaimsFile&) = delete;
   ClaimsFile& operator=(const ClaimsFile&) = delete;
 
-  // Writes the file: an interruption keeps what is done.
+  // Replaces a figure's claims and writes the file, so that an interruption keeps what is done.
   void replace(const std::string& figure, std::span<const Claim> claims);
 
  private:

@@ -1,4 +1,4 @@
-// What can be typed: options, help, and which command they lead to.
+// The command line: options, help, and which command they select.
 #pragma once
 
 #include "core/kernels/kernels.h"
@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// Reads the arguments and does what they ask for. Returns the exit code; throws InputError for what cannot be
-// understood. choose_kernels is asked once, when a command is to run.
+// Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
+// not understood. choose_kernels is called once, before a command runs.
 int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)());
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// The subcommands. Each prints results on stdout, trouble as exceptions, and returns the exit code.
+// The subcommands. Each prints results on stdout, reports errors as exceptions, and returns the exit code.
 #pragma once
 
 #include <atomic>
@@ -15,10 +15,10 @@ enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3 };
 // What every command shares.
 struct CommandLine {
   bool quiet = false;
-  bool force = false;  // write over files that are no results of this program
+  bool force = false;  // overwrite files that are not results of this program
   const Kernels* kernels = nullptr;
   const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
-  // Set by SIGUSR1 and SIGUSR2; who answers sets them back.
+  // Set by SIGUSR1 and SIGUSR2; the code that responds resets them.
   std::atomic<bool>* report = nullptr;
   std::atomic<bool>* rearm = nullptr;
 };
@@ -42,16 +42,16 @@ int command_run(const CommandLine& line, const RunRequest& request);
 struct FigureRequest {
   std::vector<std::string> names;
   std::string folder;
-  int coarse = 1;      // every so manieth value of a map's axes
-  bool quick = false;  // maps that take minutes coarse
+  int coarse = 1;      // uses every coarse-th value of a map's axes
+  bool quick = false;  // makes maps that take minutes coarse
 };
 int command_figure(const CommandLine& line, const FigureRequest& request);
 
 struct SweepRequest {
   std::string sweep;
   std::vector<std::string> overrides;
-  std::string output;  // {shard} in it stands for the shard, "3of7"
-  std::string shard;   // empty: as the environment says, else the whole sweep
+  std::string output;  // {shard} in it is replaced by the shard, "3of7"
+  std::string shard;   // empty: from the environment, else the whole sweep
   int threads = 0;     // 0: as OpenMP decides
   bool dry_run = false;
 };

@@ -1,4 +1,4 @@
-// Figures made side by side, with progress.
+// Makes figures in parallel, with progress.
 #pragma once
 
 #include <functional>
@@ -12,14 +12,14 @@ namespace remote_touch {
 
 struct FigureRun {
   const FigureEntry* entry;
-  int coarse = 1;  // its maps
+  int coarse = 1;  // of its maps
 
   double expected_s() const {
     return entry->has_map ? entry->expected_s / (coarse * coarse) : entry->expected_s;
   }
 };
 
-// How far they are, by run.
+// The progress of each run.
 struct FigureProgress {
   std::vector<JobProgress> runs;
   TimeLeft left;
@@ -28,16 +28,17 @@ struct FigureProgress {
 // In the order in which they begin: the quickest first.
 std::vector<FigureRun> quickest_first(const std::vector<FigureRun>& runs);
 
-// make: of one run. finish: takes the figure of a run, one at a time, in any order, on the thread that made
-// it. report: called twice a second by the calling thread, and once at the end. Both may throw. Where a
-// figure fails the others are made all the same; then throws what the first of them, in their order, threw.
+// make: makes the figure of one run. finish: takes the figure of a run, one at a time, in any order, on the
+// thread that made it. report: called twice a second by the calling thread, and once at the end. Both may
+// throw. If a figure fails the others are still made; then throws the exception of the first that failed, in
+// their order.
 void make_figures(
     const CommandLine& line, const std::vector<FigureRun>& runs,
     const std::function<Figure(const FigureEntry& entry, const FigureContext& context)>& make,
     const std::function<void(std::size_t run, const FigureContext& context, Figure figure)>& finish,
     const std::function<void(const FigureProgress& progress)>& report);
 
-// Eye and terminal: "figures: 12 of 23 made, at work on 4.13 and bounds, 85 s left".
+// The progress as text: "figures: 12 of 23 made, at work on 4.13 and bounds, 85 s left".
 std::string words(const std::vector<FigureRun>& runs, const FigureProgress& progress);
 
 }  // namespace remote_touch

@@ -1,12 +1,12 @@
-// A name of one kind given to the command of another.
+// Hints when a name of one kind is given to the command of another.
 #pragma once
 
 #include <string>
 
 namespace remote_touch {
 
-// "is a sweep: expected `remote-touch sweep NAME -o FILE`" where the name is one of the list that this
-// command does not take, nor is it a file; empty otherwise. command: run, sweep or figure.
+// "is a sweep: expected `remote-touch sweep NAME -o FILE`" if the name is not a file and is a stored name
+// that this command does not take; empty otherwise. command: run, sweep or figure.
 std::string other_kind(const std::string& name, const std::string& command);
 
 }  // namespace remote_touch

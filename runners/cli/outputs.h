@@ -1,4 +1,4 @@
-// What a command may write over.
+// Which files a command may overwrite.
 #pragma once
 
 #include <initializer_list>
@@ -15,16 +15,16 @@ namespace remote_touch {
 // or with --force.
 void require_output(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs);
-// The same of a text that begins like one of the openings where one is replaced.
+// The same for a text report: an existing file may be replaced if it begins with that opening.
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
 inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
-inline constexpr const char* kConfiguration = "{\"title\":";  // as it is written, in one line
+inline constexpr const char* kConfiguration = "{\"title\":";  // as written, in one line
 inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
 
-// The files that an experiment is made of and reads.
+// The files of an experiment: its own and those that it reads.
 std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts);
 
 }  // namespace remote_touch

@@ -7,9 +7,10 @@
 
 namespace remote_touch {
 
-// "25 %, 2.5 %/s, 30 s left"; how long it takes is not told before anything is done.
+// "25 %, 2.5 %/s, 30 s left"; without the time left while the fraction is 0.
 std::string progress_text(double fraction, double elapsed_s);
-// Counted things, earlier ones of them done before this program began: "30 of 100 runs, 2/s, 35 s left".
+// For counted things, of which `earlier` were done before this program began: "30 of 100 runs, 2/s, 35 s
+// left".
 std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
                           double elapsed_s);
 

@@ -1,4 +1,4 @@
-// What the commands about sweeps print.
+// The texts that the commands about sweeps print.
 #pragma once
 
 #include <string>

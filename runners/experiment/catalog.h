@@ -1,6 +1,6 @@
 // Everything that an experiment can name. A new scenario, fixture rule, trajectory or renderer is one file
 // pair and one line here; tests/runners/experiment/contract_test.cpp, or renderer_contract_test.cpp, then
-// tests the contract of its interface.
+// checks it against the contract of its interface.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ std::span<const FixtureEntry> fixtures();
 std::span<const TrajectoryEntry> trajectories();
 std::span<const RendererEntry> renderers();
 
-// The entry of that name, or InputError with the names there are.
+// The entry of that name; throws InputError with the known names.
 template <class Entry>
 const Entry& find_entry(std::span<const Entry> entries, const std::string& name, const std::string& path) {
   std::string known;

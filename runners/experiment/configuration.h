@@ -1,5 +1,5 @@
-// One resolved configuration as plain data. Its sections are read, checked, written and described as the
-// table in sections.cpp says.
+// One resolved configuration as plain data. The table in sections.cpp defines how its sections are read,
+// checked, written and described.
 #pragma once
 
 #include <optional>

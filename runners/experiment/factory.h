@@ -1,5 +1,4 @@
-// Factory of a catalog entry: settings that can be read, listed and validated, and from which the object is
-// built.
+// Factories of catalog entries: they hold settings and build the object from them.
 #pragma once
 
 #include <memory>
@@ -24,20 +23,20 @@ class Configurable {
  public:
   virtual ~Configurable() = default;
   virtual Parameters settings() = 0;         // pointers into this object
-  virtual std::string validate() const = 0;  // "r1_m = 1: expected ..."; empty: they fit together
+  virtual std::string validate() const = 0;  // "r1_m = 1: expected ..."; empty: they are valid
 };
 
 template <class Seam, class... Arguments>
 class Factory : public Configurable {
  public:
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
-  // Of a renderer: no pose makes its force grow faster with the device's displacement. 0 for all others.
+  // Of a renderer: max_stiffness_N_per_m() of its settings. 0 for all others.
   virtual double stiffness_N_per_m() const = 0;
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
 // For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
-// validate(Settings); max_stiffness_N_per_m(Settings) of every renderer; and input_files(Settings) where the
+// validate(Settings); max_stiffness_N_per_m(Settings) for every renderer; and input_files(Settings) if the
 // settings name files.
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
@@ -78,17 +77,17 @@ using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
 using FixtureEntry = CatalogEntry<FixtureRule>;
 
 struct TrajectoryEntry : CatalogEntry<Trajectory, const Scenario&> {
-  bool has_buttons = false;  // the hand presses those of the device that it was recorded with
+  bool has_buttons = false;  // replays the button presses of a recorded device
 };
 
-// Of the hand that a renderer is for: six where its outputs have RenderOutput::tool.
+// Degrees of freedom that a renderer uses: six if its outputs have RenderOutput::tool.
 enum class DegreesOfFreedom { three, six };
 
-// What a renderer is held by: all points of a cloud, the regions of those with r_f above 0 alone, the
-// triangles between neighbours in an organised frame, for which the order of the points matters, a sheet that
-// is fitted to points in cells along the world's axes, so that a scene that is turned or sent more often is
-// answered alike and not to the last bit, or nothing: it is pushed by points, and passes them when it is
-// pressed deeper than they push.
+// What constrains the proxy or tool of a renderer. points: all points of a cloud. regions: only the regions
+// of points with r_f above 0. mesh: the triangles between neighbours in an organised frame, so the order of
+// the points matters. sheet: a sheet fitted to points in cells along the world's axes, so a rotated scene, or
+// one sent more often, gives similar outputs but not the same bits. nothing: points only push, and a HIP
+// pressed deeper passes them.
 enum class ContactModel { points, regions, mesh, sheet, nothing };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz

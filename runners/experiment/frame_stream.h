@@ -1,5 +1,5 @@
-// The frames between scenario and renderer: the depth image is filtered, points get normals and fixtures, and
-// frames arrive late, at irregular times, or not at all.
+// The path of a frame from a scenario to a renderer: its depth image is filtered and gets normals, its points
+// are assigned fixtures, and it arrives late, at irregular times, or not at all.
 #pragma once
 
 #include <memory>
@@ -13,41 +13,42 @@
 
 namespace remote_touch {
 
-// What happens to frames between capture and arrival, each for itself, drawn from the run's noise key.
+// Latency, jitter and loss of frames between capture and arrival, independent for each frame, drawn from the
+// run's noise key.
 struct Transport {
   double latency_s = 0;         // shortest time from capture to arrival
-  double jitter_s = 0;          // up to so much is added, evenly spread; frames may overtake each other
-  double drop_probability = 0;  // of a frame that never arrives
+  double jitter_s = 0;          // maximum added delay, uniformly distributed; frames may overtake each other
+  double drop_probability = 0;  // that a frame never arrives
 };
 
-// What is made of a frame's points before they are sent.
+// Processing of a frame's points before they are sent.
 struct FrameProcessing {
-  std::unique_ptr<DepthPipeline> depth;  // null: the points are sent as the scenario shows them
+  std::unique_ptr<DepthPipeline> depth;  // null: the points are sent as the scenario gives them
   FixtureAssignment fixtures;
 
   bool changes_points() const { return depth || !fixtures.empty(); }
-  // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is no
-  // depth image to be processed, or a fixture rule cannot be applied to it.
+  // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is not
+  // a depth image as the pipeline needs, or a fixture rule cannot be applied to it.
   void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
 };
 
-// Fingerprint of a frame's points and its time of capture.
+// 64-bit hash of a frame's points and its time of capture.
 std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
 
 class FrameStream {
  public:
-  // The scenario must outlive the stream. A scene at rest is sent once; when its fixtures change with time,
-  // or the one frame could be lost, it is sent on at its frame rate. With hash_frames every point of every
-  // frame is made for newest_hash(). With generate_all_points frames come with every point made, which are
-  // the same points, so that nobody pays for the noise of those that he asks for.
+  // The scenario must outlive the stream. A scene at rest is sent once; if its fixtures change with time, or
+  // the one frame could be lost, it is repeated at its frame rate. With hash_frames every point of every
+  // frame is computed for newest_hash(). With generate_all_points frames come with every point already
+  // computed, with the same bits, so that measured durations do not contain the generation of noise.
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
-  // Hands over the frames that have arrived by then, in the order in which they do. Times never decrease.
-  // Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture rule
-  // cannot be applied to it.
+  // Passes the frames that have arrived by time_s to the renderer, in order of arrival. pre: times never
+  // decrease. Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture
+  // rule cannot be applied to it.
   void deliver_until(double time_s, Renderer& renderer);
-  // Fingerprint of the newest frame handed over, 0 before the first or where it is not made.
+  // Hash of the newest frame delivered; 0 before the first or without hash_frames.
   std::uint64_t newest_hash() const { return hash_; }
 
  private:

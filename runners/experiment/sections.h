@@ -13,8 +13,8 @@
 
 namespace remote_touch {
 
-// Settings that a section may have: those of a scenario, say, by its name; without a name where there is only
-// one kind of them.
+// Settings that a section may have: for example those of a scenario, by its name; without a name if there is
+// only one kind.
 struct SectionEntry {
   std::string name;
   std::string summary;
@@ -22,24 +22,24 @@ struct SectionEntry {
 };
 
 struct ExperimentSection {
-  const char* key;      // as in a file; of the one where is_top_level, only a name for it
-  const char* summary;  // goes on after "... of an experiment: "
-  // In a list of all that experiments can name; null where the section's entries have no names.
+  const char* key;      // as in a file; if is_top_level, only a name
+  const char* summary;  // continues "... of an experiment: "
+  // Heading in a list of all that experiments can name; null if the section's entries have no names.
   const char* heading = nullptr;
-  bool is_top_level = false;  // its parameters stand beside the other sections
+  bool is_top_level = false;  // its parameters are at the level of the other sections
   std::vector<SectionEntry> (*entries)() = nullptr;
-  // From the whole configuration. Throws InputError for what cannot be used, and for a section that is
-  // missing where it may not be left out.
+  // Reads the section from the whole configuration. Throws InputError for settings that cannot be used, and
+  // for a missing section that is required.
   void (*read)(const ExperimentSection& section, const nlohmann::ordered_json& whole,
                ExperimentConfiguration& configuration) = nullptr;
-  // Into the whole configuration, complete; nothing where the section is left out.
+  // Writes the section, complete, into the whole configuration; nothing if it was left out.
   void (*write)(const ExperimentSection& section, const ExperimentConfiguration& configuration,
                 nlohmann::ordered_json& whole) = nullptr;
   // Adds the files that its settings name.
   void (*add_inputs)(const ExperimentConfiguration& configuration,
                      std::vector<RecordingPart>& inputs) = nullptr;
-  // What holds between this section and others, when all are read: throws InputError, or adds what was left
-  // out; null: nothing.
+  // Checks this section against the others when all are read: throws InputError, or adds what was left out;
+  // null: no check.
   void (*complete)(ExperimentConfiguration& configuration) = nullptr;
 };
 
@@ -48,7 +48,7 @@ std::span<const ExperimentSection> experiment_sections();
 
 // Throws InputError for anything that cannot be run.
 ExperimentConfiguration read_configuration(const nlohmann::ordered_json& json);
-// Complete: every parameter of every section that is there.
+// Complete: every parameter of every section that is present.
 nlohmann::ordered_json write_configuration(const ExperimentConfiguration& configuration);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// How far the bounds of 4.4 agree with what happens.
+// How far the bounds of 4.4 agree with the simulated lifts.
 #pragma once
 
 #include <functional>
@@ -9,32 +9,32 @@
 
 namespace remote_touch {
 
-// How often (4.17) at an update and what then happened go together. (4.18) is the same, rewritten for a cloud
-// that moves along its normal.
+// Counts of how (4.17) at an update agrees with the outcome of that update. (4.18) is the same, rewritten for
+// a cloud that moves along its normal.
 struct Criterion {
   double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
   double agreement() const {
     return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
   }
 };
-// Of the updates with acceleration until the proxy is below, in lifts with noise from low up to below high
-// (r_c).
+// Over the updates with acceleration, until the proxy is below the plane, in lifts with noise in [low, high),
+// r_c.
 Criterion criterion_of(const LiftMap& lifts, double low, double high);
 // By ranges of noise.
 Table criterion_table(const LiftMap& lifts);
 
-// A bound as a function of the noise, m/s^2. It keeps a reference to what it was made from.
+// A bound as a function of the noise, m/s^2. It keeps a reference to the MeasuredNoise it was made from.
 struct Bound {
   std::string name, meaning;
   std::function<double(double noise_m)> at;
-  double max_noise_m = 1;  // drawn up to here: fits mean nothing beyond
+  double max_noise_m = 1;  // drawn up to here: fits have no meaning beyond
 };
 std::vector<Bound> bounds(const MeasuredNoise& noise);
 
-// Of the cells with noise up to a limit (r_c).
+// Agreement over the cells with noise up to a limit (r_c).
 struct Agreement {
   int cells = 0, agree = 0;
-  double safe_popped = 0, unsafe_survived = 0;  // shares of the bound's safe and unsafe cells
+  double safe_popped = 0, unsafe_survived = 0;  // fractions of the bound's safe and unsafe cells
   double fraction() const { return static_cast<double>(agree) / cells; }
 };
 Agreement agreement_of(const Bound& bound, const Table& map, double max_noise = 4);

@@ -20,10 +20,11 @@ namespace remote_touch {
 // r_c of every figure of chapters 4 and 5: Table 4.2.
 inline constexpr double kContactRadius_m = 0.005;
 
-// How a figure gets its traces. Independent runs go side by side; results do not depend on how many.
+// Runs the experiments of a figure. Independent runs go in parallel; results do not depend on the number of
+// threads.
 class FigureContext {
  public:
-  // coarse: every so manieth value of the axes of maps, to look at; 1 for the whole.
+  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all.
   FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, int coarse = 1,
                 SideBySide runs = side_by_side)
       : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
@@ -36,7 +37,7 @@ class FigureContext {
   }
   const Kernels& kernels() const { return kernels_; }
   std::vector<Trace> run(const std::vector<Experiment>& experiments) const;  // side by side
-  // What of(trace) gives for each run, side by side. The first failure is thrown after all have ended.
+  // The result of of(trace) for each run, in parallel. The first failure is thrown after all have ended.
   template <class Of>
   auto measure(const std::vector<Experiment>& experiments, Of&& of) const {
     if (!experiments.empty()) note(experiments.front().to_json());
@@ -45,12 +46,12 @@ class FigureContext {
   }
   // A stored sweep that has thousands of runs, for the two calls below.
   Sweep map(const std::string& name, const std::vector<std::string>& overrides = {}) const;
-  // Of all maps that were asked for: the runs that they have, and how many of them are made.
+  // Over all calls of map(): number of runs of the full maps, and of those that are made.
   std::size_t runs_of_maps() const { return runs_of_maps_; }
   std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
   // Every run of a sweep; throws InputError when one failed.
   SweepResult sweep(const Sweep& sweep) const;
-  // What of(trace) gives for each run of a sweep's plan, in its order.
+  // The result of of(trace) for each run of a sweep's plan, in its order.
   template <class Of>
   auto measure(const Sweep& sweep, Of&& of) const {
     const SweepResult plan = sweep.plan();
@@ -63,7 +64,7 @@ class FigureContext {
   // The resolved configuration of every run() and sweep, and of the first experiment of every measure(), as a
   // JSON list.
   std::string configurations() const;
-  // What was in the recordings that all of them read, as input_hashes.h has it.
+  // Hashes of the recordings that all of them read, see input_hashes.h.
   std::string inputs() const { return inputs_.text(); }
 
  private:
@@ -91,9 +92,9 @@ struct FigureEntry {
   const char* name;
   const char* summary;
   Figure (*make)(const FigureContext& context);
-  double expected_s;     // what it takes of one thread, for the order of figures and the time left
-  bool has_map = false;  // most of that is the map
-  int quick_coarse = 1;  // how coarse its maps are where it has to be quick
+  double expected_s;     // time on one thread, for the order of figures and the time left
+  bool has_map = false;  // most of that time is for the map
+  int quick_coarse = 1;  // value of coarse for a quick figure
 };
 std::span<const FigureEntry> figures();
 

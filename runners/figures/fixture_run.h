@@ -1,4 +1,5 @@
-// A run of chapter 5's protocol: its trace, the fixture radius in force, and the claims that hold for any.
+// A run of chapter 5's protocol: its trace, the current fixture radius, and the claims that hold for any such
+// run.
 #pragma once
 
 #include <memory>
@@ -13,25 +14,25 @@ inline constexpr double kProxyContactRadius_m = 0.005;
 
 struct FixtureRun {
   Trace trace;
-  std::unique_ptr<Scenario> scenario;  // what the trace was made with, to ask for its truth
-  std::vector<double> radius_m;        // of each tick: r_f as the frame in use brought it
+  std::unique_ptr<Scenario> scenario;  // of the run, for its ground truth
+  std::vector<double> radius_m;        // of each tick: r_f of the frame in use
 
   // When the frame that the renderer has in tick i was captured.
   double frame_captured_s(std::size_t i) const { return scenario->captured_s(trace.frame_index[i]); }
-  // Where the proxy's centre belongs: r_f + r_c from the surface.
+  // Correct distance of the proxy's centre from the surface, r_f + r_c.
   double boundary_m(std::size_t i) const { return radius_m[i] + kProxyContactRadius_m; }
 };
 
-// Side by side. pre: every point has the same r_f, and no scene ends before its run.
+// In parallel. pre: every point has the same r_f, and no scene ends before its run.
 std::vector<FixtureRun> run_fixtures(const FigureContext& context,
                                      const std::vector<Experiment>& experiments);
 
-// Nowhere behind the surface.
+// Adds the claim that the proxy is never behind the surface.
 void add_side_claim(Figure& figure, const std::string& where, const FixtureRun& run);
-// Nothing that is not finite, no force dropout.
+// Adds the claims that all numbers are finite and that there is no force dropout.
 void add_sound_claims(Figure& figure, const std::string& where, const FixtureRun& run);
 
-// A table from its rows, which are as long as there are columns.
+// A table from its rows; each row has one number for every column.
 struct ColumnName {
   const char *name, *units, *long_name;
 };

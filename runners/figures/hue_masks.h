@@ -1,4 +1,4 @@
-// What rules by colour pick of an image, and pictures of images.
+// Which pixels of an image colour rules select, and pictures of images.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace remote_touch {
 // Each fixture rule of an experiment by itself, in order.
 std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment);
 
-// 1 for every point that a rule picks, or that was measured.
+// 1 for every point that the rule selects; 1 for every measured point.
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
 std::vector<char> measured_points(const PointCloud& cloud);
 

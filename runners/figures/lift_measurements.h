@@ -1,4 +1,4 @@
-// What figure bounds measures over lifts.
+// Measurements over lifts for the figure "bounds".
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace remote_touch {
 
 using LiftUpdates = std::vector<LiftUpdate>;
 
-// (4.14): critical accelerations without noise, by bisection between two, over 8 x 8 positions of the grid
-// under the proxy; and the shares that survived at the two ends.
+// (4.14): critical accelerations without noise, by bisection between kSurvives and kPops, over 8 x 8
+// positions of the grid under the proxy; and the fractions that survived at these two.
 struct Phases {
   static constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
   Table table{"phases", "critical acceleration without noise, by position of the grid"};
@@ -20,7 +20,7 @@ struct Phases {
 };
 Phases critical_over_phases(const FigureContext& context);
 
-// (4.19) to (4.24): what noise does, from lifts without acceleration, and fits up to kFitted_m.
+// (4.19) to (4.24): the effect of noise, from lifts without acceleration, and fits up to kFitted_m.
 inline constexpr double kFitted_m = 0.01;
 struct MeasuredNoise {
   std::vector<double> sigma_m;

@@ -13,20 +13,20 @@
 
 namespace remote_touch {
 
-// Of fig4.12 and the sweeps on it: 4.3.2.
+// The lift of fig4.12 and the sweeps on it, 4.3.2.
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 
 // Columns noise (r_c) and acceleration (r_c/s^2).
 Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
                  std::vector<double> acceleration);
-// One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (share), its Wilson interval, runs.
+// One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its Wilson interval, runs.
 Table map_table(const std::string& name, const SweepResult& result);
 // The cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 
-// Share of lifts that survived in 5 x 5 regions of a map: acceleration from 0, 300, 600, 898, 1150 r_c/s^2,
-// and in each noise from 0, 0.5, 1, 1.5, 2 r_c.
+// Fraction of lifts that survived in 5 x 5 regions of a map: acceleration from 0, 300, 600, 898, 1150
+// r_c/s^2, and for each of these noise from 0, 0.5, 1, 1.5, 2 r_c.
 Table region_table(const std::string& name, const Table& map);
 
 // Noise from 0 to 3 r_c, for curves over it.

@@ -1,5 +1,5 @@
-// What a recording itself shows about a run over it, frame by frame: where the proxy is relative to the
-// measured points, and how the surface moved. Computed from every point, not with the renderer's kernels.
+// Checks of a run against its recording, frame by frame: where the proxy is relative to the measured points,
+// and how the surface moved. Computed from every point, not with the renderer's kernels.
 #pragma once
 
 #include <vector>
@@ -12,12 +12,13 @@ namespace remote_touch {
 struct FrameOutcome {
   std::size_t tick = 0;
   double nearest_distance_m = 0;  // from the proxy to the nearest measured point
-  double hidden_m = 0;            // how far the proxy lies behind what its own pixel measured; NaN at a hole
+  double hidden_m = 0;            // how far the proxy lies behind the depth of its own pixel; NaN at a hole
   double camera_motion_m = 0;     // median over the image: how far a pixel's point moved since the last frame
-  double surface_motion_m = 0;    // around the pixel that the HIP presses: towards the camera since then
+  double surface_motion_m = 0;    // around the pixel that the HIP presses: towards the camera, likewise
 };
 
-// pre: the experiment plays a part of a recording to and fro, and every frame arrives.
+// pre: the experiment plays a part of a recording forwards and backwards (ping_pong), and every frame
+// arrives.
 std::vector<FrameOutcome> frame_outcomes(const Experiment& experiment, const FixtureRun& run);
 
 // A tick in which the proxy changed to the wrong side of the true surface.

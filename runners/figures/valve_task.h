@@ -1,4 +1,4 @@
-// Runs of the tasks of 7.5 among the valves of the tank, and the claims about them.
+// Runs of the tasks of 7.5 among the valves of the tank, and their tables, pictures and claims.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 namespace remote_touch {
 
 struct ValveTask {
-  std::string name, words;  // in tables; for people
+  std::string name, words;  // for tables; for readers
   Experiment experiment;
   Trace trace;
   std::shared_ptr<const ValveTank> tank;
@@ -24,14 +24,14 @@ struct NamedTask {
   std::vector<std::string> overrides = {};
 };
 
-// Side by side. Without a tank where the scenario is another.
+// In parallel. tank is null for other scenarios.
 std::vector<ValveTask> run_tasks(const FigureContext& context, const std::vector<NamedTask>& tasks);
 
-// Distance from the tool's mesh to the true surface of a valve: at the vertices and the middles of the
-// triangles, so that it can be larger than the true one by a few hundredths of a millimetre. pre: there is a
-// tank; also for what follows.
+// Distance from the tool's mesh to the true surface of a valve: at the vertices and the centres of the
+// triangles, so it can be too large by a few hundredths of a millimetre. pre: there is a tank; also for the
+// functions below.
 double clearance_m(const ValveTask& task, Valve valve, std::size_t tick);
-// The least of it over the ticks, of which every tenth is looked at.
+// The minimum over every tenth tick.
 double min_clearance_m(const ValveTask& task, Valve valve);
 
 // Torques about the handle's own axes, which are those of the tool.
@@ -39,17 +39,17 @@ Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W);
 
 // Force, torque, what the device exerts, distances, contacts: every few ticks.
 Table task_table(const ValveTask& task);
-// Steps of the task as they went; without rows where there is none.
+// The log of the task's steps; no rows without a task.
 Table sequence_table(const ValveTask& task);
 
 // Tables NAME_cloud, NAME_regions (places on the boundary of the regions), NAME_vertices, NAME_triangles and
 // NAME_poses, of the first frame and the ticks.
 void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
                              const std::vector<std::size_t>& ticks);
-// The tank from beside the camera with the tool at the instant'th of the ticks.
+// The tank, seen from beside the camera, with the tool at tick number `instant` of the ticks.
 Panel task_picture(const ValveTask& task, const std::string& title, std::size_t instant, int row, int column);
 
-// What holds for any task: numbers are finite, no leaf ends a tick deeper than 0.1 mm in a region.
+// Adds the claims of any task: numbers are finite, no leaf ends a tick deeper than 0.1 mm in a region.
 void add_task_claims(Figure& figure, const ValveTask& task);
 
 std::size_t tick_of(const Trace& trace, double time_s);

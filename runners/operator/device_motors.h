@@ -21,9 +21,9 @@ inline std::string validate(const MotorSettings&) {
   return {};
 }
 
-// What the device exerts on the hand of a wrench that it is told to: forces along the base axes and torques
-// about the axes of the handle, which are those of the tool, as far as there are motors; the rest is cut to
-// its largest length.
+// The wrench that the device exerts on the hand for a commanded one: forces along the base axes and torques
+// about the axes of the handle, which are those of the tool, on the axes with motors only, limited to
+// max_force_N and max_torque_Nm.
 Wrench exerted(const MotorSettings& motors, const Eigen::Quaterniond& handle_W, const Wrench& commanded);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// A simulated operator: the hand is a mass that springs and dampers draw to the intended path, and that the
-// device's force really moves. Not in the dissertation, whose operators were people.
+// A simulated operator: the hand is a mass that springs and dampers pull to the intended path, and that the
+// device's force moves. Not in the dissertation, whose operators were people.
 #pragma once
 
 #include <string>
@@ -26,16 +26,17 @@ struct OperatorSettings {
 Parameters parameters(OperatorSettings& s);
 std::string validate(const OperatorSettings& s);
 
-// m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended place and g the
-// grip; turns alike, with the inertia of a ball of the hand's. Semi-implicit steps of one tick, with the
-// springs of its beginning and the damper of its end: stable for k tick^2 < 4 m, which validate() asks for at
-// 100 ticks a second.
+// m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
+// grip; rotations likewise, with the inertia inertia_kg_m2 about every axis. Semi-implicit steps of one tick,
+// with the springs at its start and the damper at its end: stable for k tick^2 < 4 m, which validate()
+// requires at 100 ticks a second.
 class OperatorModel {
  public:
   OperatorModel(const OperatorSettings& settings, double tick_s);
 
-  // One tick on: where the hand is at time_s, when the path wants it at `intended` and the device exerted
-  // `felt` since the last tick. The first call puts it onto the path. Buttons are the settings'.
+  // Advances one tick: the hand's pose at time_s, if the path is at `intended` and the device exerted
+  // device_wrench since the last tick. The first call puts the hand onto the path. Buttons come from the
+  // settings.
   DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
 
  private:

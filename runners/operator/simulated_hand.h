@@ -1,5 +1,5 @@
-// What moves the device of a run: a script alone, or an operator who follows it and feels the device's
-// motors.
+// The hand that moves the device of a run: a script alone, or a simulated operator who follows it and feels
+// the device's motors.
 #pragma once
 
 #include <optional>
@@ -13,14 +13,15 @@ namespace remote_touch {
 
 class SimulatedHand {
  public:
-  // Without an operator the device follows the script exactly; without motors it exerts all that it is told.
+  // Without an operator the device follows the script exactly; without motor settings it exerts the whole
+  // command.
   SimulatedHand(const std::optional<OperatorSettings>& operator_settings,
                 const std::optional<MotorSettings>& motors, double tick_s);
 
   DeviceState move(const DeviceState& intended, double time_s);
-  // The answer to that; what the device exerts of it moves the hand in the next tick.
+  // Takes the renderer's output; the wrench that the device exerts for it moves the hand in the next tick.
   void apply(const DeviceState& device, const RenderOutput& out);
-  // Of the last tick; none where there is neither operator nor device.
+  // State after the last tick; none without operator and motor settings.
   std::optional<HandState> state() const;
 
  private:

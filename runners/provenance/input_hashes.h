@@ -1,4 +1,4 @@
-// What was in the recordings that a result was made from: the attribute inputs of result files.
+// Hashes of the recordings that a result was made from: the attribute `inputs` of result files.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace remote_touch {
 
-// The text has one line a recording, by path:
+// The text has one line for each recording, sorted by path:
 //
 //   PATH: 71 file(s), 4929174 bytes, sha256 HASH
 //
 // PATH is scenario.path as the configuration gives it, without the folder below which it was found. The files
-// are those of files_of(): what the frames first_frame to last_frame are made from. HASH is the SHA-256 over
+// are those of files_of(), from which the frames first_frame to last_frame are made. HASH is the SHA-256 over
 // one line for each, "<its own SHA-256>  <its name from the recording's folder>\n", the lines sorted by their
-// bytes. So anybody can make it again, for a folder and for a single PCD file:
+// bytes. So anybody can compute it again, for a folder and for a single PCD file:
 //
 //   cd PATH && sha256sum camera.json depth/0000.png depth/0001.png ... | LC_ALL=C sort | sha256sum
 //   cd "$(dirname PATH)" && sha256sum "$(basename PATH)" | sha256sum
 //
-// Where runs read different parts of one recording, its line is about the files of all of them.
+// If runs read different parts of one recording, its line covers the files of all of them.
 class InputHashes {
  public:
   // Reads each file once. Throws InputError as files_of() does, and for a file that cannot be read.
@@ -43,7 +43,7 @@ class InputHashes {
 
 std::string input_hashes(const std::vector<RecordingPart>& parts);
 
-// A path or name in one line, as sha256sum writes it: a backslash, line feed or carriage return in it is
+// A path or name on one line, as sha256sum writes it: a backslash, line feed or carriage return in it is
 // written \\, \n, \r.
 std::string in_one_line(const std::string& name);
 

@@ -1,4 +1,4 @@
-// Where a result came from: program, build and command, as text attributes.
+// The provenance of a result: program, build and command, as text attributes.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 namespace remote_touch {
 
 std::string version();   // "0.2.0"
-std::string cpu_name();  // as the system tells it; empty where it does not
+std::string cpu_name();  // as the system reports it; empty if it does not
 
-// command: normalised by the caller (no output path, no thread count). config: resolved JSON.
-// isa may be empty: then it is left out, for results that several machines made together. inputs: as
-// input_hashes.h has them; empty where nothing was read, and then left out.
+// command: normalised by the caller (no output path, no thread count). config: resolved JSON. isa may be
+// empty, for results that several machines made together; it is then left out. inputs: the text of
+// input_hashes.h; empty if nothing was read, and then left out.
 TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
                           const std::string& inputs = {});
-// With the recipe as fields beside its command.
+// The same with the recipe as fields in addition to its command.
 TextAttributes provenance(const std::string& config, const Recipe& recipe, const std::string& isa,
                           const std::string& inputs = {});
 

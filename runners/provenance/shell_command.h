@@ -1,4 +1,4 @@
-// Commands as a shell takes them.
+// Commands as text for a shell.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// The words with spaces between them, each in single quotes where it needs them.
+// The words with spaces between them, each in single quotes if it needs them.
 std::string shell_command(const std::vector<std::string>& words);
 
 }  // namespace remote_touch

@@ -7,10 +7,10 @@
 namespace remote_touch {
 
 // Calls work(0) ... work(count - 1), each once, on any thread and in any order, and returns after all have
-// ended; then throws what the first of them, in their order, threw.
+// ended. If some threw, it then throws the exception of the one with the lowest number.
 using SideBySide = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
-// By as many threads as OpenMP gives.
+// With the number of threads that OpenMP uses.
 void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work);
 
 }  // namespace remote_touch

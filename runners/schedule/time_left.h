@@ -1,5 +1,4 @@
-// How long jobs that share threads will still take, from what each was expected to take and what was spent so
-// far.
+// Estimates the time left for jobs that share threads, from their expected times and the time spent so far.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +8,16 @@
 
 namespace remote_touch {
 
-// The jobs in the order in which they begin: the shortest first, so that there is something to see soon.
-// Equal ones keep their order.
+// The jobs in the order in which they begin: the shortest first, so that first results appear soon. Equal
+// ones keep their order.
 std::vector<std::size_t> shortest_first(const std::vector<double>& expected_s);
 
 struct TimeLeft {
-  std::vector<double> of_job_s;  // 0 where it is done
+  std::vector<double> of_job_s;  // 0 if it is done
   double all_s = 0;
 };
-// expected_s: what a job takes of one thread, on a machine like that on which it was measured. How this
-// machine compares is taken from the jobs that are done.
+// expected_s: time of a job on one thread of the machine where it was measured. The ratio to this machine's
+// speed is estimated from the jobs that are done.
 TimeLeft time_left(const std::vector<double>& expected_s, const std::vector<JobProgress>& progress,
                    int threads);
 

@@ -24,14 +24,14 @@ class WorkPool {
   explicit WorkPool(int threads) : threads_(threads) {}
 
   // Does all jobs, which begin in their order and must not throw. Meanwhile the calling thread calls report
-  // every so many seconds, and once at the end.
+  // every every_s seconds, and once at the end.
   void run(const std::vector<std::function<void()>>& jobs, double every_s,
            const std::function<void()>& report);
 
-  // From inside a job: its pieces, by this thread and by those that have nothing else to do. See SideBySide.
+  // Called inside a job: does its pieces on this thread and on those that are free. See SideBySide.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
-  // For report.
+  // The progress of all jobs; may be called by report.
   std::vector<JobProgress> progress() const;
 
  private:

@@ -1,5 +1,5 @@
-// Who is compared and on what: methods, which are renderers with settings (data/methods), and scenes,
-// which are experiments without a renderer, noise levels, measures and what counts as success (data/scenes).
+// The parts of a benchmark: methods, which are renderers with settings (data/methods), and scenes, which are
+// experiments without a renderer, with noise levels, measures and a rule of success (data/scenes).
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ namespace remote_touch {
 inline constexpr double kScorecardRadius_m = 0.005;
 const std::vector<double>& scorecard_noise_m();  // 0, .1, .2, .6, 1 and 2 r_c
 
-// The parameters of the tracked sheet were fixed with seeds 1 to kLastTunedSeed. The runs of a scorecard are
-// replicates of another.
+// The parameters of the tracked sheet were tuned with seeds 1 to kLastTunedSeed. The runs of a scorecard use
+// another seed.
 inline constexpr int kLastTunedSeed = 40;
 inline constexpr int kScorecardSeed = 301;
 
@@ -34,7 +34,7 @@ struct BenchmarkScene {
   std::string name, title;
   std::string experiment;        // JSON, without a renderer
   std::string noise;             // path of the parameter; empty: one column with the scene's own noise
-  std::vector<Judged> measures;  // beside those of the bounds
+  std::vector<Judged> measures;  // in addition to those of the bounds
   std::string meaning;           // of success, in words
   std::vector<Bound> success;
 
@@ -43,7 +43,7 @@ struct BenchmarkScene {
   Sweep sweep(const Method& method, int replicates) const;
 };
 
-// Both as JSON, to be kept with results.
+// Methods and scenes as JSON, stored with results.
 std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
                           int replicates);
 
@@ -51,9 +51,9 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
 Method read_method(const std::string& name, const std::string& json);
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
 
-// Those of these names or JSON files, in their order; none: all of data/. A file is called by its name
-// without folder and ending. Throws InputError for a name that is unknown, with those that are allowed, or
-// comes twice.
+// The methods or scenes of these names or JSON files, in their order; no names: all of data/. A file's method
+// or scene is named after the file, without folder and ending. Throws InputError for a name that is unknown,
+// with those that are allowed, or comes twice.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names);
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
 

@@ -17,7 +17,7 @@ struct ScenePlan {
 struct BenchmarkPlan {
   Benchmark benchmark;
   std::vector<ScenePlan> scenes;
-  // Force laws that the audit compares, and their sweeps; empty without its scene.
+  // Force laws that the passivity audit compares, and their sweeps; empty without its scene.
   std::vector<Method> laws;
   std::vector<BenchmarkSweep> audit;
   // Scenes whose recording is not on this machine, and why.

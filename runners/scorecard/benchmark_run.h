@@ -1,4 +1,4 @@
-// Doing the runs of a scorecard: a sweep for each scene and method, a file each, which go on where an
+// Does the runs of a scorecard: a sweep for each scene and method, each in its file, continuing where an
 // earlier call stopped.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace remote_touch {
 
 // A sweep of the folder, FOLDER/runs/NAME.h5.
 struct BenchmarkSweep {
-  std::string name;  // SCENE.CONTENDER
+  std::string name;  // SCENE.METHOD
   Sweep sweep;
   TextAttributes attributes;  // provenance
   std::filesystem::path file;
@@ -29,16 +29,16 @@ struct Benchmark {
   std::filesystem::path folder;
 };
 
-// Whoever takes part in the scene, in order. Throws MissingRecording for a scene whose recording is not on
-// this machine, InputError for what cannot be run.
+// The sweeps of all methods in a scene, in order. Throws MissingRecording for a scene whose recording is not
+// on this machine, InputError for a sweep that cannot be run.
 std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene);
 
-// Throws InputError, before anything is run or written, where a file of one of these sweeps is there that is
-// of other settings or another build.
+// Throws InputError, before anything is run or written, if a file of one of these sweeps exists that is of
+// other settings or another build.
 void require_same_benchmark(const std::vector<BenchmarkSweep>& sweeps);
 
-// Does what is left of each. finished: sweeps done and in all, and runs of the present one. Throws
-// Interrupted; what is finished is then in the files.
+// Does the runs that are left of each sweep. progress: number of sweeps done, of all sweeps, and the fraction
+// done of the present one. Throws Interrupted; finished runs are then in the files.
 using BenchmarkProgress =
     std::function<void(std::size_t sweeps_done, std::size_t sweeps, double fraction_of_next)>;
 void do_sweeps(const std::vector<BenchmarkSweep>& sweeps, const Kernels& kernels,

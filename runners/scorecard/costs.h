@@ -1,5 +1,5 @@
-// What renderers cost: wall clock of ticks and frames on this machine. Not the same twice, so kept apart from
-// all results.
+// The cost of renderers: wall-clock time of ticks and frames on this machine. It varies from run to run, so
+// it is stored apart from all results.
 #pragma once
 
 #include <atomic>
@@ -15,17 +15,18 @@ namespace remote_touch {
 struct Cost {
   std::string scene, method;
   double tick_s = 0;   // mean of a tick
-  double frame_s = 0;  // mean of taking a frame; NaN without any
+  double frame_s = 0;  // mean of on_frame(); NaN without frames
 };
 
-// One run on one thread, at the noise level of 0.6 r_c where there are levels: the faster of two. Frames come
-// with every point made, so neither ticks nor frames contain the making of noise. NaN where the run ends with
-// an error. Throws Interrupted.
+// One run on one thread, at the noise level of 0.6 r_c if there are levels: the faster of two. Frames come
+// with every point computed, so the times do not contain the generation of noise. NaN if the run ends with an
+// error. Throws Interrupted.
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop);
 
-// A JSON file beside the results, so that the page of a finished scorecard stays as it is. origin: of this
-// program, and where it ran; costs of another are not read. Empty for a file that is not there or is none.
+// A JSON file beside the results, so that the page of a finished scorecard does not change. origin: see
+// cost_origin(); costs of another origin are not read. read_costs() returns none for a file that does not
+// exist or cannot be used.
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
                  const TextAttributes& origin);
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin);

@@ -1,4 +1,4 @@
-// From the finished runs of a scorecard to what its page tells.
+// From the finished runs of a scorecard to the contents of its page.
 #pragma once
 
 #include <atomic>
@@ -10,8 +10,8 @@
 
 namespace remote_touch {
 
-// Reads all runs, scores them, traces typical failures and measures the costs that no earlier call did.
-// progress: scenes done and in all. Throws Interrupted. pre: do_sweeps() has done them.
+// Reads all runs, scores them, traces typical failures and measures the costs that no earlier call measured.
+// progress: number of scenes done, and of all. Throws Interrupted. pre: do_sweeps() has finished.
 ScorecardPage evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                        const std::function<void(std::size_t, std::size_t)>& progress);
 

@@ -12,16 +12,16 @@
 namespace remote_touch {
 
 struct FailureTrace {
-  std::size_t level = 0;  // of noise: the lowest with a failure
+  std::size_t level = 0;  // lowest noise level with a failure
   int replicate = 0;
-  std::string file;     // from the scorecard's folder; empty: the run ended with an error and has no trace
-  std::string command;  // to be given in that folder
+  std::string file;     // relative to the scorecard's folder; empty: the run ended with an error, no trace
+  std::string command;  // to be run in that folder
   std::string error = {};
 };
 
-// Of the failures at the lowest noise level that has some, the one in the middle, replayed into
-// FOLDER/traces/NAME.h5 unless it is there. An error where that is what is typical. None where every run
-// succeeded.
+// The typical failure, see typical_failure(), at the lowest noise level that has failures, replayed into
+// FOLDER/traces/NAME.h5 unless that exists. Only `error` is set if that run ended with an error. None if
+// every run succeeded.
 std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,

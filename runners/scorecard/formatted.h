@@ -1,4 +1,4 @@
-// printf into a text.
+// printf into a std::string.
 #pragma once
 
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// pre: what comes out is shorter than 256 characters.
+// pre: the result is shorter than 256 characters.
 template <class... Values>
 std::string formatted(const char* form, Values... values) {
   char text[256];

@@ -1,4 +1,4 @@
-// The scorecard as one HTML page that needs nothing else: no scripts, no outside resources.
+// The scorecard as one self-contained HTML page: no scripts, no outside resources.
 #pragma once
 
 #include <optional>
@@ -19,14 +19,14 @@ struct ScorecardPage {
   std::vector<std::pair<std::string, std::string>> skipped;
   std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and method
   std::vector<Cost> costs;
-  // The passivity scene with every force law, where it was run; its methods are the laws.
+  // The passivity scene with every force law, if it was run; its methods are the laws.
   std::optional<Scorecard> audit;
-  std::string cpu = {};  // that the costs were measured on
+  std::string cpu = {};  // on which the costs were measured
 };
 
 std::string html(const ScorecardPage& page);
 
-// The text with what HTML reads otherwise written out.
+// The text with the special characters of HTML escaped.
 std::string escaped(const std::string& text);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// The passivity audit: the scene `passivity` with every sign of the renderers' force laws, to see which of
-// them feed energy into the hand.
+// The passivity audit: the scene `passivity` with every choice of signs in the renderers' force laws, to find
+// which of them feed energy into the hand.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ namespace remote_touch {
 inline constexpr const char* kPassivityScene = "passivity";
 inline constexpr int kPassivityCycles = 3;  // in a run of that scene
 
-// The method with each combination of those of its renderer's parameters that decide about energy: without
-// and with a damper k_d (4.16), its sign where there is one, and the sign of the velocity term of (4.15)
-// where a velocity is estimated. Named CONTENDER, then what differs from the method's own:
-// "proxy+v_plus+k_d3". The method itself is the first.
+// The method with each combination of those of its renderer's parameters that affect energy: without and with
+// a damper k_d (4.16), its sign where there is one, and the sign of the velocity term of (4.15) if a velocity
+// is estimated. Named METHOD, then what differs from the method's own: "proxy+v_plus+k_d3". The method itself
+// is the first.
 std::vector<Method> force_laws_of(const Method& method);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Where device and camera stand in the world, as settings.
+// The poses of device and camera in the world, as settings.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ inline std::string validate(const LiveSettings&) {
   return {};
 }
 
-// Of the camera over where its source says that it stands.
+// Registration X_WC of the camera from these settings; applied to the camera pose that its source reports.
 RigidTransform camera_registration(const LiveSettings& s);
 
 }  // namespace remote_touch

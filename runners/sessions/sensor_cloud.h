@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-// X_WC: where the camera stands. The same bits for the same frame, live and from a recording of it.
+// X_WC: pose of the camera in the world. The same bits for the same frame, live and from a recording of it.
 PointCloud cloud_of(const SensorFrame& frame, const SensorView& view, const RigidTransform& X_WC);
 
 }  // namespace remote_touch

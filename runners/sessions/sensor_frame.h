@@ -1,4 +1,4 @@
-// What a depth camera tells: where its pixels look, and its frames.
+// The data of a depth camera: its view (intrinsics and pose) and its frames.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ struct SensorView {
   double metres_per_unit = 0.001;
   double frame_rate_hz = 30;
   bool has_colour = false;
-  RigidTransform X_WC = RigidTransform::Identity();  // where the camera stands, if the source knows
+  RigidTransform X_WC = RigidTransform::Identity();  // pose of the camera, if the source knows it
 };
 
 // Pixel (u, v) is number v * width + u.
 struct SensorFrame {
-  int number = 0;                     // as the sensor counts, so that a gap shows
+  int number = 0;                     // as the sensor counts, so that gaps are visible
   double captured_s = 0;              // of the host's clock, seconds
   std::vector<std::uint16_t> depth;   // along the optical axis, in units of the view; 0: nothing measured
   std::vector<std::uint32_t> colour;  // 0xRRGGBB, registered to the depth image; empty: none

@@ -1,5 +1,5 @@
-// A live session on disk: what the device told at every tick, what the sensor sent, and when the renderer got
-// it. One HDF5 file.
+// A live session on disk: the device's state at every tick, the sensor's frames, and when the renderer got
+// them. One HDF5 file.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,23 @@
 namespace remote_touch {
 
 struct SessionTick {
-  std::int64_t number = 0;  // its time times the haptic rate
+  std::int64_t number = 0;  // time of the tick times the haptic rate
   DeviceState device;       // as the renderer got it
   int taken = -1;           // the frame that the renderer got before this tick; -1: none
   Wrench written;           // to the device, in its axes
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
-// /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as they
-// were written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's
-// attributes: config, view, haptic rate and the provenance.
+// /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
+// written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's attributes:
+// config, view, haptic rate and the provenance.
 class SessionWriter {
  public:
-  // registered: where the camera stands, its registration included.
+  // registered: X_WC of the camera, including its registration.
   SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
                 const TextAttributes& provenance);
 
-  void append(const SessionTick& tick);  // goes to the disk a thousand at a time
+  void append(const SessionTick& tick);  // written to the disk a thousand at a time
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   void finish();
 
@@ -50,7 +50,7 @@ class SessionWriter {
   } ticks_;
 };
 
-// Throws InputError naming the file when it is no session or damaged.
+// Throws InputError naming the file when it is not a session or damaged.
 class SessionReader {
  public:
   explicit SessionReader(const std::filesystem::path& file);

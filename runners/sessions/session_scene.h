@@ -27,7 +27,7 @@ class SessionScene final : public Scenario {
   bool ends() const override { return true; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // There is no truth.
+  // NaN: the truth is not known.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   std::optional<double> arrives_s(int frame) const override {
     return arrives_s_[static_cast<std::size_t>(frame)];
@@ -45,7 +45,7 @@ Parameters parameters(SessionScene::Settings& s);
 std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
-// The device of the session at its ticks; between them, and where one was missed, as at the one before.
+// The device of the session at its ticks; between ticks, and at missed ones, as at the tick before.
 class SessionHand final : public Trajectory {
  public:
   struct Settings {

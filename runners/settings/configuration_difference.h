@@ -1,4 +1,4 @@
-// Where two resolved configurations differ.
+// Differences between two resolved configurations.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// One text for each place, "renderer.r3_m 0.0075 against 0.007575"; empty when they are the same but for
-// their titles. first and second are JSON texts. Throws InputError for a text that is none.
+// One text for each difference, "renderer.r3_m 0.0075 against 0.007575"; empty if only their titles differ.
+// first and second are JSON texts. Throws InputError for a text that is not JSON.
 std::vector<std::string> configuration_differences(const std::string& first, const std::string& second);
 
 }  // namespace remote_touch

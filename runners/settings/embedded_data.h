@@ -1,4 +1,4 @@
-// What comes with the program: the JSON files of data/, compiled in.
+// The JSON files of data/, compiled into the program.
 #pragma once
 
 #include <span>
@@ -17,7 +17,8 @@ std::span<const EmbeddedText> embedded_sweeps();
 std::span<const EmbeddedText> embedded_methods();
 std::span<const EmbeddedText> embedded_scenes();
 
-// The text of that name, or of that file. kind: "an experiment's", for the InputError when there is neither.
+// The text of that name, or of that file. Throws InputError when there is neither. kind: for its message,
+// such as "an experiment's".
 std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,
                              const std::string& kind);
 

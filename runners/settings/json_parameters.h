@@ -10,8 +10,8 @@
 namespace remote_touch {
 
 // Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
-// one), a value of the wrong kind or one out of range; path is what the object is called, for example
-// "renderer". elsewhere: keys that the caller reads.
+// one), a value of the wrong kind or one out of range; path is the name of the object, for example
+// "renderer". elsewhere: keys that the caller reads itself.
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
                      const std::vector<std::string>& elsewhere = {});
 
@@ -22,12 +22,12 @@ void write_parameters(const Parameters& parameters, Json& object);
 std::string allowed(const Parameter& parameter);
 std::string value_text(const Parameter& parameter);
 
-// Sets what a path like "renderer.r1_m" or "axes.0.count" leads to; objects on the way are made. Throws
-// InputError, about the subject, where the path leads through a value or past the end of a list.
+// Sets the value at a path like "renderer.r1_m" or "axes.0.count"; creates missing objects on the path.
+// Throws InputError, about the subject, if the path leads through a value or past the end of a list.
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
 
-// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON, and as plain text where it is
-// none.
+// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON, or as plain text if it is not
+// JSON.
 void apply_override(Json& configuration, const std::string& assignment);
 
 }  // namespace remote_touch

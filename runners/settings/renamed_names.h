@@ -1,4 +1,4 @@
-// Names of version 0.1 that are others since version 0.2, for hints about old files and scripts.
+// Names of version 0.1 that changed in version 0.2, for hints about old files and scripts.
 #pragma once
 
 #include <optional>
@@ -14,10 +14,10 @@ struct RenamedName {
   const char* new_name;
 };
 
-// Sorted by the old name; some of these have another new name in another section.
+// Sorted by the old name; some old names have different new names in different sections.
 std::span<const RenamedName> renamed_names();
 
-// What old_name is called now, of the names that are known where it was given.
+// The new name of old_name, if it is among the names that are known in that place.
 std::optional<std::string> new_name(const std::string& old_name, const std::vector<std::string>& known);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// The simulated haptic loop: frames at the camera's rate, ticks at the haptic rate, everything into a trace.
+// The simulated haptic loop: frames at the camera's rate, ticks at the haptic rate, recorded in a trace.
 #pragma once
 
 #include <atomic>
@@ -15,11 +15,11 @@ struct SimulationOptions {
   const Kernels* kernels = nullptr;                 // null: the machine's best
   const std::atomic<bool>* stop = nullptr;          // when set, the run ends with Interrupted
   std::function<void(double fraction)> progress;    // called about a hundred times
-  std::vector<double>* step_duration_s = nullptr;   // wall clock of each tick, where wanted
-  std::vector<double>* frame_duration_s = nullptr;  // and of what the renderer does with each frame
+  std::vector<double>* step_duration_s = nullptr;   // wall-clock time of each tick; null: not measured
+  std::vector<double>* frame_duration_s = nullptr;  // and of the renderer's work on each frame
   bool generate_all_points =
-      false;                 // frames come with every point made: durations without the making of noise
-  bool hash_frames = false;  // make every point of every frame for the trace's frame_hash, else 0
+      false;                 // frames come with every point computed: durations without noise generation
+  bool hash_frames = false;  // compute every point of every frame for the trace's frame_hash; else 0
 };
 
 struct Interrupted {};

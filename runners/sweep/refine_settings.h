@@ -1,4 +1,4 @@
-// The part "refine" of a sweep.
+// The section "refine" of a sweep.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,8 @@ struct RefineSettings {
 
 Parameters parameters(RefineSettings& refine);
 
-// Of a sweep with these measures and replicates; nothing where it has no such part. Throws InputError.
+// The settings of a sweep with these measures and replicates; none if it has no such section. Throws
+// InputError.
 std::optional<RefineSettings> read_refine(const Json& sweep, const std::vector<Measure>& measures,
                                           int replicates, const std::string& label);
 

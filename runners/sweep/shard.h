@@ -1,4 +1,4 @@
-// Which part of a sweep a process does.
+// The part of a sweep that one process does.
 #pragma once
 
 #include <optional>
@@ -6,8 +6,8 @@
 
 namespace remote_touch {
 
-// Shard index of count, counted from 1. Cell c of the first round, counted from 0, belongs to shard
-// c mod count + 1: neighbours differ little in cost, so every shard gets its share of slow ones.
+// Shard index of count, numbered from 1. Cell c of the first round, numbered from 0, belongs to shard c mod
+// count + 1: neighbours differ little in cost, so every shard gets about equally many slow cells.
 struct Shard {
   int index = 1;
   int count = 1;
@@ -20,8 +20,8 @@ struct Shard {
 // "2/7". Throws InputError.
 Shard parse_shard(const std::string& text);
 
-// Of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or a program started by mpirun
-// (OMPI_COMM_WORLD_RANK, _SIZE); nothing where neither is set. Throws InputError for values that make no
+// The shard of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or of a program started by mpirun
+// (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. Throws InputError for values that are not a valid
 // shard.
 std::optional<Shard> shard_from_environment();
 

@@ -1,5 +1,4 @@
-// A parameter sweep: an experiment, axes along which its parameters change, and what is measured of every
-// run.
+// A parameter sweep: an experiment, axes along which its parameters change, and the measures of every run.
 #pragma once
 
 #include <memory>
@@ -18,9 +17,9 @@ namespace remote_touch {
 class Sweep {
  public:
   // From JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
-  // the source in errors. Overrides "key=value" change the sweep where their path begins with one of its
-  // keys, else its experiment. Every cell is resolved and checked: throws InputError for the first that
-  // cannot be run.
+  // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
+  // else its experiment. Every cell is resolved and checked: throws InputError for the first that cannot be
+  // run.
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
   // A name of data/sweeps, or a JSON file.
@@ -29,15 +28,15 @@ class Sweep {
   const std::string& title() const;
   // Empty arrays; the shard's runs of the first round are pending, those of other shards elsewhere.
   SweepResult plan(const Shard& shard = {}) const;
-  // The run with its own noise: cell and replicate are keys of it.
+  // The experiment of one run, with its own noise: cell and replicate are part of the noise key.
   Experiment experiment(std::size_t cell, int replicate) const;
-  // The recordings that any of its cells reads, each part once, as they are named.
+  // The recordings that its cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
   std::optional<RefinementRule> refinement() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
-  // Every so manieth value of each axis; of a range, whose steps may not divide evenly, about so. Its runs
-  // have noise of their own.
+  // The sweep with every every-th value of each axis; of a range, whose steps may not divide evenly,
+  // approximately. Its runs have other noise than those of the full sweep.
   Sweep thinned(int every) const;
 
  private:

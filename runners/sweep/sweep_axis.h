@@ -12,18 +12,18 @@ namespace remote_touch {
 
 struct SweepAxis {
   std::string parameter;     // a path, as for --set
-  std::vector<Json> values;  // of the first round, and between them those that refinement may add
+  std::vector<Json> values;  // of the first round, with those between them that refinement may add
   std::size_t stride = 1;    // of the first round's values
-  std::string definition;    // complete JSON, as it stands in a file
+  std::string definition;    // complete JSON, as in a file
 
   // The dimension scale: numbers, or an enumeration of the values' texts. Its name is the last part of the
-  // path, its unit that of the name's ending.
+  // path, its unit the one that ends that name.
   Column column() const;
   std::string name() const { return parameter.substr(parameter.rfind('.') + 1); }
 };
 
 // {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"} or {"parameter": PATH,
-// "values": [...]}. levels of refinement halve the steps of the former as often. label names the axis in
+// "values": [...]}. Refinement halves the steps of the former `levels` times. label names the axis in
 // InputErrors.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
 

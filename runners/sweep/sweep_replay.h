@@ -1,4 +1,4 @@
-// A run of a stored sweep again, as a full trace.
+// Repeats one run of a stored sweep, as a full trace.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@ struct Replay {
   std::string digest;
 };
 
-// Runs it and writes the trace, with the points of its frames in frame_hash. pre: sweep is the one that the
-// file stored has the configuration of. Throws InputError when a file cannot be read or written.
+// Runs it and writes the trace, with frame_hash computed. pre: sweep was read from the configuration of
+// `stored`. Throws InputError when a file cannot be read or written.
 Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
                   const std::filesystem::path& output);
 
-// "3,4": the place of a cell on each axis.
+// "3,4": the index of a cell on each axis.
 std::string cell_text(const SweepResult& result, std::size_t cell);
 
 }  // namespace remote_touch

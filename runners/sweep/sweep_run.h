@@ -1,4 +1,4 @@
-// Doing the runs of a sweep.
+// Does the runs of a sweep.
 #pragma once
 
 #include <atomic>
@@ -15,18 +15,18 @@ struct SweepRunOptions {
   const Kernels* kernels = nullptr;                    // null: the machine's best
   const std::atomic<bool>* stop = nullptr;             // when set, the sweep ends with Interrupted
   std::function<void(std::size_t run)> finished = {};  // one call at a time; what it throws ends the sweep
-  SideBySide runs = side_by_side;                      // how runs share threads
+  SideBySide runs = side_by_side;                      // how runs are distributed over threads
 };
 
 // Does every pending run, in parallel; bits do not depend on threads or order. A run that fails is marked and
-// its error kept, and the others go on. Throws Interrupted, or what finished threw, after the runs at work
-// have ended.
+// its error stored, and the others go on. Throws Interrupted, or the exception of finished, after the runs in
+// progress have ended.
 void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
 
-// Adds the next round of refinement: its runs become pending. False when nothing is left to be asked.
+// Adds the next round of refinement: its runs become pending. False if there is none, see next_round().
 bool add_round(const Sweep& sweep, SweepResult& result);
 
-// All of it in memory: every round. Runs that failed are in the result, with their errors.
+// Does all rounds in memory. Failed runs are in the result, with their errors.
 SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options);
 
 }  // namespace remote_touch

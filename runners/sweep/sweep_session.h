@@ -1,4 +1,4 @@
-// A sweep that is done into a file, and goes on where an earlier call stopped.
+// A sweep that is written to a file, and continues where an earlier call stopped.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,17 @@
 
 namespace remote_touch {
 
-// What is left to do of a sweep when the file, if it is there, holds a part of it.
+// The work that is left of a sweep, given its file if that exists.
 struct SweepPlan {
   SweepResult result;         // failed runs are pending again
-  TextAttributes attributes;  // of the file that is there, or as given; inputs as given
-  bool in_progress = false;   // the file is there, can be written in place, and holds this result
+  TextAttributes attributes;  // of the existing file, or as given; inputs always as given
+  bool in_progress = false;   // the file exists, can be written in place, and holds this result
   bool is_there = false;
-  bool is_finished = false;  // the file is there, and is what a finished sweep with this result would write
+  bool is_finished = false;  // the file exists and equals what a finished sweep with this result would write
 };
-// Throws InputError for a file that is no sweep, or one of another configuration, shard or build; and where a
-// recording has changed that a finished run has read. One that only failed runs have read may be mended.
+// Throws InputError for a file that is not a sweep, or is of another configuration, shard or build; and if a
+// recording that a finished run has read was changed. A recording that only failed runs have read may be
+// repaired.
 SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                        const std::filesystem::path& file);
 
@@ -31,9 +32,9 @@ class SweepSession {
   SweepSession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                const std::filesystem::path& file);
 
-  // Does everything that is left, round by round, and writes the finished file. progress: runs done, runs in
-  // all so far, and how many of them were done before. Returns false when nothing was left. Throws
-  // Interrupted, or InputError when the file cannot be written; what is finished is then in the file.
+  // Does everything that is left, round by round, and writes the finished file. progress: runs done, all runs
+  // so far, and how many of them were done before. Returns false if nothing was left. Throws Interrupted, or
+  // InputError when the file cannot be written; finished runs are then in the file.
   using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 

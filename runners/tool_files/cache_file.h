@@ -1,5 +1,5 @@
-// Files of things that take long to make: a line that tells what it is, the key that it was made for, its
-// fields as they are in memory (a cache never leaves its machine), and the SHA-256 of all that.
+// Cache files of objects that take long to make: a line with their kind, the key that they were made for,
+// their fields as in memory (a cache never leaves its machine), and the SHA-256 of all that.
 #pragma once
 
 #include <cstring>
@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// Values one after the other, into a hash and into a file where there is one.
+// Writes values one after the other into a hash, and into a file if one is given.
 class CacheWriter {
  public:
   explicit CacheWriter(int file = -1) : file_(file) {}
@@ -44,7 +44,7 @@ class CacheWriter {
   Sha256 hash_;
 };
 
-// Takes from bytes; once something is missing, all that follows stays as it was.
+// Reads values from bytes; once one is missing, it and all later ones are left unchanged.
 class CacheReader {
  public:
   CacheReader(const char* begin, const char* end) : at_(begin), end_(end) {}
@@ -77,18 +77,19 @@ class CacheReader {
   bool good_ = true;
 };
 
-// The first line of a kind of files, which ends with its format's version; files are KEY.KIND.
+// The kind of a cache file, its first line, which ends with the version of the format. Files are named
+// KEY.KIND.
 struct CacheKind {
   std::string name;
   int version;
 };
 
-// Whether the folder has a whole file of that kind and key, and take() used up all its fields.
+// Whether the folder has a complete file of that kind and key, and take() read all its fields.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                      const std::function<void(CacheReader&)>& take);
 
-// Writes to a name of its own and renames, so that others see the whole file or none; makes the folder. Where
-// nothing can be written that is no error: false then.
+// Writes to a temporary name and renames, so that other processes see the whole file or none; creates the
+// folder. Returns false if it cannot be written, which is not an error.
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

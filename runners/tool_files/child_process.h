@@ -1,5 +1,5 @@
-// Work that may hang, crash or take all memory, such as a library that reads a file of unknown origin, in a
-// process of its own.
+// Runs work that may hang, crash or take all memory, such as a library that reads a file of unknown origin,
+// in a separate process.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 namespace remote_touch {
 
 struct ChildLimits {
-  std::size_t memory_bytes;  // above what this process has
+  std::size_t memory_bytes;  // in addition to what this process has
   unsigned processor_s;
 };
 
-// What work returns; nothing that it changes is changed here. Throws std::runtime_error with the message of
-// what work threw, or how it ended.
+// Returns what work returns; its changes to memory do not reach this process. Throws std::runtime_error with
+// the message of the exception of work, or with how the process ended.
 std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// The 6-DOF fixture renderer as experiments name it: a tool of spheres from a mesh, and how it moves.
+// The 6-DOF fixture renderer for experiments, chapter 7: a tool of spheres made from a mesh, and its motion.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ class LoadedSpheres final : public Renderer {
   struct Settings {
     ToolSettings tool{.mesh = "key"};
     int leaves = 112;
-    // Regions are round: the motion nears its end by a share at a time, and a hundredth of a millimetre is
-    // less than a hand can feel. Out of a frame that swallowed the tool about ten detections lead; the ticks
-    // that want many more slide along creases, and can go on in the next one.
+    // Regions are round, so the motion approaches its end by a fraction at a time; a hundredth of a
+    // millimetre is less than a hand can feel. When a frame has enclosed the tool, about ten detections lead
+    // out; ticks that need many more slide along creases, and can go on in the next tick.
     ToolParameters motion{.detections_per_tick = 30, .rest_threshold_m = 1e-5};
   };
 

@@ -1,4 +1,4 @@
-// The 6-DOF renderer as experiments name it: a tool from a mesh, and how it moves.
+// The 6-DOF renderer for experiments, chapter 6: a tool made from a mesh, and its motion.
 #pragma once
 
 #include <string>

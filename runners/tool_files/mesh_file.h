@@ -7,11 +7,12 @@
 
 namespace remote_touch {
 
-// By the ending of its name, in any case of letters.
+// By the ending of its name, upper or lower case.
 bool is_mesh_file(const std::filesystem::path& file);
 
 // All meshes of the file as one, vertices at equal positions welded, polygons cut into fans; lines and points
-// are left out. Coordinates have the precision of floats. Throws InputError, naming the file.
+// are left out. Coordinates have single precision, in the unit of the file. Throws InputError, naming the
+// file.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 // The reader's version: another one may read a file differently.

@@ -1,4 +1,4 @@
-// The header of a PLY file: whether it ends, and whether the file can hold what it counts.
+// Checks the header of a PLY file: whether it ends, and whether the file is long enough for its counts.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// Empty where nothing is wrong with it.
+// The problem in one line; empty if there is none.
 std::string ply_problem(const std::filesystem::path& file);
 
 }  // namespace remote_touch

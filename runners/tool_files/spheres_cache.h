@@ -1,4 +1,4 @@
-// The sphere trees of tools on disk, beside the tools.
+// The cache of tools' sphere trees on disk, beside that of the tools.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// Raise it with every change to what make_tool_spheres() gives: it is part of the key.
+// Part of the key: raise it whenever the result of make_tool_spheres() changes.
 inline constexpr int kSpheresFormat = 1;
 
 // From the key of the tool in its cache.

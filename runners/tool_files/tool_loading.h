@@ -25,9 +25,9 @@ std::string validate(const ToolSettings& settings);
 // The mesh file that the result depends on; none for a built-in tool.
 std::vector<RecordingPart> input_files(const ToolSettings& settings);
 
-// A file is looked for as recordings are, see find_recording(). The name of a built-in tool comes before a
-// file of that name. Throws MissingRecording where there is neither, InputError as read_mesh() and
-// make_voxel_tool() do. report: what text(ToolReport) said when it was made.
+// A file is searched for like a recording, see find_recording(). A built-in tool takes precedence over a file
+// of its name. Throws MissingRecording if there is neither, InputError as read_mesh() and make_voxel_tool()
+// do. report: the text(ToolReport) from when it was made.
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
 
 // The same tool with its sphere tree, which is made once for each number of leaves and kept beside it.

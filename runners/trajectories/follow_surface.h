@@ -11,9 +11,9 @@
 namespace remote_touch {
 
 // The HIP keeps its distance to every part of the surface along the line (a parallel curve, not a vertical
-// shift). Over steps it lifts off and comes down behind them: a proxy without friction rests on the wall of a
-// step for as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force.
-// It moves at constant speed along its own path, comes from above and leaves upwards.
+// shift). Over steps it lifts off and comes down behind them: a frictionless proxy stays at the wall of a
+// step as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force. It
+// moves at constant speed along its own path, approaches from above and leaves upwards.
 class FollowSurface final : public Trajectory {
  public:
   struct Settings {

@@ -1,5 +1,5 @@
-// A device that presses at one pixel, at a given depth behind the surface of the newest frame: it stays in
-// contact while the camera or the scene moves.
+// A device that presses along the ray of one pixel, a set depth behind the surface of the newest frame: it
+// stays in contact while the camera or the scene moves.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// Where a frame shows no surface without gaps around the pixel, the device lifts off until one does.
+// If a frame shows no gap-free surface around the pixel, the device lifts off until one does.
 class ImagePress final : public Trajectory {
  public:
   struct Settings {
@@ -22,7 +22,7 @@ class ImagePress final : public Trajectory {
     double press_at_s = 0.1;
     double approach_m_per_s = 0.2;
     double edge_jump_m =
-        0.006;  // below sqrt(2) r_c: a square of points wider than that lets the proxy through
+        0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
     double margin_m = 0.01;
   };
 
@@ -39,7 +39,7 @@ class ImagePress final : public Trajectory {
   const Scenario& scenario_;
   ImageLayout image_;
   int row_ = 0, column_ = 0;
-  mutable std::map<int, double> depths_;  // by frame: ticks ask for the same one many times
+  mutable std::map<int, double> depths_;  // cache, by frame: many ticks use the same one
 };
 
 Parameters parameters(ImagePress::Settings& s);

@@ -1,6 +1,6 @@
 // A device that scans along an image row of the first frame, a set depth behind the surface that the camera
-// saw: the default path over any recording. It touches what the camera saw without gaps, and lifts off over
-// depth edges and holes: behind those there are no points, and nothing would hold the proxy.
+// saw: the default path over any recording. It touches surfaces that the camera saw without gaps, and lifts
+// off over depth edges and holes: behind those there are no points to hold the proxy.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace remote_touch {
 
-// A part of the row that is seen without holes or edges, ends included.
+// A part of the row without holes or edges, both ends included.
 struct ScanPatch {
   int first_column = 0, last_column = 0;
 };
@@ -29,7 +29,7 @@ class ImageScan final : public Trajectory {
     double clearance_m = 0.03;
     double span_m = 0.3;
     double edge_jump_m =
-        0.006;  // below sqrt(2) r_c: a square of points wider than that lets the proxy through
+        0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
     double margin_m = 0.01;
   };
 

@@ -1,4 +1,4 @@
-// The nearest large object that a depth image shows: where a scan goes when nobody says.
+// The nearest large object in a depth image: the default target of a scan.
 #pragma once
 
 #include "core/cloud/camera.h"
@@ -10,10 +10,10 @@ struct NearestObject {
   int row = 0, column = 0;     // medians of its pixels
 };
 
-// The plane that most of the scene lies on (a table, a floor, a wall) is taken away when it holds a fifth of
-// what was measured; of the patches of continuous depth that remain and fill 1 % of the image, the nearest is
-// the object. Where nothing remains, the whole scene is. Depends on the image alone: the random choices have
-// a fixed key.
+// The dominant plane (a table, a floor, a wall) is removed if it has a fifth of the measured points or more;
+// of the remaining patches of continuous depth that fill 1 % of the image or more, the nearest is the object.
+// If none remains, the whole scene is the object. Depends on the image alone: the random choices have a fixed
+// key.
 NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsics& camera);
 
 }  // namespace remote_touch

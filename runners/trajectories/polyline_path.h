@@ -11,9 +11,9 @@ class PolylinePath {
  public:
   // Starts at a point, at time 0.
   explicit PolylinePath(const Vec3& start) : points_{start}, arrival_s_{0} {}
-  // Goes on to p at that speed; speed 0 jumps there in no time.
+  // Continues to p at that speed; speed 0 jumps there at once.
   void go_to(const Vec3& p, double speed_m_per_s);
-  // Stays for a while.
+  // Stays for that time.
   void wait(double duration_s);
 
   Vec3 at(double time_s) const;  // the end point after the end

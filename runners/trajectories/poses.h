@@ -20,14 +20,14 @@ class Poses final : public Trajectory {
   };
 
   Poses(const Settings& settings, const Scenario& scenario);
-  // Evenly along the straight line, and about a fixed axis by the shorter way.
+  // At constant speed along the straight line, and about a fixed axis by the smaller angle.
   DeviceState at(double time_s) const override;
   double duration_s() const override { return arrival_s_.back(); }
 
  private:
   std::vector<DeviceState> poses_;
   std::vector<double> arrival_s_;
-  std::vector<Vec3> rotation_W_;  // rotation vector of the way to each pose
+  std::vector<Vec3> rotation_W_;  // rotation vector from the pose before to each pose
 };
 
 Parameters parameters(Poses::Settings& s);

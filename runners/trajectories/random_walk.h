@@ -1,4 +1,4 @@
-// A smooth motion of six degrees of freedom without aim: for tests under stress.
+// A smooth random motion of six degrees of freedom, for stress tests.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// Each coordinate of the place and of the rotation vector is a sum of three sines whose rates have no common
-// period, of random phases.
+// Each coordinate of the position and of the rotation vector is a sum of three sines with incommensurable
+// frequencies and random phases.
 class RandomWalk final : public Trajectory {
  public:
   struct Settings {

@@ -10,9 +10,9 @@ class Trajectory {
  public:
   virtual ~Trajectory() = default;
   virtual DeviceState at(double time_s) const = 0;
-  // When the motion ends; the device rests afterwards. 0 where there is no natural end.
+  // When the motion ends; the device rests afterwards. 0 if it has no end.
   virtual double duration_s() const = 0;
-  // Of a recorded live session: its loop missed the tick of that time, which is passed over then.
+  // Of a recorded live session: its loop missed the tick at that time, which is then skipped.
   virtual bool is_missed(double /*time_s*/) const { return false; }
 };
 

@@ -1,5 +1,5 @@
-// A depth camera looks down on a beating organ that lies on a table: a surface that moves all the time, known
-// exactly at every instant.
+// A depth camera looks down on a beating organ that lies on a table, as in 5.3.3: a surface that moves all
+// the time, known exactly at every instant.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 namespace remote_touch {
 
 // World frame: the table is y = 0, y up. The organ is the union of three ellipsoids, 95 mm long in x, 60 mm
-// high over the origin at rest, convex and smooth for 20 mm around that top at every time. By default the
-// top's radius of curvature falls to 29 mm in z: a device pressed deeper than that lies beyond its centre,
-// and a proxy slides off. The semi-axes shrink and grow with the beat, all in the same proportion, about
-// centres that rest; the atrium leads the ventricles. The motion is twice continuously differentiable in time
-// and made of polynomials only: the same bits on every machine. Frame j shows the surface as it is at
+// high over the origin at rest, convex and smooth within 20 mm of that top at every time. By default the
+// top's radius of curvature in z falls to 29 mm: a device pressed deeper than that lies beyond the centre of
+// curvature, and a proxy slides off. The semi-axes shrink and grow with the beat, all in the same proportion,
+// about fixed centres; the atrium leads the ventricles. The motion is twice continuously differentiable in
+// time and uses polynomials only: the same bits on every machine. Frame j shows the surface as it is at
 // captured_s(j), all pixels at once.
 class BeatingHeart final : public Scenario {
  public:
@@ -36,13 +36,13 @@ class BeatingHeart final : public Scenario {
   int frame_count() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // At that very time, between frames too. Exact outside organ and table; inside both or two lobes the depth
-  // is at least what is told.
+  // At exactly that time, between frames too. Exact outside organ and table; inside both or two lobes the
+  // depth returned is a lower bound.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   double surface_height(double x, double z, double time_s) const override;
 
-  // How far a ventricle has contracted, 0 (at rest, full) to 1, so many beats after the start of a
-  // contraction.
+  // How far a ventricle has contracted, from 0 (at rest, full) to 1. beats: time since the start of a
+  // contraction, in beats.
   static double contraction(double beats);
 
  private:

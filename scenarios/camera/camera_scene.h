@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// World frame: the table is y = 0, y up; ramp and box follow each other along z, and the camera stands beside
-// the gap between them, from where it sees the walls on both sides of it.
+// World frame: the table is y = 0, y up; ramp and box lie one behind the other along z, and the camera is
+// beside the gap between them, where it sees the walls on both sides of it.
 class CameraScene final : public Scenario {
  public:
   struct Settings {

@@ -1,6 +1,6 @@
 // A synthetic structured-light depth camera: where it looks, what it would see ideally, and what it measures.
-// Depth is measured along the optical axis with Gaussian noise that grows with z^2, then quantised with steps
-// of quantisation z^2, and lost near depth edges.
+// Depth is measured along the optical axis with Gaussian noise that grows with z^2, then quantised in steps
+// of quantisation_per_m z^2, and lost near depth edges.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace remote_touch {
 
-// The world's y is up. Each scenario says where its camera stands.
+// The world's y is up. Each scenario places its own camera.
 struct DepthCameraSettings {
   int width = 640;
   int height = 480;
@@ -33,11 +33,11 @@ Parameters parameters(DepthCameraSettings& s);
 std::string validate(const DepthCameraSettings& s);
 
 // Pose of a camera (x right, y down, z forward) that looks from `from` to `to` with the world's y up in the
-// image. Where it looks straight down or up no direction in the image is the world's up; its right is then
-// the world's +x, so that seen from above the image's up is -z. pre: from and to differ.
+// image. If it looks straight down or up, no direction in the image is the world's up: the image's right is
+// then the world's +x, so that seen from above the image's up is -z. pre: from and to differ.
 RigidTransform look_at(const Vec3& from, const Vec3& to);
 
-// What a ray meets first: the place origin + t ray.
+// What a ray meets first: the position origin + t ray.
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t colour = 0;  // 0xRRGGBB; black where nothing is met
@@ -47,7 +47,7 @@ using RayCast = std::function<RayHit(const Vec3& origin_W, const Vec3& ray_W)>;
 // A scene at one instant, as an ideal camera would see it. Columns have an entry for every pixel.
 struct IdealView {
   DepthImage depth;                             // NaN beyond 3 m
-  std::vector<char> hole;                       // 1 where the sensor gives nothing, for a depth edge is near
+  std::vector<char> hole;                       // 1 where the sensor gives nothing: a depth edge is near
   std::vector<std::uint32_t> colour;            // 0xRRGGBB; empty for a scene without colours
   std::vector<double> depth_noise_factor = {};  // times the camera's own noise; empty: 1 everywhere
 };
@@ -64,7 +64,7 @@ class DepthCamera {
   // Casts the ray of every pixel, from several threads at once.
   IdealView view(const RayCast& cast, bool coloured) const;
   // The organised cloud of a frame; a pure function of the view, the noise key and the frame's number. A hole
-  // keeps its colour: what gives no depth has been seen all the same.
+  // keeps its colour: the camera sees it, only its depth is missing.
   PointCloud measured(const IdealView& view, int frame) const;
 
  private:

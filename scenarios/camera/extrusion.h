@@ -1,4 +1,4 @@
-// A convex profile in the (z, y) plane, drawn out along x: boxes and ramps, with exact distance and ray cast.
+// A convex profile in the (z, y) plane, extruded along x: boxes and ramps, with exact distance and ray cast.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class Extrusion {
 
   // Distance to the surface, negative inside; exact on both sides.
   double signed_distance(const Vec3& p) const;
-  // Smallest t >= 0 at which origin + t direction enters; infinite when it does not.
+  // Smallest t >= 0 at which origin + t direction enters the solid; infinite if it does not.
   double cast(const Vec3& origin, const Vec3& direction) const;
   // Height of the top over (x, z); minus infinity beside the solid.
   double height(double x, double z) const;

@@ -5,11 +5,11 @@
 
 namespace remote_touch {
 
-// Its axis is along z and the wheel lies in the plane z = centre.z; the wall that its stem ends at is z = 0.
-// One spoke points up, +y. Metres.
+// Its axis is along z and the wheel lies in the plane z = centre.z; its stem ends at the wall z = 0. One
+// spoke points up, +y. Metres.
 class Handwheel {
  public:
-  // What there is around the ring, whose own radius is the one of the middle of its tube.
+  // The other dimensions. The ring's radius is that of the centre line of its tube.
   static constexpr double kTubeRadius_m = 0.007, kSpokeRadius_m = 0.0045;
   static constexpr double kHubRadius_m = 0.011, kHubHalfLength_m = 0.010, kStemRadius_m = 0.008;
 
@@ -17,12 +17,12 @@ class Handwheel {
   Handwheel(const Vec3& centre_m, double ring_radius_m);
 
   // Distance to the surface of the union, negative inside. Exact outside; inside two of the parts the depth
-  // is at least what is told.
+  // returned is a lower bound.
   double signed_distance(const Vec3& p) const;
   // Smallest t >= 0 at which origin + t direction is inside, or less than 1e-9 m outside; infinite when it
   // never is.
   double cast(const Vec3& origin, const Vec3& direction) const;
-  // Outward unit normal at a place on the surface; something between where two parts meet.
+  // Outward unit normal at a position on the surface; a blend of both normals where two parts meet.
   Vec3 normal(const Vec3& p) const;
 
  private:

@@ -1,5 +1,5 @@
 // What turbid water does to what a colour and depth camera sees: colours fade into a veil of scattered light,
-// depth gets noisier and is lost. A model of the trend with three rates, not of any one water.
+// depth gets noisier and is lost. A model of the trend with three rates, not of one particular water.
 #pragma once
 
 #include <array>
@@ -7,12 +7,12 @@
 
 namespace remote_touch {
 
-// exp(-x) for x >= 0, within 1e-12 of itself; 0 from 64 on. Made of products, so that the bits do not depend
-// on which exponential the C library picks for a machine.
+// exp(-x) for x >= 0, with a relative error below 1e-12; 0 from 64 on. Computed by products, so that the bits
+// do not depend on which exponential the C library picks for a machine.
 double decay(double x);
 
-// Distances are metres of water between the camera and what it sees; infinite where it sees nothing. That the
-// light which falls on things came through water too is left out, as is blur.
+// Distances are metres of water between the camera and what it sees; infinite where it sees nothing. The path
+// of the light to the objects is left out, as is blur.
 class Water {
  public:
   // Attenuation beta per metre, 0 for clear water. Red is lost fastest, blue slowest.
@@ -21,14 +21,13 @@ class Water {
   static constexpr double kAttenuation[3] = {1.3, 0.95, 0.8};  // of red, green and blue, times beta
   static constexpr double kVeil[3] = {13, 31, 28};             // a dark bluish green; 0 to 255
 
-  // Of each channel, 0 to 255: c exp(-beta_c d) + veil_c (1 - exp(-beta_c d)) of a colour 0xRRGGBB.
+  // For each channel c of a colour 0xRRGGBB, 0 to 255: c exp(-beta_c d) + veil_c (1 - exp(-beta_c d)).
   std::array<double, 3> seen(std::uint32_t rgb, double distance_m) const;
 
-  // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), where dropout is that of clear
-  // water.
+  // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), with dropout the probability
+  // in clear water.
   double lost(double dropout_probability, double distance_m) const;
-  // What the standard deviation of depth is multiplied by, 1 + beta d: the sensor's pattern comes back
-  // fainter.
+  // Factor on the standard deviation of depth, 1 + beta d: the sensor's light pattern comes back fainter.
   double depth_noise_factor(double distance_m) const;
 
  private:

@@ -1,5 +1,5 @@
-// What a depth sensor does to the frames of any scenario: places in steps and beside the surface, lost
-// points, frames that come twice or late, rows that are read one after the other.
+// Faults that a depth sensor adds to the frames of any scenario: rounded depths, flying points and outliers,
+// lost points, frames that come twice or late, rows that are read one after the other.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@
 
 namespace remote_touch {
 
-// Applied in this order; a point can meet several, but an outlier does not fly. "Along the view" is along one
-// direction for all points; in a cloud with an image layout along the ray of each, as a distance from the
-// camera.
+// Applied in this order; a point can get several faults, but an outlier is not also a flying point. Depth is
+// measured along view_direction for all points; in a cloud with an image layout along each point's own ray,
+// as its distance from the camera.
 struct SensorFaults {
-  Vec3 view_direction{0, -1, 0};  // the way the sensor looks; any length
+  Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
   double repeat_probability = 0;  // frames that show the one before them
   double rolling_shutter_s = 0;   // time in which the rows of a frame are read
   double flying_probability = 0, max_flying_distance_m = 0.02;
@@ -31,8 +31,8 @@ Parameters parameters(SensorFaults& s);
 std::string validate(const SensorFaults& s);
 
 // Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
-// fault at 0 they are the scenario's bit for bit. A point that is lost becomes NaN in all three coordinates,
-// so that the number of each stays. Truth, and what else there is to know, stays that of the scenario.
+// fault at 0 they are the scenario's bit for bit. A lost point becomes NaN in all three coordinates, so that
+// points keep their numbers. The ground truth, and everything else, stays that of the scenario.
 class FaultySensor final : public Scenario {
  public:
   // Throws std::invalid_argument for settings that validate() refuses.
@@ -40,8 +40,7 @@ class FaultySensor final : public Scenario {
                const Kernels& kernels);
 
   double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
-  // Where frames of one surface differ by their faults, the sensor goes on when the scenario has come to
-  // rest.
+  // If frames of the same surface differ by their faults, the sensor goes on after the scenario's last frame.
   int frame_count() const override;
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }
@@ -60,7 +59,7 @@ class FaultySensor final : public Scenario {
   }
 
  private:
-  struct ViewCoordinates {  // a cloud flat as the sensor sees it
+  struct ViewCoordinates {  // a cloud projected along the viewing direction
     PointCloud places;
     std::vector<double> hole_radius;
     std::vector<std::uint32_t> measured;

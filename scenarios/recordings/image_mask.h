@@ -1,4 +1,4 @@
-// The points whose pixels a mask marks: the answer of any segmentation, drawn as an image.
+// The points whose pixels a mask marks: the result of any segmentation, as an image.
 #pragma once
 
 #include "core/virtual_fixtures/fixture_rule.h"
@@ -13,9 +13,9 @@ class ImageMask final : public FixtureRule {
     std::string path;
   };
   // Reads the mask: a PNG of any kind that read_colour_png takes, of the size of the frames; a pixel that is
-  // not black picks its point. Throws InputError when it cannot be read.
+  // not black selects its point. Throws InputError when it cannot be read.
   explicit ImageMask(const Settings& settings);
-  // Throws InputError when the cloud is no image, or of another size.
+  // Throws InputError when the cloud is not an image, or has another size.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

@@ -24,7 +24,7 @@ class RecordedScene final : public Scenario {
     double frame_rate_hz = 0;
     double max_depth_m = 3;
     double truth_radius_m = 0.006;
-    Vec3 camera_position_m = Vec3::Zero();  // place and rotation vector of the camera in the base frame
+    Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
   };
 
@@ -36,8 +36,8 @@ class RecordedScene final : public Scenario {
   double captured_s(int frame) const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // There is no truth but the measurement: the distance to a plane through the pixels around p's, within
-  // truth_radius_m, of the newest frame; positive towards the camera. NaN at holes and depth edges.
+  // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
+  // pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges.
   double signed_distance(const Vec3& p_W, double time_s) const override;
 
  private:
@@ -51,7 +51,7 @@ class RecordedScene final : public Scenario {
   RecordingIndex recording_;
   int first_ = 0, count_ = 0;
   double rate_hz_ = 0;
-  // The frames asked for last, the newest in front: renderer, trajectory and truth ask in turn, and a short
+  // The frames used last, the newest in front: renderer, trajectory and truth use them in turn, and a short
   // part is played many times.
   struct CachedFrame {
     std::size_t source;

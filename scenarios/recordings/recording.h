@@ -13,7 +13,7 @@ namespace remote_touch {
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
   std::filesystem::path depth;   // a depth PNG or a PCD file
-  std::filesystem::path colour;  // empty: no colour image that is registered to the depth image
+  std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
 struct RecordingIndex {
@@ -24,7 +24,7 @@ struct RecordingIndex {
   double frame_rate_hz = 0;
   std::vector<RecordedFrame> frames;  // at least one, captured_s strictly increasing
   std::string description;            // one line
-  // What was read beside the frames themselves, where it is there: camera.json, depth.txt, rgb.txt.
+  // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
 };
 

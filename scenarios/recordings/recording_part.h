@@ -1,5 +1,5 @@
-// Where a recording or an image is, and which of its files a run reads: what a result depends on beside its
-// configuration.
+// Where a recording or an image is, and which of its files a run reads: what a result depends on in addition
+// to its configuration.
 #pragma once
 
 #include <compare>
@@ -12,11 +12,12 @@
 
 namespace remote_touch {
 
-// As settings name it. Nothing is looked for, so that a sweep can tell the parts of all its cells at no cost.
+// As named in settings. The file system is not searched, so that a sweep can list the parts of all its cells
+// at no cost.
 struct RecordingPart {
   std::string path;
   int first_frame = 0;
-  int last_frame = -1;  // -1: the last there is
+  int last_frame = -1;  // -1: the last frame of the recording
   auto operator<=>(const RecordingPart&) const = default;
 };
 
@@ -27,8 +28,8 @@ class MissingRecording : public InputError {
   using InputError::InputError;
 };
 
-// Where a recording is looked for: the path itself, then below the folder that the environment variable
-// REMOTE_TOUCH_DATA names. Throws MissingRecording when it is in neither place.
+// Finds a recording: the path itself, else below the folder that the environment variable REMOTE_TOUCH_DATA
+// names. Throws MissingRecording when it is in neither place.
 std::string find_recording(const std::string& path);
 
 // The frames of the part, first to last. Throws InputError when the recording has fewer.
@@ -37,10 +38,10 @@ struct FrameRange {
 };
 FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording);
 
-// The files from which the part's frames are made, each once, by name: a single PNG or mesh itself; the depth
-// images or PCD files, the colour images that are registered to them, and camera.json, depth.txt and rgb.txt
-// as far as they are used. Throws InputError when the recording is not there, its lists or camera.json cannot
-// be used, or it has fewer frames; images and PCD files are not opened.
+// The files from which the part's frames are made, each once, sorted by name: a single PNG or mesh itself; or
+// the depth images or PCD files, the colour images registered to them, and those of camera.json, depth.txt
+// and rgb.txt that are used. Throws InputError when the recording is not there, its lists or camera.json
+// cannot be used, or it has fewer frames; images and PCD files are not opened.
 struct InputFile {
   std::string name;            // from the recording's folder, or from the one that holds a single PCD file
   std::filesystem::path file;  // to be opened

@@ -14,9 +14,9 @@ struct StampedFile {
   std::filesystem::path file;
 };
 
-// Lines "timestamp_s filename", relative to the list's folder, and # comments. Throws InputError about the
-// line if it is anything else, the stamps do not strictly increase or the file is not there; about the list
-// if it is empty.
+// Lines "timestamp_s filename", relative to the list's folder, and # comments. Throws InputError about a line
+// if it is anything else, the stamps do not strictly increase or the file does not exist; about the list if
+// it is empty.
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list);
 
 // A frame for each depth image, counted from the first; its colour image is the one with the nearest stamp

@@ -1,4 +1,4 @@
-// A flat point cloud at y = 0, 4.3.1: one frame that stays.
+// A flat point cloud at y = 0, 4.3.1, that does not move.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// A few points, written down: the cloud of 5.3.1 is one.
+// A few points given in the settings, such as the single point of 5.3.1.
 #pragma once
 
 #include <string>

@@ -31,10 +31,10 @@ class MovingLift final : public Scenario {
   int frame_count() const override { return settings_.rise_frames + settings_.acceleration_frames + 1; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Over the plane of the newest frame, for pop-through is judged against what the camera has seen; or over
-  // the plane as it moves on between frames.
+  // Height over the plane of the newest frame, because pop-through is judged against what the camera has
+  // seen; or (Truth::moving) over the plane as it moves between frames.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Of the plane as it moves evenly from one frame's height to the next; it rests after the last.
+  // Of the plane as it moves linearly from one frame's height to the next; constant after the last.
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 
  private:

@@ -29,7 +29,7 @@ class MovingPlane final : public Scenario {
   int frame_count() const override { return frame_count_; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
-  // Over the plane as it is at that time, between frames too.
+  // Height over the plane as it is at that time, between frames too.
   double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - height(time_s); }
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 
@@ -39,7 +39,7 @@ class MovingPlane final : public Scenario {
   const Settings settings_;
   const NoiseKey key_;
   const Kernels& kernels_;
-  double rising_s_ = 0;  // how long
+  double rising_s_ = 0;  // duration of the rise
   int frame_count_ = 1;
 };
 

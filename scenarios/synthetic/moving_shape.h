@@ -1,5 +1,5 @@
-// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: what renderers are
-// compared on beside the lifts of 4.3.2.
+// A surface of one of a few shapes that is lifted, slid, shaken or rocked, and may vanish: for comparing
+// renderers on more than the lifts of 4.3.2.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace remote_touch {
 
-// The points are the grid's nodes on the shape, row after row, sheet after sheet, carried along by the
-// motion; noise is added in the world frame. A small grid is a patch, its border an edge to slide over. A
-// flat lift has the same bits as a moving-lift of the same settings.
+// The points are the grid's nodes on the shape, row by row, sheet by sheet, moved by the motion; noise is
+// added in the world frame. A small grid is a patch, its border an edge to slide over. A flat lift has the
+// same bits as a moving-lift of the same settings.
 class MovingShape final : public Scenario {
  public:
   enum class Truth { newest_frame, moving };
@@ -40,11 +40,11 @@ class MovingShape final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Without points where the frame is empty.
   PointCloud cloud(int frame) const override;
-  // To the first sheet, positive above it, as Shape tells: where the newest frame shows it (an empty one:
-  // would have shown it), or as it moves on between frames. NaN once it has vanished.
+  // To the first sheet, positive above it, see Shape::signed_distance(): where the newest frame shows it (or,
+  // if that is empty, would have shown it), or as it moves between frames. NaN once it has vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Of the first sheet as it moves, continued beyond its border, so that a hand always has something to
-  // press; after it has vanished the height that it had then.
+  // Of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a surface
+  // to press; after it has vanished, the height that it had then.
   double surface_height(double x, double z, double time_s) const override;
 
  private:

@@ -1,4 +1,4 @@
-// A flat grid whose noise is made only where it is asked for.
+// A flat grid whose noise is computed only where a query needs it.
 #pragma once
 
 #include "core/random/noise.h"
@@ -8,9 +8,9 @@
 namespace remote_touch {
 
 // Points (x, height, z) of the grid, each coordinate plus sigma times a standard normal. The result is
-// bit-identical to making every point: a normal has a hard bound (kMaxNormal), so points that start too
-// far away cannot come near; of the others only those are made whose random words let them move far enough.
-// Keeps the points made around the last place asked for, so it serves one reader at a time.
+// bit-identical to computing every point: a normal has a hard bound (kMaxNormal), so points that start too
+// far away cannot come near; of the others only those are computed whose random words let them move far
+// enough. Caches the points around the last query, so it serves one reader at a time.
 class NoisyGridSearch final : public NeighbourSearch {
  public:
   NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream);
@@ -34,7 +34,7 @@ class NoisyGridSearch final : public NeighbourSearch {
   const Grid grid_;
   const double height_m_, sigma_m_;
   const NoiseStream stream_;
-  // Room for all points, so that a query never allocates.
+  // Allocated for all points, so that a query never allocates.
   mutable Cylinder cached_cylinder_;
   mutable std::size_t count_ = 0;
   mutable Buffer<std::uint32_t> index_;

@@ -1,4 +1,4 @@
-// A flat rectangle, sampled as a grid: what the scenes of chapter 6 are built of.
+// A flat rectangle, sampled as a grid, from which the scenes of chapter 6 are built.
 #pragma once
 
 #include <span>
@@ -20,8 +20,8 @@ struct FlatPanel {
   Vec3 nearest(const Vec3& p) const;
 };
 
-// Points lie where the coordinates along u and v, from the centre, are whole multiples of the spacing plus
-// the phases.
+// Coordinates of the points along u and v, from the centre, are whole multiples of the spacing plus the
+// phase.
 struct PanelGrid {
   double spacing_m = 0.003;
   double phase_u_m = 0, phase_v_m = 0;
@@ -30,12 +30,12 @@ struct PanelGrid {
 // Adds, row after row, the points of the grid that lie on the panel, its border included, with the panel's
 // normal.
 void append(PointCloud& cloud, const FlatPanel& panel, const PanelGrid& grid);
-// How many points stand in such a row.
+// Number of points in such a row.
 int columns(const FlatPanel& panel, const PanelGrid& grid);
 
-// Distance to the nearest of the panels, positive on the side that its normal points to. Beyond a border that
-// is the side of its plane; where several panels are equally near, the one that p lies over most steeply
-// tells the side. Infinite without panels.
+// Distance to the nearest of the panels, positive on the side that its normal points to. Beyond a border the
+// side is that of its plane; if several panels are equally near, that of the one whose plane is farthest from
+// p. Infinite without panels.
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// A height field in a frame S of its own, with exact distances: what a moving-shape scenario carries about.
+// A height field in its own frame S, with exact distances: the surface that a moving-shape scenario moves.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 namespace remote_touch {
 
 // y = height(x, z) in S, metres, y up; the top of a ridge or sphere, the bottom of a valley and a zero of the
-// ripple lie in the origin. Nothing but the sphere changes along z. The surface reaches from the first to the
-// last point of a grid; that of the sphere is the upper half of a ball, however large the grid is.
+// ripple lie at the origin. Only the sphere varies along z. The surface reaches from the first to the last
+// point of a grid; that of the sphere is the upper half of a ball, however large the grid is.
 class Shape {
  public:
   enum class Kind { flat, ridge, valley, sphere, ripple };
@@ -25,14 +25,14 @@ class Shape {
 
   Shape(const Settings& settings, const Grid& grid);
 
-  // Beyond the border it goes on: flanks and waves as they are, beside a sphere the plane through its middle.
+  // Continued beyond the border: flanks and waves as they are, beside a sphere the plane through its centre.
   double height(double x, double z) const;
   // What a sensor above measures there; NaN in all three beside a sphere.
   Vec3 point(double x, double z) const;
-  // Distance to the surface, positive above. Beyond the border it is that to the border, with the sign of the
-  // side of the plane that ends there (of the sphere: the one through its middle; of the ripple: the height
-  // at the border). Exact; of the ripple by a search along x, within 1e-6 m where it is bent towards p about
-  // as much as a circle around it.
+  // Distance to the surface, positive above. Beyond the border it is the distance to the border, with the
+  // sign of the side of the plane that ends there (sphere: the plane through its centre; ripple: the height
+  // at the border). Exact; for the ripple by a search along x, within 1e-6 m where its curvature is about
+  // that of a circle around p.
   double signed_distance(const Vec3& p_S) const;
 
  private:
@@ -57,7 +57,7 @@ class Shape {
 
 Parameters parameters(Shape::Settings& s);
 
-// The steepest place of a height field, degrees from the horizontal; 0 for the sphere, whose rim is upright.
+// The steepest slope of a height field, degrees from the horizontal; 0 for the sphere, whose rim is vertical.
 double steepest_deg(const Shape::Settings& s);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// How a shape moves: a lift from frame to frame, 4.3.2, and what comes on top of it: a slide, a shake, a
-// rocking.
+// How a shape moves: a lift from frame to frame, 4.3.2, and added to it a slide, a shake and a rotation back
+// and forth.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// The frame S of a shape in the world: at (x, y, 0), turned about z (from x to y).
+// The pose of a shape's frame S in the world: origin at (x, y, 0), rotated about z (from x to y).
 struct ShapePose {
   double x_m = 0, y_m = 0;
   double sine = 0, cosine = 1;
@@ -43,13 +43,13 @@ class ShapeMotion {
   ShapeMotion(const Settings& settings, double frame_rate_hz);
 
   ShapePose of_frame(int frame) const;
-  // The lift goes evenly from one frame's height to the next, and rests after the last; the rest follows the
-  // time.
+  // The lift is linear from one frame's height to the next, and constant after the last; the other motions
+  // are functions of time.
   ShapePose at(double time_s) const;
 
   int lift_frames() const { return static_cast<int>(height_m_.size()); }
   bool ever_rests() const;
-  bool is_a_lift_alone() const;  // neither turned nor moved along x
+  bool is_a_lift_alone() const;  // neither rotated nor moved along x
 
  private:
   double lift_m(double time_s) const;

@@ -1,4 +1,4 @@
-// One panel at rest, seen from one side, that can be touched from both sides.
+// One panel at rest, seen from one side only, to test contact from the back too.
 #pragma once
 
 #include <string>

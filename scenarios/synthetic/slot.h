@@ -1,4 +1,4 @@
-// Two parallel walls. A bar turned about y between them stops at an angle that is known in closed form: one
+// Two parallel walls. A bar rotated about y between them stops at an angle that is known in closed form: one
 // of 80 x 10 mm in a slot of 40 mm at 22.62 degrees, its corners at x = +-35 mm.
 #pragma once
 

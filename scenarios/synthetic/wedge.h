@@ -1,4 +1,5 @@
-// Two inclined walls that close on what is between them: no motion of a tool can satisfy all constraints.
+// Two walls that lean apart and close on a tool between them, until no motion obeys all constraints: (6.8)
+// infeasible.
 #pragma once
 
 #include <string>
@@ -30,7 +31,7 @@ class Wedge final : public PanelScene {
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   int frame_count() const override { return frame_count_; }
   std::vector<FlatPanel> panels(double time_s) const override;  // at -z, then at +z
-  // Between the lower edges of the walls; it changes evenly.
+  // Distance between the lower edges of the walls, m; linear in time while it changes.
   double gap_m(double time_s) const;
 
  protected:

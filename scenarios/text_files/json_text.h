@@ -1,4 +1,4 @@
-// JSON of unknown origin.
+// Reads JSON of unknown origin safely.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,16 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr int kMaxJsonDepth = 64;  // deeper values would exhaust the stack when they are printed
 
-// Throws InputError, about the label, for what is no JSON, nests deeper than kMaxJsonDepth, or has a key
-// twice in one object.
+// Throws InputError, about the label, for text that is not JSON, nests deeper than kMaxJsonDepth, or has a
+// key twice in one object.
 Json parse_json(const std::string& text, const std::string& label);
-// None for what is no JSON; throws as parse_json for the rest.
+// None for text that is not JSON; otherwise throws as parse_json().
 std::optional<Json> json_or_none(const std::string& text, const std::string& label);
 
-// What is in a file; null where that is absent or no JSON.
+// The content of a file; null if it is absent or not JSON.
 Json json_in_file(const std::filesystem::path& file);
 
-// As JSON, for a message: shortened, and safe to print whatever the value holds.
+// The value as JSON, for a message: shortened, and always safe to print.
 std::string shown(const Json& value);
 
 }  // namespace remote_touch

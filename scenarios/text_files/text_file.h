@@ -9,8 +9,8 @@ namespace remote_touch {
 
 inline constexpr std::size_t kMaxTextBytes = 16 << 20;
 
-// Also from a pipe or a device, as far as kMaxTextBytes. Throws InputError, naming the file and saying what
-// is expected there, when it cannot be read, is longer than that, or a signal comes while nothing does.
+// Also from a pipe or a device, up to kMaxTextBytes. Throws InputError, naming the file and what is expected
+// there, when it cannot be read, is longer than that, or a signal interrupts the wait for data.
 std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
 
 }  // namespace remote_touch

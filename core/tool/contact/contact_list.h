@@ -1,4 +1,4 @@
-// The contacts of a pose for the two rules, made of the points of the collision list.
+// The contacts of a pose for the two contact rules, from the points of the collision list.
 #pragma once
 
 #include <memory>
@@ -28,17 +28,18 @@ struct Touched {
   ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
   int points = 0;
   int clusters = 0;               // 10 mm cells of the tool frame with such points
-  double nearest_distance_m = 0;  // field value of the lowest point; infinite beyond the look-ahead
+  double nearest_distance_m = 0;  // smallest field value of a point; infinite beyond the look-ahead
 };
 
-// Lists are valid until the next call. More contacts than the motion can take are thinned.
+// Lists are valid until the next call. If there are more contacts than the motion program takes, they are
+// thinned.
 class ContactList final : public NearContactSource {
  public:
   ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
               const Kernels& kernels);
 
-  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
-  void reserve(std::size_t padded_size);                   // for clouds of that room
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
+  void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for

@@ -12,7 +12,7 @@ namespace remote_touch {
 // construction only.
 class ContactThinning {
  public:
-  // Far more cells than a tool of a hand's size has within reach of a surface; what comes later has none.
+  // Far more cells than a tool of a hand's size has within reach of a surface; further ones get kNoCell.
   static constexpr std::size_t kMaxCells = 4096;  // a power of two
   static constexpr std::size_t kNoCell = ~std::size_t{0};
 
@@ -23,9 +23,9 @@ class ContactThinning {
   std::size_t cell(std::uint64_t cell_and_octant);
 
   // Keeps the deepest contact of every cell, in place, as long as there are more than the motion can take.
-  // Cells of kCell_m at first: a step turns the tool by so little that two points of 4 mm ask for the same
-  // motion within a tenth of a millimetre, and what is left over the next detection finds. Then larger ones,
-  // for contacts have to stay spread over the tool.
+  // Cells of kCell_m at first: a step rotates the tool so little that two points 4 mm apart require the same
+  // motion within a tenth of a millimetre, and the next detection finds what was dropped. Then larger cells,
+  // because contacts must stay spread over the tool.
   static constexpr double kCell_m = 4e-3;
   static constexpr auto kMaxCount = static_cast<std::size_t>(MotionProgram::kMaxContacts);
   void thin(std::vector<ToolContact>& contacts, std::size_t max = kMaxCount);
@@ -43,9 +43,9 @@ class ContactThinning {
   std::uint32_t stamp_ = 0, cells_ = 0;
 };
 
-// Which cube of a grid over the tool frame a place lies in, as one number.
+// The cube of a grid over the tool frame that a position lies in, as one number.
 std::uint64_t cell_number(const Vec3& p_T, double cells_per_m);
-// The same, and which coordinates of a way are negative.
+// The same, together with the signs of a direction's coordinates.
 std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double cells_per_m);
 
 }  // namespace remote_touch

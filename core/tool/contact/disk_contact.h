@@ -1,5 +1,5 @@
-// A point of a cloud in the look-ahead rule: a small disk in the plane of its normal, so that corners of the
-// tool do not sink between the points of a surface. Not in the dissertation.
+// A point of a cloud as the look-ahead rule treats it: a small disk in the plane of its normal, so that
+// corners of the tool do not sink between the points of a surface. Not in the dissertation.
 #pragma once
 
 #include "core/tool/dynamics/motion_program.h"
@@ -11,15 +11,15 @@ namespace remote_touch {
 struct SurfaceDisk {
   Vec3 p_T, n_T;
   double radius_m;
-  FieldSample at;  // the field in its middle
+  FieldSample at;  // the field at its centre
 
   bool has_normal() const { return n_T.allFinite(); }
 };
 
-// No place of the disk is nearer to the tool, if the field falls no steeper than it does in the middle.
+// Lower bound of the distance from the disk to the tool, if the field is nowhere steeper than at the centre.
 double lower_bound_m(const SurfaceDisk& disk);
 
-// A slope of the field up to which a disk lies flat in it.
+// Largest slope of the field at which a disk counts as flat in it.
 inline constexpr double kFlatSlope = 0.05;
 
 struct DiskPlace {
@@ -28,16 +28,16 @@ struct DiskPlace {
   bool at_rim = false;
 };
 
-// The place of the disk that is nearest to the tool, or deepest in it.
+// The position on the disk that is nearest to the tool, or deepest in it.
 DiskPlace nearest_place(const VoxelTool& tool, const SurfaceDisk& disk);
 
-// The constraint of a disk at its nearest place, with the field there as distance. A disk that is met inside
-// is a plane, on the side that the field tells; its rim, or a point, is met by the surface of the tool.
-// Inside the tool known_side, +1 or -1 of the normal, counts where it is given (0: none): a frame can put
-// points anywhere in the tool, and then the field does not tell where they came from.
+// The constraint of a disk at its nearest position, with the field there as distance. If that lies within the
+// disk, n is the disk's normal, on the side given by the field; at its rim, or for a point, n comes from the
+// tool's surface. Inside the tool known_side, +1 or -1 of the normal (0: not known), overrides the field: a
+// frame can put points anywhere in the tool, and then the field does not show where they came from.
 ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPlace& nearest,
                          double known_side);
-// Of a disk too far from the tool to be worth a search: in its middle, with its lower bound as distance.
+// For a disk too far from the tool to be worth a search: at its centre, with its lower bound as distance.
 // pre: the bound is above 0.
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m);
 

@@ -1,4 +1,4 @@
-// The input of the look-ahead rule: everything that the tool could touch soon.
+// What the look-ahead rule needs from a scene: everything that the tool could touch soon.
 #pragma once
 
 #include <span>
@@ -9,15 +9,16 @@ namespace remote_touch {
 
 struct NearContacts {
   std::span<const ToolContact> contacts;
-  double deepest_m = 0;  // largest depth, below 0 where nothing is touched; -infinity: nothing is near
+  double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing is near
 };
 
 // The interface between the look-ahead rule and what holds a tool: the points of a surface, or regions.
 class NearContactSource {
  public:
   virtual ~NearContactSource() = default;
-  // The contacts of a pose within the look-ahead, no more than the motion can take. side: +1 or -1 of the
-  // surface that a frame put into the tool, where it is known; else 0. Valid until the next call.
+  // The contacts of a pose within the look-ahead, no more than the motion program takes. side: +1 or -1, the
+  // side of the surface that the tool was on before a frame put points into it; 0: not known. Valid until the
+  // next call.
   virtual NearContacts near(const ToolPose& pose, double side) = 0;
 };
 

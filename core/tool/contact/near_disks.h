@@ -9,24 +9,25 @@
 
 namespace remote_touch {
 
-// Asked for the same pose again it has the answer already.
+// Keeps the result: a query for the same pose again costs nothing.
 class NearDisks {
  public:
   NearDisks(double disk_radius_ratio, double cell_m)
       : disk_radius_ratio_(disk_radius_ratio), cells_per_m_(1 / cell_m) {}
 
-  void on_frame(const TiledCloud& cloud);  // allocates where room was not reserved
-  void reserve(std::size_t padded_size);   // for clouds of that room
-  // All disks whose middle is within reach_m, and some farther ones; in the order of the cloud's tiles.
+  void on_frame(const TiledCloud& cloud);  // allocates unless reserved
+  void reserve(std::size_t padded_size);   // for clouds of that size
+  // All disks whose centre is within reach_m, and some farther ones; in the order of the cloud's tiles.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }
   double lower_m(std::size_t i) const { return lower_[i]; }  // lower_bound_m()
-  // The disk has a normal and lies so flat in the field that no place of it is nearer than its middle.
+  // The disk has a normal and lies so flat in the field that no point of it is nearer than its centre.
   bool is_flat(std::size_t i) const { return slope_[i] < kFlatSlope; }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
-  // cell_and_octant() of its middle and the way out of the tool from there.
+  // cell_and_octant() of its centre and the direction against the gradient, in which a contact there would
+  // push.
   std::uint64_t cell(std::size_t i) const { return cell_[i]; }
   SurfaceDisk disk(std::size_t i) const {
     return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};
@@ -45,7 +46,7 @@ class NearDisks {
   Buffer<double> radius_, distance_, slope_, lower_;
   Buffer<std::uint64_t> cell_;
   std::size_t count_ = 0;
-  bool is_known_ = false;  // for:
+  bool is_known_ = false;  // the columns are valid for:
   ToolPose pose_;
   double reach_m_ = 0;
 };

@@ -1,5 +1,5 @@
 // The points of a frame as the tool's collision detection reads them: in tiles of neighbours with bounding
-// spheres, and blocks of tiles with theirs, so that what is far from the tool is passed over in one test.
+// spheres, and blocks of tiles with theirs, so that whatever is far from the tool is skipped with one test.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace remote_touch {
 
-// Eight points are a group, eight groups a tile, eight tiles a row, eight rows a block: whatever is left to
-// look at, its parts have consecutive numbers from eight times its own on.
+// Eight points are a group, eight groups a tile, eight tiles a row, eight rows a block: the parts of number i
+// have the numbers 8 i .. 8 i + 7.
 inline constexpr std::uint32_t kTilePoints = kLanes * kLanes, kBlockTiles = kLanes * kLanes;
 
 struct BoundingSphere {
@@ -34,8 +34,8 @@ struct TileBlock {
 
 class TiledCloud {
  public:
-  // The tiles of an organised cloud are 8 x 8 pixels, others up to 64 points that follow each other along a
-  // space-filling curve. Points that are not finite are left out. Allocates.
+  // The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64 points along a space-filling
+  // curve. Points that are not finite are left out. Allocates.
   void assign(const PointCloud& cloud);
 
   std::span<const TileBlock> blocks() const { return blocks_; }
@@ -49,14 +49,15 @@ class TiledCloud {
   PointColumns columns() const {
     return {x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data(), spacing_m_.data()};
   }
-  // Of every tile, padded to whole rows, and of every group; a far-away one for those without a point.
+  // Bounding spheres of every tile, padded to whole rows, and of every group; a far-away one if it has no
+  // point.
   SphereColumns tile_spheres() const { return tile_spheres_.columns(); }
   SphereColumns group_spheres() const { return group_spheres_.columns(); }
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
-  // Distance to the points around it: a pixel of the image at the point's depth; in other clouds the side of
-  // the square that a point of its tile has for itself.
+  // Distance to the points around it: the size of a pixel at the point's depth; in clouds without an image
+  // the side of a square of the tile's area per point.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
   double max_spacing_m() const { return max_spacing_m_; }
   int without_normal() const { return without_normal_; }

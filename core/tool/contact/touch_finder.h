@@ -18,8 +18,8 @@ class TouchFinder {
  public:
   TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels);
 
-  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates where room was not reserved
-  void reserve(std::size_t padded_size);                   // for clouds of that room
+  void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
+  void reserve(std::size_t padded_size);                   // for clouds of that size
   const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
 
@@ -37,7 +37,7 @@ class TouchFinder {
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
-  std::vector<std::int8_t> voxels_, nearness_;  // of every cell, with room to read three bytes more
+  std::vector<std::int8_t> voxels_, nearness_;  // of every cell, and three readable bytes more
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;
 };

@@ -1,5 +1,5 @@
-// Gauss' least constraints for the tool, 6.2.3: the motion nearest to a wanted one, in kinetic distance, that
-// the contacts allow. In tool axes, where the inertia does not change.
+// Gauss' least constraints for the tool, 6.2.3: the motion nearest to a desired one, in kinetic distance,
+// that the contacts allow. In tool axes, where the inertia is constant.
 #pragma once
 
 #include <span>
@@ -12,18 +12,18 @@ namespace remote_touch {
 
 // A linear constraint (6.3): n.a + (r x n).alpha >= depth.
 struct ToolContact {
-  Vec3 r_T;        // from the centre of mass to the place of contact
-  Vec3 n_T;        // unit, the way out: where the tool may move freely
-  double depth_m;  // d: positive inside the tool, negative before it is touched
-  double side;     // +1 where n is the normal of the cloud, -1 where it is opposed to it, 0 without a normal
+  Vec3 r_T;        // from the centre of mass to the contact point
+  Vec3 n_T;        // unit, out of the surface: the tool may move freely along +n
+  double depth_m;  // d: positive if the point is inside the tool, negative while it is still outside
+  double side;     // +1 if n is the normal of the cloud, -1 if it is the opposite, 0 without a normal
 };
 
 struct ConstrainedMotion {
   Vector6 a_g = Vector6::Zero();  // tool axes
-  int active_count = 0;           // contacts that push
+  int active_count = 0;           // contacts that push: their multipliers are above 0
   Vec3 push_T = Vec3::Zero();     // sum of their multipliers times normals
   double side = 0;                // sum of their multipliers times sides
-  bool elastic = false;           // the constraints contradict each other: they were loosened, all alike
+  bool elastic = false;           // the constraints were infeasible and relaxed, all by the same slack
 };
 
 class MotionProgram {
@@ -32,9 +32,9 @@ class MotionProgram {
 
   explicit MotionProgram(const VoxelTool& tool);
 
-  // (6.4), (6.5) for a wanted motion in tool axes; (6.7), (6.8) is the same with a wish of zero and depths of
-  // 1. Where a wedge makes (6.5) infeasible, the wish stays and one slack loosens every row. Contacts beyond
-  // kMaxContacts are ignored. Does not allocate.
+  // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero
+  // and depths of 1. If a wedge makes (6.5) infeasible, the desired motion stays in the objective and one
+  // slack variable relaxes every row. Contacts beyond kMaxContacts are ignored. Does not allocate.
   ConstrainedMotion solve(const Vector6& desired_T, std::span<const ToolContact> contacts);
 
  private:

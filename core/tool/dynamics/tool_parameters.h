@@ -31,7 +31,7 @@ struct ToolParameters {
 Parameters parameters(ToolParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ToolParameters& p);
-// No pose makes the force grow faster with the displacement of the HIP.
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ToolParameters& p) {
   return p.stiffness_N_per_m;
 }

@@ -1,6 +1,6 @@
-// Poses of a rigid tool and the small motions between them, (6.1), (6.2). A generalised displacement is three
-// metres and three radians per unit step, what the dissertation calls an acceleration. Turns are world-frame
-// rotation vectors: the exponential map from the left.
+// Poses of a rigid tool and the small motions between them, (6.1), (6.2). A generalised displacement, which
+// the dissertation calls an acceleration, is three metres and three radians per unit step. Rotations are
+// world-frame rotation vectors: the exponential map from the left.
 #pragma once
 
 #include <optional>
@@ -23,20 +23,20 @@ struct ToolPose {
   }
 };
 
-// Of a tool that the device holds by its centre of mass; none for a device that is not finite, more than
-// 1000 km away or without an orientation.
+// The pose of a tool that the device holds by its centre of mass; none for a device that is not finite, more
+// than 1000 km away or without an orientation.
 std::optional<ToolPose> device_pose(const DeviceState& device);
 
 ToolPose moved(const ToolPose& pose, const Vector6& a_g);
 // (6.2): the displacement that takes one pose to the other in a unit step, in world axes.
 Vector6 displacement(const ToolPose& from, const ToolPose& to);
 
-// The same displacement in other axes, which q takes its own to.
+// The same displacement in other axes; q takes coordinates in the present axes to the new ones.
 Vector6 rotated(const Eigen::Quaterniond& q, const Vector6& a_g);
 
-// A bound of the way that any point of the tool makes, |a| + |alpha| reach.
+// Upper bound of the displacement of any point of the tool, |a| + |alpha| reach.
 double max_point_displacement_m(const Vector6& a_g, double reach_m);
-// The same direction, no longer than max_m by that measure.
+// The displacement scaled down so that this bound is at most max_m.
 Vector6 capped(const Vector6& a_g, double reach_m, double max_m);
 
 }  // namespace remote_touch

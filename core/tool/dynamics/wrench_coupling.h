@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// On the hand, about the device, world frame.
+// Force on the hand, and torque about the device's position; world frame.
 struct Wrench {
   Vec3 force_N = Vec3::Zero();
   Vec3 torque_Nm = Vec3::Zero();
@@ -20,19 +20,19 @@ struct WrenchSpring {
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
 };
 
-// That of (6.9) between tool and device, with a stiffness of its own.
+// The coupling (6.9) between tool and device, with this stiffness.
 inline WrenchSpring coupling_of(const ToolParameters& p, double stiffness_N_per_m) {
   return {stiffness_N_per_m, p.gyration_radius_m, p.max_force_N, p.max_torque_Nm, p.torque_rule};
 }
 
-// The transpose of the inverse left Jacobian of a turn phi, which takes the derivative of an energy by phi to
-// a torque: with R(phi') = exp(delta) R(phi), phi' - phi = J^-1 delta. pre: shorter than 2 pi.
+// The inverse left Jacobian J^-1 of a rotation vector phi: R(phi') = exp(delta) R(phi) gives phi' - phi =
+// J^-1 delta. Its transpose takes the derivative of an energy by phi to a torque. pre: |phi| < 2 pi.
 Eigen::Matrix3d inverse_left_jacobian(const Vec3& phi);
 
-// (6.9), f = K M a_gu: a spring from the device to the tool, so that the hand is pulled towards the tool. By
-// default it has the energy k |p|^2 / 2 + k r^2 |phi|^2 / 2, r the gyration radius and phi = log(R_device
-// R_tool^T); as printed the torque is k I_W phi, I_W the inertia of the turned tool for 1 kg, which has no
-// energy. Both are cut to their largest length.
+// (6.9), f = K M a_gu: a spring that pulls the hand from the device's pose towards the tool's. By default it
+// has the energy k |p|^2 / 2 + k r^2 |phi|^2 / 2, r the gyration radius and phi = log(R_device R_tool^T); as
+// printed the torque is k I_W phi, I_W the inertia for 1 kg in world axes, which derives from no energy.
+// Force and torque are limited to max_force_N and max_torque_Nm.
 Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inertia_m2, const ToolPose& tool,
                        const ToolPose& device);
 

@@ -1,4 +1,4 @@
-// Whether a mesh encloses a solid: what has to hold before inside and outside mean anything.
+// Whether a mesh encloses a solid, so that inside and outside are defined.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace remote_touch {
 struct MeshCheck {
   int vertices = 0;
   int triangles = 0;
-  int parts = 0;                 // sets of triangles that hang together by their edges
+  int parts = 0;                 // sets of triangles connected by edges
   int boundary_edges = 0;        // of one triangle
   int non_manifold_edges = 0;    // of three or more
   int inconsistent_edges = 0;    // of two triangles that run along them in the same direction
@@ -46,7 +46,7 @@ std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>&
 // Of the tetrahedra from a point to all triangles (or those of one part).
 double signed_volume(const TriangleMesh& mesh);
 
-// No area to speak of beside the length of its edges.
+// Its area is negligible against the length of its edges.
 bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
 }  // namespace remote_touch

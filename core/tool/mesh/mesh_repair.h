@@ -1,4 +1,4 @@
-// Mends what can be mended of a mesh that is not closed.
+// Repairs a mesh that is not closed, as far as possible.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace remote_touch {
 
 struct MeshRepair {
   int welded_vertices = 0;    // within a millionth of the mesh's size of another one
-  int dropped_triangles = 0;  // degenerate, or there twice
+  int dropped_triangles = 0;  // degenerate or duplicate
   int flipped_triangles = 0;  // against the orientation of their part
   int filled_holes = 0;       // loops of boundary edges, each with a fan around its middle
 };
 
-// Every part is oriented for itself, outwards: a part that was a hollow in another becomes solid. What is
-// left open (edges of three triangles, boundaries that are no loops) stays: see inside_nodes_of_open().
+// Every part is oriented outwards separately: a part that was a hollow in another becomes solid. What cannot
+// be closed (edges of three triangles, boundaries that are not loops) stays open: see inside_nodes_of_open().
 // pre: indices in range, vertices finite.
 TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done);
 

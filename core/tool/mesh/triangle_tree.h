@@ -16,7 +16,7 @@ class TriangleTree {
     int face = 0;  // in the tree's own order: good for the next query only
     double squared_m2 = 0;
   };
-  // first: a face that may be near, as from a place close by; any will do.
+  // first: a face that may be near, such as the result for a position close by; any is correct.
   Nearest nearest(const Vec3& p, int first) const;
 
   // All faces within a distance of p, the nearest first.
@@ -41,8 +41,8 @@ class TriangleTree {
     Vec3 a, ab, ac, normal;  // the normal a unit vector, zero for a degenerate triangle
     double bb, bc, cc;       // products of ab and ac
   };
-  // Bounded by a disc rather than a box: a patch of a smooth surface is flat, and from the side a box of it
-  // would look much nearer than it is.
+  // Bounded by a disc rather than a box: a patch of a smooth surface is flat, and a box around it would give
+  // much too small a distance.
   struct Node {
     Vec3 centre = Vec3::Zero(), axis = Vec3::UnitX();  // the centre of the surface below
     double radius = 0, half_height = 0;                // of the disc, across and along its axis

@@ -1,6 +1,6 @@
-// The look-ahead rule: every point near the tool is a constraint with its signed distance, so the tool slows
-// down before it touches, slides along what it touches, and is pushed out of what it is in, by one and the
-// same program. Not in the dissertation.
+// The look-ahead rule: every point near the tool is a constraint with its signed distance, so that one and
+// the same program slows the tool down before it touches, lets it slide along what it touches, and pushes it
+// out of what it is in. Not in the dissertation.
 #pragma once
 
 #include "core/tool/contact/near_contacts.h"
@@ -23,7 +23,7 @@ class LookAheadMotion {
   const ToolParameters p_;
   const double reach_m_;
   MotionProgram program_;
-  double side_ = 1;        // of the surface that held the tool last: +1 is the sensor's
+  double side_ = 1;        // of the surface that held the tool last: +1 is the side of the sensor
   bool settling_ = false;  // a frame came, and the tool is still in its points
 };
 

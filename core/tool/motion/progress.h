@@ -1,5 +1,5 @@
-// Whether a tool still comes nearer to its device within a tick. An oscillation counts as rest too, however
-// long its steps are.
+// Whether a tool still gets nearer to its device within a tick: steps that go back and forth for ever count
+// as rest, however long they are.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,11 @@ namespace remote_touch {
 
 class Progress {
  public:
-  // min_m: coming nearer by this or less is none. patience: how many looks without progress end it.
+  // min_m: getting nearer by this or less is no progress. patience: number of updates without progress that
+  // end it.
   Progress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
 
-  // The way left to the device, way_m(), at one more look.
+  // remaining_m: displacement to the device that is left, as max_point_displacement_m() measures it.
   void update(double remaining_m) {
     without_ = remaining_m < nearest_distance_m_ - min_m_ ? 0 : without_ + 1;
     nearest_distance_m_ = std::min(nearest_distance_m_, remaining_m);
@@ -23,7 +24,7 @@ class Progress {
   const double min_m_;
   const int patience_;
   double nearest_distance_m_ = std::numeric_limits<double>::infinity();
-  int without_ = 0;  // looks since the last progress
+  int without_ = 0;  // updates since the last progress
 };
 
 }  // namespace remote_touch

@@ -13,7 +13,7 @@
 namespace remote_touch {
 
 // The device holds the tool at its centre of mass. Points without a normal are ignored by the printed rule,
-// and are points instead of disks under look-ahead; the output counts them.
+// and are points instead of disks for the look-ahead rule; ToolOutput::disabled_points counts them.
 class ToolRenderer final : public Renderer {
  public:
   // pre: validate(parameters) is empty.
@@ -36,7 +36,7 @@ class ToolRenderer final : public Renderer {
   SurfaceVelocity velocity_;
 
   ToolPose pose_;
-  Vec3 normal_W_ = Vec3::Zero();  // of contact: where the points push the tool
+  Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the points push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
   FrameOrder order_;

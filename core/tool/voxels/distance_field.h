@@ -6,10 +6,10 @@
 
 namespace remote_touch {
 
-// Metres, positive outside. Within kExactField_m of the surface the distance to the nearest triangle; farther
-// away to the nearest of those that are nearest to the corners of a cube of 4 x 4 x 4 cells around the node.
-// That is never too small, and too large only where the corners disagree about what is nearest: by less than
-// a voxel, and mostly by nothing.
+// Metres, positive outside. Within kExactField_m of the surface, the distance to the nearest triangle;
+// farther away, to the nearest of the triangles that are nearest to the corners of a cube of 4 x 4 x 4 cells
+// around the node. That is never too small, and too large only if the corners have different nearest
+// triangles: by less than a voxel, and mostly not at all.
 inline constexpr double kExactField_m = 3e-3;
 std::vector<float> distance_field(const TriangleTree& tree, const VoxelGrid& grid,
                                   const std::vector<std::uint8_t>& inside_nodes);

@@ -16,7 +16,8 @@ struct MassProperties {
 // inwards give a negative volume, and the same centre and inertia.
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-// Of the nodes inside, each as a cube of one voxel: for a mesh with gaps, where the sum above has no meaning.
+// From the nodes inside, each as a cube of one voxel: for a mesh with gaps, for which the sum above has no
+// meaning.
 MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes);
 
 }  // namespace remote_touch

@@ -41,7 +41,7 @@ struct VoxelTool {
   double reach_m = 0;  // largest distance of a vertex from the origin
 };
 
-// Room of the distance field around the mesh.
+// Margin of the distance field around the mesh.
 inline constexpr double kFieldMargin_m = 6e-3;
 
 struct FieldSample {
@@ -49,25 +49,25 @@ struct FieldSample {
   Vec3 gradient_T;    // of the trilinear field, out of the tool; about a unit vector, not normalised
 };
 
-// The field between its nodes, trilinear. Outside the grid: the distance to the grid's box plus the field
-// where that is nearest, and the gradient towards p; never more than the true distance by more than a voxel.
+// The field between its nodes, trilinear. Outside the grid: the distance to the grid's box plus the field at
+// the nearest position of the box, with the gradient towards p; at most a voxel more than the true distance.
 FieldSample sample_field(const VoxelTool& tool, const Vec3& p_T);
 
 struct VoxelToolSettings {
   double voxel_m = 5e-4;
   double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
-  bool repair = false;  // take a mesh that is not closed, see repair_mesh()
+  bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
 };
 
 // What was done to a mesh and how well voxels fit it.
 struct ToolReport {
-  MeshCheck check;                      // of the mesh as it came
-  Vec3 sides_m = Vec3::Zero();          // of its box, in the size that the tool has
-  bool inverted = false;                // all faces pointed inwards, and were turned
+  MeshCheck check;                      // of the mesh as given
+  Vec3 sides_m = Vec3::Zero();          // of its box, after scaling
+  bool inverted = false;                // all faces pointed inwards, and were flipped
   MeshRepair repaired;                  // all zero without repair
   bool by_winding_number = false;       // repaired, and still open
   std::array<std::size_t, 3> voxels{};  // free, shell, interior
-  double thin_fraction = 0;             // of the surface farther than two voxels from all interior
+  double thin_fraction = 0;             // fraction of the surface farther than two voxels from all interior
 };
 std::string text(const ToolReport& report);
 

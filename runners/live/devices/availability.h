@@ -7,8 +7,8 @@ namespace remote_touch {
 
 struct Availability {
   bool compiled_in = true;
-  bool found = false;  // something to open is there now
-  std::string detail;  // what was found, or why nothing is and what would help; one line
+  bool found = false;  // a device that can be opened is present now
+  std::string detail;  // what was found, or why nothing was and what would help; one line
 };
 
 }  // namespace remote_touch

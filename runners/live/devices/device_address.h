@@ -1,5 +1,6 @@
 // The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
-// scheme, a place and settings.
+// scheme, a place and settings. Throws InputError through choice() and number() for values that are not
+// allowed.
 #pragma once
 
 #include <map>
@@ -15,7 +16,7 @@ class DeviceAddress {
   // address: without the scheme. Throws InputError when it has a setting that is not known, or one twice.
   DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
 
-  const std::string& place() const { return place_; }  // empty where the user named none
+  const std::string& place() const { return place_; }  // empty if the user gave none
   // As the user wrote it, for messages.
   const std::string& written() const { return written_; }
 

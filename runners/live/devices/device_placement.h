@@ -12,15 +12,16 @@ namespace remote_touch {
 // the limit is 0 (unknown). A motion scale of device_scale makes springs stiffer by that factor.
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
-// From the device to the world and back: p_W = device_position_m + scale R p_D. Forces and torques are turned
-// and not scaled, so the hand feels scale times the stiffness; to the device goes their share.
+// From device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and
+// torques are rotated but not scaled, so the hand feels scale times the stiffness; to_device() multiplies
+// them by fraction, see force_scale().
 class DevicePlacement {
  public:
   explicit DevicePlacement(const LiveSettings& s, double fraction = 1);
 
   DeviceState in_world(const DeviceReading& reading) const;
   Wrench to_device(const Wrench& wrench_W) const;
-  // The other ways, for simulated devices.
+  // The inverse functions, for simulated devices.
   DeviceReading of_device(const DeviceState& state) const;
   Wrench in_world(const Wrench& wrench_D) const;
   double scale() const { return scale_; }

@@ -1,9 +1,9 @@
-// Entact's W5D and W7D, the devices of the dissertation's experiments, by the vendor's EntactAPI. Written
-// from its documentation and tried with a test double, never with a device.
+// Entact's W5D, the device of 7.5, and W7D, through the vendor's EntactAPI. Written from its documentation
+// and tested with a test double, never with a device.
 //
-// Two things differ from what the interface promises. The device tells where it is only while its motors are
-// on, and only as of the last force it was told: the first read() switches them on with no force, and a
-// reading is one tick old. And a call that the network loses waits for as long as the vendor's library does.
+// Two things differ from the contract of HapticDevice. The device reports its pose only while its motors are
+// on, and only as of the last force command: the first read() switches them on with zero force, and a reading
+// is one tick old. And a call that the network loses waits for as long as the vendor's library does.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace remote_touch {
 
-// address: that of the device in the network, "192.168.1.144"; "" asks the network and takes the first that
+// address: network address of the device, "192.168.1.144"; "" queries the network and takes the first that
 // answers. A device that is not homed must be held in its calibration position.
 std::unique_ptr<HapticDevice> open_entact(const std::string& address, Clock& clock);
 
-// Only of the library: devices are looked for when one is opened.
+// Of the library only: devices are searched for when one is opened.
 Availability entact_availability();
 
 }  // namespace remote_touch

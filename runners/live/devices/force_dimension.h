@@ -1,5 +1,5 @@
-// Force Dimension's omega, sigma, delta and lambda and Novint's Falcon, by the vendor's DHD library. Written
-// from its documentation and tried with a test double, never with a device.
+// Force Dimension's omega, sigma, delta and lambda and Novint's Falcon, through the vendor's DHD library.
+// Written from its documentation and tested with a test double, never with a device.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// What the adapters of vendors' libraries have in common: the force is off until the first write() and after
-// release(), and values that are not finite pass in neither direction.
+// Common part of the adapters of vendors' libraries: the force is off until the first write() and after
+// release(), and no value that is not finite passes in either direction.
 #pragma once
 
 #include <atomic>
@@ -21,12 +21,12 @@ class GatedDevice : public HapticDevice {
   bool is_released() const { return released_; }
 
  private:
-  // In the thread of the ticks. Of a reading, all that the vendor tells; the caller checks that it is finite.
+  // In the thread of the ticks. Fills in all that the vendor reports; the caller checks that it is finite.
   virtual DeviceFault sense(DeviceReading& reading) noexcept = 0;
-  // Once, with no force told yet.
+  // Called once, before any force command.
   virtual DeviceFault switch_on() noexcept = 0;
   virtual DeviceFault exert(const Wrench& wrench) noexcept = 0;
-  // No force and motors off; in any thread, more than once, also while one of the others hangs.
+  // Zero force and motors off; called from any thread, more than once, also while one of the others hangs.
   virtual void switch_off() noexcept = 0;
 
   DeviceFault exert_if_on(const Wrench& wrench) noexcept;

@@ -1,4 +1,4 @@
-// Haply Inverse3, by the WebSocket of its Inverse service. Tested against a simulated service only.
+// Haply Inverse3, through the WebSocket of its Inverse service. Tested against a simulated service only.
 //
 // The address is ws://HOST:PORT, by default ws://127.0.0.1:10001, and settings:
 //   force=vector|values  the key of the force in a command: that of 3.5, or that of 3.1 to 3.4
@@ -7,16 +7,16 @@
 //   check=on|off         of the force that the service reports: by default it is a fault when it does not
 //                        follow what is commanded for 50 ms
 //
-// The service gives one state for each command and measures it when the command comes: what a tick reads is a
-// period old, and younger at a higher rate.
+// The service sends one state for each command and measures it when the command arrives: what a tick reads is
+// one period old, so less old at a higher rate.
 //
 // Three axes, or six with a handle (VerseGrip), whose buttons are the lowest bits. The service reports no
-// turning velocity; it stays 0. The axes of the handle are turned like those of the service: the orientation
-// that the service calls (1, 0, 0, 0) is the identity here too.
+// angular velocity; it stays 0. The axes of the handle are converted like those of the service: its
+// orientation (w, x, y, z) = (1, 0, 0, 0) is the identity here too.
 //
 // read() ends within 7 ms and write() within 2.5 ms, whatever the service does. They allocate nothing and
-// take no lock; the socket is read and written in the tick. A service that is late gives faults until it
-// answers; other faults of the connection stay, and the device is to be opened anew.
+// take no lock; the socket is read and written in the tick. A late service causes faults until it answers;
+// after any other fault of the connection the device must be opened again.
 #pragma once
 
 #include <functional>
@@ -32,16 +32,16 @@ namespace remote_touch {
 using HaplyLinkOpener =
     std::function<std::unique_ptr<HaplyLink>(const DeviceAddress&, const Clock&, double deadline_s)>;
 
-// Throws InputError. For a first state it sends a command without force.
+// Throws InputError. To get a first state it sends a command with zero force.
 //
-// release() of the device sends such a command as soon as no thread is in read() or write(), for which it
-// waits 10 ms at most, waits 20 ms at most for the answer, and ends the connection in either case: from then
-// on no command of this process reaches the service. That the service lets the device idle when commands stop
-// is its documentation's word.
+// release() of the device sends such a command as soon as no thread is in read() or write(), waiting for that
+// 10 ms at most and for the answer 20 ms at most, and then always ends the connection: from then on no
+// command of this process reaches the service. According to its documentation the service lets the device
+// idle when commands stop.
 std::unique_ptr<HapticDevice> open_haply(const std::string& address, Clock& clock,
                                          const HaplyLinkOpener& open_link = open_haply_link);
 
-// Asks the service at the default address, 0.3 s at most.
+// Queries the service at the default address, 0.3 s at most.
 Availability haply_availability(const Clock& clock);
 
 }  // namespace remote_touch

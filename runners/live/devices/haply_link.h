@@ -1,5 +1,5 @@
-// The WebSocket connection to Haply's Inverse service. Compiled in when Boost's headers are there (the option
-// REMOTE_TOUCH_HAPLY of the build).
+// The WebSocket connection to Haply's Inverse service. Compiled in if Boost's headers are installed (build
+// option REMOTE_TOUCH_HAPLY).
 #pragma once
 
 #include <memory>
@@ -15,14 +15,14 @@ class HaplyLink {
  public:
   virtual ~HaplyLink() = default;
 
-  // Both end by the deadline, a moment of the clock, receive() 1 ms later when a message has begun by then.
-  // They allocate nothing once the first command has been sent. When the service is merely late, the next
-  // receive() may get the message; after any other fault the link is of no more use.
+  // Both return by the deadline, a time of the clock; receive() up to 1 ms later if a message has begun by
+  // then. They allocate nothing once the first command has been sent. If the service is only late, the next
+  // receive() may get the message; after any other fault the link cannot be used any more.
   virtual DeviceFault send(std::string_view text, double deadline_s) noexcept = 0;
   // text: valid until the next call.
   virtual DeviceFault receive(std::string_view& text, double deadline_s) noexcept = 0;
 
-  // Nothing is sent or received from now on, and calls under way end. From any thread.
+  // Nothing is sent or received from now on, and calls in progress return. From any thread.
   virtual void cut() noexcept = 0;
 };
 

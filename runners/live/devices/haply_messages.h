@@ -1,6 +1,7 @@
-// What Haply's Inverse service and its client write to each other, as JSON text: on connecting the service
-// sends an inventory, and after that one state for each command. Both are read alike. All values are in the
-// service's frame and units: x to the right, y away from the user, z up; m, m/s, N. Nothing here allocates.
+// The messages between Haply's Inverse service and its client, as JSON text: on connecting the service sends
+// an inventory, and after that one state for each command. Both are read in the same way. All values are in
+// the service's frame and units: x to the right, y away from the user, z up; m, m/s, N. Nothing here
+// allocates.
 #pragma once
 
 #include <array>
@@ -12,22 +13,22 @@
 
 namespace remote_touch {
 
-// Of an Inverse3, from one message, in which the texts lie.
+// State of an Inverse3 from one message. The texts are views into the message.
 struct HaplyDeviceState {
   std::string_view id;
   std::string_view
       basis;  // in the inventory: the axes of this connection, "XYZ" when they are the service's own
   bool has_position = false, has_force = false;
   Vec3 position_m = Vec3::Zero(), velocity_m_per_s = Vec3::Zero();
-  Vec3 force_N = Vec3::Zero();  // that the device is given now
+  Vec3 force_N = Vec3::Zero();  // that the service reports as commanded now
 };
 
-// Of the handle on it.
+// State of the handle on it.
 struct HaplyHandleState {
   std::string_view id;
   bool has_orientation = false;
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();  // x, y, z, w as sent
-  std::uint32_t buttons = 0;                              // a, b and c; the one of a wired handle is a
+  std::uint32_t buttons = 0;                              // a, b and c; a wired handle has only a
 };
 
 struct HaplyMessage {
@@ -35,12 +36,12 @@ struct HaplyMessage {
   std::optional<HaplyHandleState> handle;
 };
 
-// The first device and the first handle, or those with these names. False: this is no message of the service,
-// for instance because a value that is read is no finite number.
+// Reads the first device and the first handle, or those with these ids. False: not a message of the service,
+// for instance because a value that is read is not finite.
 bool read_haply_message(std::string_view text, std::string_view device_id, std::string_view handle_id,
                         HaplyMessage& message) noexcept;
 
-// The documentation of 3.5 names the force "vector"; what was written for 3.1 to 3.4 sends "values".
+// The documentation of 3.5 names the force "vector"; clients written for 3.1 to 3.4 send "values".
 enum class HaplyForceKey { vector, values };
 
 // The command that sets the force.
@@ -55,7 +56,7 @@ class HaplyForceCommand {
   void append(std::string_view text) noexcept;
 
   std::array<char, 512> text_{};
-  std::size_t head_ = 0, size_ = 0;  // of what stands before the numbers, and of all
+  std::size_t head_ = 0, size_ = 0;  // length of the part before the numbers, and of all
 };
 
 }  // namespace remote_touch

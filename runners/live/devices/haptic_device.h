@@ -1,6 +1,6 @@
-// The interface of every haptic device, which an adapter implements with the vendor's library. SI units.
-// Adapters convert the vendor's axes to those of the dissertation's figures: x to the right, y up, z towards
-// the user. They do not know the pose of the device in the world.
+// The interface of every haptic device; an adapter implements it on top of its vendor's library. SI units.
+// Adapters convert the vendor's axes to those of the dissertation's figures, x to the right, y up, z towards
+// the user; DevicePlacement converts to the world.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace remote_touch {
 // Why a reading or a command failed; what: a text that lives as long as the program.
 struct DeviceFault {
   const char* what = nullptr;
-  int code = 0;  // the vendor's, where there is one
+  int code = 0;  // the vendor's, if there is one
 
   explicit operator bool() const { return what != nullptr; }
 };
@@ -27,10 +27,10 @@ struct DeviceReading {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // takes the handle's axes to the device's
   Vec3 velocity_m_per_s = Vec3::Zero();
   Vec3 angular_velocity_rad_per_s = Vec3::Zero();
-  std::uint32_t buttons = 0;  // those that are down, a bit each
+  std::uint32_t buttons = 0;  // those that are down, one bit each
 };
 
-// What a device can do; 0 where the vendor does not tell.
+// The capabilities of a device; 0 if the vendor does not report them.
 struct DeviceTraits {
   std::string name;
   int sensed_axes = 3, actuated_axes = 3;  // 0, 3 or 6; an input device has no motors
@@ -38,34 +38,34 @@ struct DeviceTraits {
   double continuous_force_N = 0;
   double max_torque_Nm = 0;
   double max_stiffness_N_per_m = 0;
-  double tick_rate_hz = 1000;  // of its own loop
+  double tick_rate_hz = 1000;  // of the device's own loop
 };
 
 // One tick: reads, renders and writes.
 class DeviceCycle {
  public:
   virtual ~DeviceCycle() = default;
-  // False: no more.
+  // False: no more ticks.
   virtual bool tick() noexcept = 0;
 };
 
-// run() is called once, in a thread of its own, which the adapter or its vendor's library drives; tick() of
-// the cycle calls read() and then write(), once each. The constructor opens the device and throws InputError
-// with what is absent and what would help; the force is off until the first write().
+// run() is called once, in its own thread, which the adapter or its vendor's library drives; tick() of the
+// cycle calls read() and then write(), once each. The constructor opens the device and throws InputError with
+// what is missing and what would help; the force is off until the first write().
 class HapticDevice {
  public:
   explicit HapticDevice(Clock& clock) : clock_(clock) {}
-  virtual ~HapticDevice() = default;  // release() and closed
+  virtual ~HapticDevice() = default;  // of an adapter: releases and closes the device
 
   virtual const DeviceTraits& traits() const = 0;
 
-  // Calls tick() at the device's rate until it is told to stop; by default every millisecond of its clock. A
-  // tick that is late is not made up for.
+  // Calls tick() at the device's rate until that returns false; by default every millisecond of its clock. A
+  // missed tick is not made up for.
   virtual void run(DeviceCycle& cycle);
 
-  // Both within a tick; no allocation, no lock, no wait beyond what the vendor's call takes.
+  // read() and write() are called within a tick; no allocation, no lock, no wait beyond the vendor's call.
   virtual DeviceFault read(DeviceReading& reading) noexcept = 0;
-  // Force on the hand; the caller has already limited it.
+  // Wrench on the hand, device axes; the caller has already limited it.
   virtual DeviceFault write(const Wrench& wrench) noexcept = 0;
 
   // Zero force from now on, even if another thread hangs in a tick; read() and write() may return kReleased.

@@ -12,14 +12,14 @@ class Heartbeat {
  public:
   Heartbeat(HapticDevice& device, double max_s);
 
-  // From the loop, at the begin of every tick. The first one starts the watch. False: the device was let go
+  // From the loop, at the start of every tick. The first one starts the watch. False: the device was released
   // since the last beat.
   bool beat(std::int64_t now_ns) noexcept;
   // After the last beat: no more are expected.
   void rest() noexcept { last_ns_.store(kNone, std::memory_order_release); }
 
-  // From a thread that does not depend on the loop, every period_s() or so: lets the device go when there was
-  // no beat for longer than max_s.
+  // From a thread that does not depend on the loop, about every period_s(): releases the device when there
+  // was no beat for longer than max_s.
   void check(std::int64_t now_ns) noexcept;
   double period_s() const { return 1e-9 * static_cast<double>(longest_ns_) / 5; }
   int stalls() const { return stalls_.load(std::memory_order_relaxed); }

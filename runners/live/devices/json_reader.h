@@ -1,6 +1,6 @@
 // Reads JSON text once, front to back, without a copy or an allocation: for messages in a haptic tick. Every
-// function tells whether the text was what it asks for; after a false the rest of the text is not to be read.
-// Strings and keys are given as they stand in the text, with their escapes.
+// function returns whether the text matched; after a false, do not read on. Strings and keys are returned as
+// in the text, with their escapes.
 #pragma once
 
 #include <string_view>
@@ -19,13 +19,13 @@ class JsonReader {
       return string(key) && take(':') && member(key);
     });
   }
-  // element: bool(), which reads one or skips it.
+  // element: bool(), which reads one element or skips it.
   template <class Element>
   bool array(Element element) {
     return items('[', ']', element);
   }
 
-  // Finite; what JSON does not know, such as NaN, is no number.
+  // Only finite numbers; false for what is not JSON, such as NaN.
   bool number(double& value);
   bool boolean(bool& value);
   bool string(std::string_view& value);

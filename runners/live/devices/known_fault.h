@@ -1,4 +1,5 @@
-// Vendors' codes in words that live as long as the program; their own texts need not.
+// Texts for vendors' error codes that are valid for the whole program run, as the vendors' own texts may not
+// be.
 #pragma once
 
 #include <span>
@@ -12,7 +13,7 @@ struct KnownFault {
   const char* what;
 };
 
-// With the code; what: where the code is not among those known.
+// The fault with its known text; what: the text for an unknown code.
 inline DeviceFault fault_of(std::span<const KnownFault> known, int code, const char* what) {
   for (const KnownFault& fault : known)
     if (fault.code == code) what = fault.what;

@@ -8,31 +8,31 @@
 
 namespace remote_touch {
 
-// No more than 0.9 of what the device can do.
+// The limits, with max_force_N and max_torque_Nm reduced to 0.9 of the device's, if it reports them.
 SafetyLimits limits_for(const SafetyLimits& limits, const DeviceTraits& traits);
 
 enum class GateState { waiting, ramping, engaged, latched };
 
-// Rules, each for itself:
-// - A fault of the device, a reading or a command that is no number, or a hand faster than the limits: no
+// Independent rules:
+// - A fault of the device, a reading or a command that is not finite, or a hand faster than the limits: no
 //   force, until rearm().
-// - No tick for max_command_age_s, or a command older than that: down to nothing at the slew rate, then as at
-// the start.
-// - Force begins only while the command is below engage_force_N and a torque of the same share, and rises
-//   evenly over ramp_s, so that nothing jumps at a hand that is inside something.
-// - Force and torque are cut to their largest length, and change no faster than the slew rates.
+// - No tick for max_command_age_s, or a command older than that: force falls to zero at the slew rate, then
+//   as at the start.
+// - Force starts only while the command is below engage_force_N, and its torque below the same fraction of
+//   its limit, and rises linearly over ramp_s, so that it does not jump when the hand is inside something.
+// - Force and torque are limited to their maximum magnitudes, and change no faster than the slew rates.
 // No allocation, no lock, no clock of its own. Not a certified safety function.
 class SafetyGate {
  public:
   explicit SafetyGate(const SafetyLimits& limits) : limits_(limits) {}
 
-  // What may be written at now_s, which never decreases, of a command made at command_time_s. fault: of the
-  // reading.
+  // The part of a command made at command_time_s that may be written at now_s, which never decreases. fault:
+  // of the reading.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
               double command_time_s) noexcept;
   // As after a fault of the device: no force, until rearm().
   void latch(const DeviceFault& reason) noexcept;
-  // The device was let go by someone else: as at the start.
+  // The device was released from outside: starts again.
   void restart() noexcept;
   // After a latch, on request of the user; from any thread.
   void rearm() noexcept { rearm_.store(true, std::memory_order_relaxed); }

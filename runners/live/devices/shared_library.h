@@ -1,4 +1,4 @@
-// A vendor's library, loaded when a device needs it: none of them is needed to build or to start.
+// A vendor's library, loaded when a device needs it: none is needed to build or to start the program.
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@ namespace remote_touch {
 class SharedLibrary {
  public:
   struct Place {
-    std::vector<std::string> names;  // tried in turn, where the loader looks
-    const char* variable;            // names the file instead, where it is set
-    const char* package;             // what would bring the library
+    std::vector<std::string> names;  // tried in turn, in the loader's search path
+    const char* variable;            // environment variable that, if set, names the file instead
+    const char* package;             // package that contains the library, for the message
   };
 
-  // Throws InputError where there is none. It stays loaded until the program ends: vendors' libraries leave
-  // threads behind.
+  // Throws InputError if it is not found. It stays loaded until the program ends, because vendors' libraries
+  // leave threads behind.
   explicit SharedLibrary(const Place& place);
 
-  // As it was found.
+  // The file that was loaded.
   const std::string& file() const { return file_; }
 
-  // The function of this name, whose type the caller knows; throws InputError where there is none.
+  // The function of this name, of the type that the caller gives; throws InputError if there is none.
   template <class Function>
   void find(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(address(name));
   }
-  // Null where there is none: what only newer versions have.
+  // Null if there is none, for functions of newer versions only.
   template <class Function>
   void find_optional(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(address_if_there(name));

@@ -1,4 +1,5 @@
-// A device without hardware: a script moves it, or an operator who follows the script and feels its force.
+// A device without hardware: a script moves it, or a simulated operator who follows the script and feels its
+// force.
 #pragma once
 
 #include <atomic>
@@ -11,11 +12,11 @@
 
 namespace remote_touch {
 
-// Follows its clock: where a tick was missed the hand has moved on all the same, by ticks of its own
-// rate. Begins with run().
+// Follows its clock: when a tick was missed the hand has still moved on, by ticks of its own rate. Starts
+// with run().
 class SimulatedDevice final : public HapticDevice {
  public:
-  // placement: that of the loop, undone here.
+  // placement: that of the loop; inverted here.
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
@@ -30,7 +31,7 @@ class SimulatedDevice final : public HapticDevice {
   }
 
  private:
-  // After a longer pause the hand starts anew from there.
+  // After a longer pause the hand restarts at the present time.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::unique_ptr<const Trajectory> script_;

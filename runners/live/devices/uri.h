@@ -15,7 +15,7 @@ struct Uri {
 // Throws InputError without a colon. flag: "--depth" or "--device".
 Uri parse_uri(const std::string& flag, const std::string& text);
 
-// The entry of that scheme, or InputError with those there are.
+// The entry of that scheme; throws InputError with the known ones.
 template <class Entry>
 const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag, const Uri& uri) {
   std::string known;

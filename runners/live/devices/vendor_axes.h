@@ -1,5 +1,5 @@
-// Axes of vendors: x towards the user, y to the right, z up, as Force Dimension and Entact have them; and
-// turns as matrices.
+// Conversion of vendors' axes: x towards the user, y to the right, z up, as Force Dimension and Entact use
+// them; and rotation matrices.
 #pragma once
 
 #include "core/geometry/vector.h"
@@ -14,8 +14,7 @@ inline Vec3 to_user_right_up(const Vec3& v) {
   return {v.z(), v.x(), v.y()};
 }
 
-// The handle's axes are renamed as the device's are: a handle that is not turned for the vendor is not for
-// us.
+// The handle's axes are renamed like the device's, so that the vendor's identity is the identity here too.
 inline Eigen::Matrix3d rotation_from_user_right_up(const Eigen::Matrix3d& rotation) {
   Eigen::Matrix3d rotated;
   for (int i = 0; i < 3; ++i)
@@ -23,7 +22,7 @@ inline Eigen::Matrix3d rotation_from_user_right_up(const Eigen::Matrix3d& rotati
   return rotated;
 }
 
-// Up to what encoders and single precision leave; false for what is no number.
+// Within the errors of encoders and single precision; false for values that are not finite.
 inline bool is_rotation(const Eigen::Matrix3d& m) {
   constexpr double kSlack = 1e-3;
   return ((m * m.transpose() - Eigen::Matrix3d::Identity()).array().abs() < kSlack).all() &&

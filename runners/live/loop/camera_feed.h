@@ -14,22 +14,22 @@
 
 namespace remote_touch {
 
-// Where recorded frames go. False: there is no room for it now.
+// Takes frames to be recorded. False: the recorder's queue is full.
 using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint64_t fixtures_off)>;
 
 struct CameraCounts {
   int received = 0;
-  int passed_over = 0;  // numbers that never came: not sent, or a newer one was there first
-  int reversed = 0;     // not newer than the one before; dropped
+  int passed_over = 0;  // frame numbers that never came: not sent, or a newer frame came first
+  int reversed = 0;     // not newer than the frame before; dropped
   int incomplete = 0;   // without the colours that the sensor's view promises, or of another size; dropped
-  int overtaken = 0;    // ready, and replaced by a newer one before the servo took them
-  int unrecorded = 0;   // dropped, because the recorder had no room
+  int overtaken = 0;    // ready, but replaced by a newer one before the servo took them
+  int unrecorded = 0;   // dropped, because the recorder's queue was full
   double max_pause_s = 0;
   double processing_s = 0;  // sum over the frames
 };
 
-// Frames that the renderer may hold are held here too until nobody else does, so that their memory is given
-// back by the thread that calls step().
+// Frames that the renderer may hold are also held here until nothing else holds them, so that their memory is
+// freed by the thread that calls step().
 class CameraFeed {
  public:
   static constexpr const char* kEnd = "the recording has ended";
@@ -38,7 +38,7 @@ class CameraFeed {
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
              TripleBuffer<LiveFrame>& out, FrameSink sink);
 
-  // Waits so long for the next frame and hands it over. False: there will be no more.
+  // Waits at most patience_s for the next frame and passes it on. False: there will be no more.
   bool step(double patience_s) noexcept;
 
   // For other threads.

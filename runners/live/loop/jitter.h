@@ -10,12 +10,12 @@
 namespace remote_touch {
 
 struct Jitter {
-  std::vector<double> late_s;  // of every tick, after its time
+  std::vector<double> late_s;  // delay of every tick
   long long missed = 0;        // ticks that never began
-  std::string real_time;       // what the system gave
+  std::string real_time;       // what the system granted, see become_real_time()
 };
 
-// With the loop that devices without one of their own have. stop: ends it early.
+// Measures the loop of devices that have none of their own. stop: ends it early.
 Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock);
 
 // Rows of "from to count bar", each twice as wide as the one before.

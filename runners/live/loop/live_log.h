@@ -1,4 +1,4 @@
-// The results of a live run: the trace, and the times and counts of its ticks.
+// The record of a live run: the trace, and the times and counts of its ticks.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace remote_touch {
 struct LiveLog {
   Trace trace;
   std::vector<double> step_s;      // of every tick: taking the frame and rendering
-  std::vector<double> interval_s;  // between the begins of ticks
+  std::vector<double> interval_s;  // between the starts of ticks
   std::vector<double> latency_s;  // of every frame taken: sensor's time stamp to the first write it counts in
   std::vector<double> waited_s;   // of every frame taken: ready to taken
-  std::int64_t missed_ticks = 0;  // numbers that no tick had
+  std::int64_t missed_ticks = 0;  // tick numbers that were skipped
   std::int64_t exhausted_ticks = 0;   // that ended before the tool came to rest
   std::int64_t zero_force_ticks = 0;  // in which the gate was waiting or latched
   std::int64_t stale_ticks = 0;       // with no new frame for kStaleFrame_s
-  std::int64_t reversed_frames = 0;   // taken although older than the one before; there should be none
-  double max_force_N = 0;             // written
+  std::int64_t reversed_frames = 0;   // taken although older than the frame before; should be 0
+  double max_force_N = 0;             // written to the device
 
   static constexpr double kStaleFrame_s = 0.2;
 
@@ -32,7 +32,7 @@ struct LiveLog {
   int last_taken_ = -1;
 };
 
-// What others count beside the ticks.
+// Counts of the other parts of a live run.
 struct LiveCounts {
   CameraCounts camera;
   int stalls = 0;

@@ -1,4 +1,5 @@
-// Takes the data of the servo and the camera: into the log, and into a file when a session is recorded.
+// Collects the rows of the servo and the frames of the camera: into the log, and on disk if a session is
+// recorded.
 #pragma once
 
 #include <atomic>
@@ -17,22 +18,22 @@ namespace remote_touch {
 
 class LiveLogger {
  public:
-  // recorder: null where nothing is recorded.
+  // recorder: null if nothing is recorded.
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
 
-  // Takes what is there and answers who has asked; every kPeriod_s or so.
+  // Takes what has come and calls the function given to ask(); call it about every kPeriod_s.
   void step() noexcept;
   static constexpr double kPeriod_s = 0.005;
-  // Takes all that is left and finishes the file; the servo and the camera have stopped, and nobody calls
-  // step().
+  // Takes all that is left and finishes the file. pre: the servo and the camera have stopped, and step() is
+  // no longer called.
   void finish();
 
-  // For the camera: false where the disk is behind by kMaxFrames.
+  // For the camera: false if kMaxFrames frames are waiting for the disk.
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // For other threads: why nothing can be recorded or logged any more.
+  // For other threads: why nothing can be recorded or logged any more; empty: no failure.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
-  // Calls once, in a step, with the log as it is then.
+  // Calls the question once, in a step(), with the log at that time.
   void ask(std::function<void(const LiveLog&)> question);
 
  private:

@@ -1,5 +1,5 @@
-// Everything of a live run except its threads: each thread calls one of these steps repeatedly. On a
-// simulated clock the same steps make the same run without threads.
+// Everything of a live run except its threads: each thread only calls one of these steps repeatedly. Without
+// threads, on a simulated clock, the same steps make the same run.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,14 @@ namespace remote_touch {
 
 class LiveParts {
  public:
-  // All arguments outlive it. Throws InputError where they do not fit each other, or the recording cannot be
-  // opened.
+  // All arguments must outlive it. Throws InputError if they do not fit each other, or the recording cannot
+  // be opened.
   LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
             std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source);
 
-  // The haptic loop, until it is over; the device is let go then.
+  // The haptic loop, until the run ends; it then releases the device.
   void run_loop() noexcept;
-  // Beside the loop: camera().step(), heartbeat().check(), logger().step(), and of the user
+  // To be called beside the loop: camera().step(), heartbeat().check(), logger().step(), and for the user
   // is_over() and report_changes() every kReportPeriod_s.
   CameraFeed& camera() { return *camera_; }
   Heartbeat& heartbeat() { return servo_->heartbeat(); }
@@ -35,7 +35,7 @@ class LiveParts {
   void stop() { stop_ = true; }
   // From any thread.
   void release() noexcept { device_->release(); }
-  // Once none of the steps is called any more.
+  // pre: none of the steps is called any more.
   LiveResult finish();
 
  private:

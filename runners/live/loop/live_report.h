@@ -1,4 +1,4 @@
-// How punctual a live run was: a table to be read, and a figure.
+// Timing of a live run: a text table and a figure.
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ struct LiveReport {
   };
   std::vector<Times> times;
   std::vector<Count> counts;
-  // Longest time from tick to tick in each of up to kMaxPieces pieces of the run, at its beginning.
+  // max_interval_s: longest time from tick to tick in each of up to kMaxPieces pieces of the run; piece_s:
+  // start of the piece.
   std::vector<double> piece_s, max_interval_s;
 
   static constexpr std::size_t kMaxPieces = 2000;
@@ -29,13 +30,13 @@ struct LiveReport {
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts);
 
-// Rows of least, p50, p99, p99.9 and largest time, then of counts.
+// Rows of minimum, p50, p99, p99.9 and maximum time, then of counts.
 std::string text(const LiveReport& report);
 
-// Tables `times` and `counts` with the same numbers; how often what takes how long; when the loop was late.
+// Tables `times` and `counts` with the same numbers; distributions of the times; when the loop was late.
 Figure live_figure(const LiveReport& report);
 
-// Of sorted values, the one below which that share of them lies; NaN of none.
+// The value below which that fraction of the sorted values lies; NaN without values.
 double quantile(const std::vector<double>& sorted, double fraction);
 
 }  // namespace remote_touch

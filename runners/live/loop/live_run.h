@@ -1,4 +1,4 @@
-// The live loop: sensor, renderer and device in real time. runners/simulation/simulation.cpp is the same in
+// The live loop: sensor, renderer and device in real time. runners/simulation/simulation.cpp does the same in
 // simulated time.
 #pragma once
 
@@ -16,30 +16,31 @@ namespace remote_touch {
 
 struct LiveOptions {
   std::string device = "sim:", depth = "sim:";
-  double duration_s = 0;                                // 0: until told to stop
+  double duration_s = 0;                                // 0: until stopped
   std::filesystem::path record;                         // empty: nothing is recorded
   TextAttributes provenance;                            // of the recording
-  double stall_s = 0.01;                                // without a tick for longer the device is let go
+  double stall_s = 0.01;                                // if no tick for longer, the device is released
   const Kernels* kernels = nullptr;                     // required
   const std::atomic<bool>* stop = nullptr;              // SIGINT and SIGTERM
-  std::atomic<bool>* report = nullptr;                  // SIGUSR1: on_report now; set back
-  std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: after a latch; set back
+  std::atomic<bool>* report = nullptr;                  // SIGUSR1: calls on_report; reset
+  std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: re-arms after a latch; reset
   std::function<void(const std::string&)> report_line;  // lines to the user while it runs
-  // Of the run until now, from the thread that writes the recording: nobody else writes HDF5 then.
+  // Report of the run so far, called from the thread that writes the recording, so that no other thread uses
+  // HDF5.
   std::function<void(const LiveReport&)> on_report;
 };
 
 struct LiveResult {
   LiveLog log;
   LiveCounts counts;
-  std::string real_time;   // what the system gave
+  std::string real_time;   // what the system granted, see become_real_time()
   std::string device;      // its name
-  double force_scale = 1;  // of what was rendered, for the device's largest stiffness
+  double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness
   std::string ended;       // why it ended
-  bool failed = false;     // device, sensor, disk or renderer, or force was latched off at the end
+  bool failed = false;     // device, sensor, disk or renderer failed, or the gate was latched at the end
 };
 
-// Throws InputError when something cannot be opened; then nothing has moved.
+// Throws InputError when something cannot be opened; then no force was exerted.
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// A queue of fixed length between two threads, without waiting.
+// A lock-free queue of fixed length from one thread to another.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ class Ring {
   // min_capacity: rounded up to a power of two.
   explicit Ring(std::size_t min_capacity) : slots_(std::bit_ceil(min_capacity)) {}
 
-  // The slot to write next, or null where the queue is full; it is handed over by push().
+  // The slot to write next, or null if the queue is full; push() passes it on.
   T* next_slot() {
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - start_.load(std::memory_order_acquire) == slots_.size()) return nullptr;
@@ -23,7 +23,7 @@ class Ring {
   }
   void push() { end_.store(end_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
-  // The oldest value, or null; it is let go by pop().
+  // The oldest value, or null; pop() removes it.
   T* oldest() {
     const std::size_t start = start_.load(std::memory_order_relaxed);
     if (start == end_.load(std::memory_order_acquire)) return nullptr;

@@ -17,13 +17,13 @@ namespace remote_touch {
 // A frame on its way to the servo.
 struct LiveFrame {
   Frame frame;
-  double sensed_s = 0;  // of the clock: the sensor's time stamp, and when the frame was ready
+  double sensed_s = 0;  // times of the clock: the sensor's time stamp, and when the frame was ready
   double ready_s = 0;
   std::uint64_t hash = 0;  // frame_hash()
 };
 
 struct LiveTick {
-  std::int64_t number = 0;  // time of the tick is number / haptic rate, since the start
+  std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;
   RenderOutput out;
   int taken = -1;          // the frame that the renderer got before this tick; -1: none
@@ -31,12 +31,12 @@ struct LiveTick {
   Wrench written;          // to the device, in its axes
   GateState gate = GateState::waiting;
   float step_s = 0;             // taking the frame and rendering
-  float since_last_tick_s = 0;  // from the begin of one tick to that of the next
+  float since_last_tick_s = 0;  // from the start of the tick before to the start of this one
   float latency_s = 0;          // of a frame that was taken: sensor's time stamp to the write it counts in
   float waited_s = 0;           // of that: between ready and taken
 };
 
-// What the servo shares with others. All outlive it.
+// What the servo shares with other parts. All must outlive it.
 struct ServoLinks {
   HapticDevice& device;
   Renderer& renderer;
@@ -44,19 +44,19 @@ struct ServoLinks {
   Ring<LiveTick>& rows;
   const Clock& clock;
   const std::atomic<bool>& stop;
-  // A second one, of the program's signals, and an end by the clock: the loop sees to both itself, for the
-  // thread that waits for it may be held up by the terminal that it writes to.
+  // A second stop flag, set by the program's signals, and an end time: the loop checks both itself, because
+  // the thread that waits for it may be blocked by the terminal that it writes to.
   const std::atomic<bool>* signal = nullptr;
   std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // of the clock
 };
 
-// No allocation, no lock, no file, no time but that of the clock it is given; the device's calls excepted.
-// Ticks are numbered by the clock: a missed one leaves a gap, a device that is fast gives each its own
-// number. Their times are rounded up, and moved on where a frame was captured while the device was read, so
-// that no frame is taken before it was captured.
+// No allocation, no lock, no file, no time but that of the given clock, except in the device's calls. Ticks
+// are numbered by the clock: a missed one leaves a gap; with a device faster than the rate each tick still
+// gets its own number. Tick times are rounded up, and moved on if a frame was captured while the device was
+// read, so that no frame is taken before it was captured.
 class Servo final : public DeviceCycle {
  public:
-  // stall_s: longest time without a tick until the heartbeat lets the device go.
+  // stall_s: longest time without a tick before the heartbeat releases the device.
   Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits, double rate_hz,
         std::int64_t start_ns, double stall_s);
 
@@ -64,13 +64,13 @@ class Servo final : public DeviceCycle {
 
   // For other threads.
   void rearm() noexcept { gate_.rearm(); }
-  // To be checked beside the loop.
+  // Its check() must be called beside the loop.
   Heartbeat& heartbeat() { return heartbeat_; }
   std::int64_t rows_lost() const { return rows_lost_.load(std::memory_order_relaxed); }
   bool is_latched() const { return latched_.load(std::memory_order_acquire); }
-  // Of the newest latch or failure.
+  // Reason of the newest latch or failure.
   const char* trouble() const { return trouble_.load(std::memory_order_acquire); }
-  // The device itself failed, which no rearm() mends.
+  // The device itself failed; rearm() does not help.
   bool has_failed() const { return failed_.load(std::memory_order_acquire); }
 
  private:

@@ -1,4 +1,4 @@
-// Passes the newest value from one thread to another, without waiting; older values are overwritten.
+// Passes the newest value from one thread to another, lock-free.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace remote_touch {
 
-// One producer, one consumer; both calls are a single exchange. A slot belongs to one side at a time, so
-// whatever it holds is let go by the side that writes over it.
+// One producer, one consumer; both calls are a single atomic exchange. A slot belongs to one side at a time,
+// so its old value is freed by the side that overwrites it.
 template <class T>
 class TripleBuffer {
  public:
@@ -21,7 +21,7 @@ class TripleBuffer {
     return (before & kNew) == 0;
   }
 
-  // Takes the newest value, if there is one since the last call; front() is then that.
+  // Takes the newest value, if there is a new one since the last call; front() then returns it.
   bool take() {
     if ((middle_.load(std::memory_order_relaxed) & kNew) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kSlot;

@@ -10,14 +10,14 @@ namespace remote_touch {
 
 enum class SensorState { frame, waiting, ended, failed };
 
-// Used from one thread. The constructor opens the sensor and throws InputError with what is absent and what
+// Used from one thread. The constructor opens the sensor and throws InputError with what is missing and what
 // would help.
 class DepthSource {
  public:
   virtual ~DepthSource() = default;
 
   virtual const SensorView& view() const = 0;
-  // Waits for the next frame, timeout_s at the longest. Keeps the memory of the frame that it is given.
+  // Waits for the next frame, timeout_s at most. Reuses the memory of the given frame.
   virtual SensorState next(SensorFrame& frame, double timeout_s) = 0;
   // Why it failed, in one line.
   virtual std::string failure() const { return {}; }

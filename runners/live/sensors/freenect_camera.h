@@ -9,11 +9,12 @@
 
 namespace remote_touch {
 
-// address: the number of the camera, or nothing for the first. Depth is registered to colour where the
-// library does that. Intrinsics are the nominal ones of a Kinect: the library that plays its recordings
-// (fakenect) does not know those of the device. Of frames that nobody waits for only the newest is kept.
+// address: the number of the camera, or nothing for the first. Depth is registered to colour if the library
+// supports that. Intrinsics are the nominal ones of a Kinect, because the library that plays its recordings
+// (fakenect) does not have those of the device. Of frames that come between two calls of next() only the
+// newest is kept.
 //
-// The library tells no lost camera from the end of a recording: both are failures.
+// The library does not distinguish a lost camera from the end of a recording: both are failures.
 std::unique_ptr<DepthSource> open_freenect(const std::string& address, Clock& clock);
 
 Availability freenect_availability();

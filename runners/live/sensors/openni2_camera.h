@@ -9,18 +9,18 @@
 
 namespace remote_touch {
 
-// address: "any" or nothing for the first camera, the URI of a camera, or an .oni file. The camera looks with
-// its widest image of up to 640 x 480 pixels at 30 Hz and without mirroring; intrinsics are those of the
-// driver's field of view. Colour comes where the camera registers depth to it, from the frame next in time.
-// Of frames that nobody waits for only the newest is kept.
+// address: "any" or nothing for the first camera, the URI of a camera, or an .oni file. The camera delivers
+// its widest image of up to 640 x 480 pixels at 30 Hz, not mirrored; intrinsics follow from the driver's
+// field of view. Colour is used if the camera registers depth to it, from the frame nearest in time. Of
+// frames that come between two calls of next() only the newest is kept.
 //
-// A recording plays at its own speed, once. It has no colour, since it does not tell whether its depth was
-// registered.
+// A recording plays at its own speed, once. Its colour is not used, because it does not contain whether its
+// depth was registered.
 //
-// The first one open changes the process's working folder for a moment, while the library loads its drivers:
-// open it before other threads look for files by relative paths. Frames are to be taken in one thread of the
-// process, whatever camera they are of: the library remembers the threads that waited, and crashes when it
-// looks for one that has ended.
+// Opening the first camera changes the working folder of the process for a moment, while the library loads
+// its drivers: open it before other threads use relative paths. Take the frames of all cameras in one and the
+// same thread of the process: the library remembers the threads that waited, and crashes when it uses one
+// that has ended.
 std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clock);
 
 Availability openni2_availability();

@@ -1,4 +1,4 @@
-// The run-time library of OpenNI 2 and what it tells. Included where the library is installed only.
+// The run-time library of OpenNI 2. Included only if the library is installed.
 #pragma once
 
 #include <OpenNI.h>
@@ -9,27 +9,27 @@
 
 namespace remote_touch::openni2 {
 
-// The library's own words for its last error, in one line.
+// The library's own text for its last error, in one line.
 std::string error_text();
 
-// Where the library looks for drivers: beside itself.
+// The folder where the library searches for drivers: its own.
 std::string driver_folder();
 
 bool is_file(const std::string& address);
 
-// Started for as long as this lives, from any thread.
+// The library is initialised while an object of this class exists, from any thread.
 class Library {
  public:
-  Library();  // InputError where it does not start
+  Library();  // throws InputError if it cannot be initialised
   ~Library();
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  // Without the recordings that are open, which the library takes for devices.
+  // Without open recordings, which the library lists as devices.
   std::vector<openni::DeviceInfo> cameras() const;
 };
 
-// Hears from a thread of the driver that the camera with this URI was unplugged.
+// Is notified, from a thread of the driver, that the camera with this URI was unplugged.
 class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
  public:
   explicit LossListener(std::string uri);
@@ -43,11 +43,11 @@ class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> is_lost_ = false;
 };
 
-// STATUS_OK: a frame is there.
+// STATUS_OK: a frame is available.
 openni::Status wait_for(openni::VideoStream& stream, int timeout_ms);
 
-// The newest frame, which has to be there; not valid: failed. VideoStream::readFrame() would take a pointer
-// that nobody has set for a frame when it fails.
+// The newest frame; an invalid one on failure. pre: a frame is available. VideoStream::readFrame() would use
+// an uninitialised pointer when it fails.
 openni::VideoFrameRef read_from(const openni::VideoStream& stream);
 
 }  // namespace remote_touch::openni2

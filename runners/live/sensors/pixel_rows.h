@@ -1,4 +1,4 @@
-// Images as drivers hand them over: rows of pixels with gaps between them, sometimes mirrored.
+// Images as drivers deliver them: rows of pixels with gaps between them, sometimes mirrored.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct PixelRows {
   bool is_mirrored = false;
 };
 
-// Both turn a mirrored image round. False, and nothing is read, for an image of another size than the
-// camera's or with fewer bytes than it needs.
+// Both undo the mirroring. False, and nothing is read, for an image of another size than the camera's or with
+// fewer bytes than it needs.
 bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth);
 // Three bytes a pixel: red, green, blue.
 bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour);

@@ -1,4 +1,4 @@
-// A scenario in real time: a simulated camera, or a recording on disk.
+// A scenario played in real time: a simulated camera, or a recording on disk.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace remote_touch {
 
-// Shows the frame that the scenario has at the time since the first next(), as often as its rate says; frames
-// for which there was no time are passed over. Depths are rounded to kUnit_m, as a sensor does.
-// A scene at rest is shown again and again.
+// Gives the scenario's frame at the time since the first next(), at the scenario's frame rate; frames for
+// which there was no time are skipped. Depths are rounded to kUnit_m, as a sensor does. A scene at rest is
+// repeated.
 class ScenarioCamera final : public DepthSource {
  public:
-  static constexpr double kUnit_m = 1e-4;  // so the farthest is 6.5 m
+  static constexpr double kUnit_m = 1e-4;  // 16 bits, so depths up to 6.5 m
 
   // Throws InputError unless the scenario's frames are depth images.
   ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock);

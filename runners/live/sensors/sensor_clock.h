@@ -3,14 +3,14 @@
 
 namespace remote_touch {
 
-// Arrivals jitter by milliseconds with the bus and the scheduler; the sensor's stamps are even, but count
-// from a moment of their own. The difference arrival - stamp is the wanted offset plus a delay that is never
-// negative, so the smallest one seen is the nearest to it. What is left in it is the delay that every frame
-// has: exposure and transfer cannot be told from this side.
+// Arrivals jitter by milliseconds with the bus and the scheduler; the sensor's stamps are regular, but have
+// their own origin. The difference arrival - stamp is the wanted offset plus a delay that is never negative,
+// so the smallest difference is nearest to the offset. It still contains the delay common to all frames:
+// exposure and transfer cannot be measured on the host.
 class SensorClock {
  public:
-  // When the frame with this stamp was taken, on the clock that tells the arrival: after the frame before,
-  // and not after the arrival. Frames come in the order in which they arrived.
+  // Time at which the frame with this stamp was captured, on the clock of the arrival: later than the frame
+  // before, and not later than the arrival. pre: called in the order of arrival.
   double captured_s(double stamp_s, double arrived_s);
 
  private:

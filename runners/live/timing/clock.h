@@ -1,5 +1,5 @@
-// The time of everything live: sensors, devices and the loop between them stamp and wait by the clock that
-// they are given.
+// The clock of everything live: sensors, devices and the loop between them take their times from it and wait
+// on it.
 #pragma once
 
 #include <cmath>
@@ -7,12 +7,13 @@
 
 namespace remote_touch {
 
-// A moment is counted from some other moment, and never set back. A clock outlives whatever is given it.
+// Times count from a fixed but arbitrary origin and never decrease. A clock must outlive the objects that use
+// it.
 class Clock {
  public:
   virtual ~Clock() = default;
   virtual std::int64_t now_ns() const noexcept = 0;
-  // Returns at that moment or later; at once where it has passed.
+  // Returns at that time or later; at once if it has passed.
   virtual void sleep_until_ns(std::int64_t moment_ns) noexcept = 0;
 
   double now_s() const noexcept { return 1e-9 * static_cast<double>(now_ns()); }

@@ -1,4 +1,4 @@
-// The clock of a run with a hand.
+// The clock of a live run.
 #pragma once
 
 #include <time.h>

@@ -1,4 +1,4 @@
-// Running what made a baseline again, with the present program, and comparing.
+// Makes a baseline's result again with the present program, and compares.
 #pragma once
 
 #include <optional>
@@ -12,22 +12,22 @@ namespace remote_touch {
 struct BaselineCheck {
   enum class State {
     same,
-    changed,         // numbers outside the spread, another experiment, or no baseline where one has to be
+    changed,         // numbers outside the spread, another experiment, or a required baseline is missing
     not_comparable,  // the stored file is damaged, or what it runs cannot be run any more
-    not_run          // what it needs is not on this machine: a recording
+    not_run          // a recording that it needs is not on this machine
   };
   std::string name;
   State state = State::same;
   std::string text = {};                            // one line
-  std::optional<ResultComparison> comparison = {};  // where it came to one
+  std::optional<ResultComparison> comparison = {};  // if one was made
 };
 
-// Never throws InputError: what is wrong with one baseline must not hide the others. Throws Interrupted.
+// Never throws InputError: a problem of one baseline must not hide the others. Throws Interrupted.
 BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline& baseline,
                              const Kernels& kernels, const std::atomic<bool>* stop);
 
-// One changed entry for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
-// runs, but for rules that read a file of the user's; none where the manifest need not be complete.
+// An entry `changed` for each experiment, scenario, fixture rule, trajectory and renderer that no baseline
+// runs, except rules that read a file of the user; none if the manifest need not be complete.
 std::vector<BaselineCheck> missing_baselines(const std::filesystem::path& folder, const Manifest& manifest);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// The list of stored baselines: what made each, why it is as it is, and how far a number may be from it.
+// The list of stored baselines: what made each, why it was stored, and how far a number may be from it.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace remote_touch {
 
-// A result to hold later programs against, NAME.h5 beside the manifest.
+// A result with which later programs are compared, NAME.h5 beside the manifest.
 struct Baseline {
   std::string name;
   std::string command;  // "run" or "sweep"
@@ -18,12 +18,12 @@ struct Baseline {
   std::string sha256 = {};                  // of the file
   std::string reason = {};                  // why it was stored
   std::vector<std::string> builds = {};  // compilers, levels and threads over which the spread was measured
-  // The spread, by column or measure: what is not named is exact.
+  // The spread, by column or measure; those not named are exact.
   Tolerances tolerances = {};
 };
 
 struct Manifest {
-  // Every experiment, scenario, fixture rule, trajectory and renderer of the list has to have a baseline.
+  // Every stored experiment, scenario, fixture rule, trajectory and renderer must have a baseline.
   bool complete = false;
   std::vector<Baseline> baselines = {};
 
@@ -35,7 +35,7 @@ Manifest read_manifest(const std::filesystem::path& folder);
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline);
-// What the baseline runs, as the commands take it: its name, or the path of its JSON file.
+// The baseline's subject as the commands take it: its name, or the path of its JSON file.
 std::string subject_of(const std::filesystem::path& folder, const Baseline& baseline);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
 // One experiment or sweep, made by every build on every instruction set and number of threads: how far its
-// numbers are apart.
+// numbers differ.
 #pragma once
 
 #include <atomic>
@@ -15,25 +15,27 @@
 
 namespace remote_touch {
 
-// What is judged of a result: the columns of a trace but the running hash, or the measures of a sweep.
+// The columns of a result that are judged: those of a trace except the running hash, or the measures of a
+// sweep.
 std::vector<Column> judged_columns(const std::filesystem::path& file, const std::string& command);
 
 struct Measured {
-  std::filesystem::path reference;  // made by the first program with what this machine does best
+  std::filesystem::path reference;  // made by the first program at this machine's highest level
   std::set<std::string> compilers = {};
   std::vector<std::string> over = {};  // compilers, levels and threads
   Tolerances spread = {};              // largest deviation from the reference, where it is not 0
 };
 
 // Runs the baseline's experiment with every program for all levels of this machine and 1, 2 and 8 threads,
-// into the scratch folder. Throws InputError where a program fails, is of another commit than the first, or a
-// state, a fingerprint or the finiteness of a number differs: such a thing has no tolerance. Throws
-// Interrupted when stop is set.
+// into the scratch folder. Throws InputError if a program fails, is of another commit than the first, or a
+// state, a hash or the finiteness of a number differs, for which there is no tolerance. Throws Interrupted
+// when stop is set.
 Measured measure_spread(const std::filesystem::path& folder, const Baseline& baseline,
                         const std::vector<std::string>& programs, const std::filesystem::path& scratch,
                         const std::atomic<bool>* stop);
 
-// The new values, but the old bits wherever a row is within the tolerance. pre: columns of one result.
+// The new values, but with the old bits in every row that is within the tolerance. pre: columns of one
+// result.
 std::vector<Column> keep_old_bits(const std::vector<Column>& old, std::vector<Column> now,
                                   const Tolerances& tolerances);
 

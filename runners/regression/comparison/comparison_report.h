@@ -1,4 +1,4 @@
-// Comparisons for programs: JSON, and JUnit's XML as build servers read it.
+// Comparisons in machine-readable form: JSON, and JUnit's XML for build servers.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace remote_touch {
 
-// Everything that was found, {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}.
-// Numbers that JSON does not have are null.
+// The whole comparison, {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}. Numbers
+// that are not finite are null.
 std::string comparison_json(const ResultComparison& comparison);
 std::string comparison_json(const std::vector<ResultComparison>& comparisons);  // a list
 
-// One test case and what became of it.
+// One test case and its result.
 struct ReportCase {
   enum class State { passed, failed, error, skipped };
   std::string name;

@@ -23,10 +23,10 @@ struct ComparisonRules {
 };
 
 struct ResultComparison {
-  std::string baseline, candidate;              // names for people
+  std::string baseline, candidate;              // names, for display
   std::string kind;                             // trace, sweep, figure, hashes
-  std::vector<std::string> configuration = {};  // where the experiments differ
-  std::vector<std::string> provenance = {};     // where the builds differ: told, not judged
+  std::vector<std::string> configuration = {};  // differences of the experiments
+  std::vector<std::string> provenance = {};     // differences of the builds: reported, not judged
   std::optional<TraceComparison> columns = {};  // of traces and figures
   std::optional<SweepComparison> sweep = {};
   bool paired = false;  // how the sweep was judged
@@ -35,16 +35,16 @@ struct ResultComparison {
   std::string verdict = {};  // one line
 };
 
-// "trace", "sweep", "figure" or "hashes", as the schema says; another version is for its reader to refuse.
-// Throws InputError for any other file.
+// "trace", "sweep", "figure" or "hashes", from the schema; the reader refuses another version. Throws
+// InputError for any other file.
 std::string kind_of(const Hdf5Reader& result);
 
-// Throws InputError for files that cannot be read or are of different kinds (but hashes go with traces), and
-// for tolerances of columns that there are not; hashes have none.
+// Throws InputError for files that cannot be read or are of different kinds (but hashes may be compared with
+// a trace), and for tolerances of unknown columns; hashes have no tolerances.
 ResultComparison compare_results(const std::filesystem::path& baseline,
                                  const std::filesystem::path& candidate, const ComparisonRules& rules);
 
-// Of a trace and columns at hand. attributes: configuration and provenance of both.
+// Compares traces from any source. The attributes hold configuration and provenance of each.
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);

@@ -1,5 +1,5 @@
-// What a renderer's parameters are measured in, read from the unit that ends their names, so that a scene and
-// a renderer can be told in other units of length, time and force together.
+// The dimensions of a renderer's parameters, from the unit that ends their names, so that a scene and a
+// renderer can be converted together to other units of length, time and force.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Dimension {
   bool operator==(const Dimension&) const = default;
 };
 
-// How many times as large every length, time and force becomes.
+// Factors by which every length, time and force is multiplied.
 struct UnitChange {
   double length = 1;
   double time = 1;
@@ -25,14 +25,14 @@ struct UnitChange {
   double factor(const Dimension& dimension) const;  // exact where the changes are powers of two
 };
 
-// Of a number with that name: "r1_m" is {1, 0, 0}, "damping_Ns_per_m" {-1, 1, 1}, "gamma", which has no
-// underscore, a pure number. Throws InputError, about that name, when it ends in nothing that the table in
-// dimension.cpp knows: a wrong guess would make every check by units worthless.
+// The dimension of a number with that name: "r1_m" is {1, 0, 0}, "damping_Ns_per_m" {-1, 1, 1}, "gamma",
+// which has no underscore, a pure number. Throws InputError, about that name, for an ending that is not in
+// the table in dimension.cpp: a wrong guess would make every check by units worthless.
 Dimension dimension_of(const std::string& name);
 
-// Multiplies every number by its factor, columns of Rows each by their own. Choices, texts, switches and
-// integers stay. Throws InputError for a name without a known dimension, an integer that would have
-// to change, and a number that leaves its allowed range.
+// Multiplies every number by its factor, each column of Rows by its own. Choices, texts, switches and
+// integers are not changed. Throws InputError for a name without a known dimension, an integer that would
+// have to change, and a number that leaves its allowed range.
 void change_units(const Parameters& parameters, const UnitChange& change);
 
 // The largest number among the parameters that is a length, m; 0 without one.

@@ -1,6 +1,6 @@
-// Checks of a renderer that need no known answer: each scene is played as it stands and told differently, and
-// the two answers must be related as metamorphic_relation.cpp says. Only the renderer's interface is used,
-// so whatever is added to the catalog is checked as it is.
+// Metamorphic tests of a renderer, which need no reference solution: each scene is played unchanged and
+// transformed, and the two outputs must be related as metamorphic_relation.cpp defines. They use only the
+// interface Renderer, so every new renderer of the catalog is checked without further work.
 #pragma once
 
 #include <atomic>
@@ -20,15 +20,15 @@ struct CheckResult {
   std::string scene;
   std::string reason;  // for the tolerances, one line
   Comparison comparison;
-  std::string remark;  // for a failure that may be the scene's and not the renderer's; else empty
+  std::string remark;  // for a failure that the scene may cause and not the renderer; else empty
 
   bool passed() const { return comparison.ticks > 0 && comparison.first_violation < 0; }
 };
 
-// All results, scene by scene. The first of each scene, "touch", is that the renderer pushes back in most
-// ticks, or in some where it lets go by its nature (held by a mesh, or by nothing): without that the others
-// would say little. assignments: "r1_m=0.004". Throws InputError for a renderer of six degrees of freedom,
-// for an assignment that the renderer refuses, and for a parameter that a change of units cannot follow (see
+// All results, scene by scene. The first of each scene, "touch", checks that the renderer exerts a force in
+// most ticks, or in some if its contact model can lose contact (mesh or nothing): without it the other checks
+// would mean little. assignments: "r1_m=0.004". Throws InputError for a renderer of six degrees of freedom,
+// for an assignment that the renderer refuses, and for a parameter whose units cannot be changed (see
 // dimension.h). stop: when set, ends between two scenes with Interrupted.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,

@@ -1,5 +1,5 @@
-// What must stay true of every haptic renderer when its input is told differently. No answer needs to be
-// known for that: the renderer's own answer to the scene as it stands tells what the other must be.
+// Relations that must hold for every haptic renderer when its input is transformed. They need no reference
+// solution: the renderer's own output for the unchanged scene determines the expected one.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ struct MetamorphicRelation {
   const char* meaning;  // one line
   OutputTolerance tolerance;
   const char* reason;            // for the tolerance, one line
-  bool (*vary)(Variation& run);  // false: there is nothing to vary in this scene
+  bool (*vary)(Variation& run);  // false: does not apply to this scene
 };
 
 std::span<const MetamorphicRelation> metamorphic_relations();

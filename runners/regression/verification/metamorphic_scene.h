@@ -1,5 +1,5 @@
-// What the checks of a renderer play: a stream of clouds and a path of the HIP as plain data, so that both
-// can be turned, enlarged, reordered or delayed before they are played again.
+// The scenes of the metamorphic tests: a stream of clouds and a path of the HIP as plain data, so that both
+// can be rotated, scaled, reordered or delayed before they are played again.
 #pragma once
 
 #include <string>
@@ -28,9 +28,9 @@ struct MetamorphicScene {
   std::vector<CloudView> views;  // in the order in which they arrive
   std::vector<Vec3> hip_W;       // of each tick
   bool cloud_rests = false;      // every view shows the same points
-  bool hip_rests = false;        // it does before the second view arrives, and stays where it is
-  // How points are searched: an organised cloud by its image, others by a grid of this cell; 0: all are
-  // looked at.
+  bool hip_rests = false;        // the HIP is at rest before the second view arrives, and stays there
+  // How points are searched: an organised cloud by its image, others by a grid with cells of this size; 0:
+  // brute force.
   double cell_m = 0.004;
 
   double time_s(std::size_t tick) const { return start_s + static_cast<double>(tick) / haptic_rate_hz; }

@@ -1,4 +1,4 @@
-// How far the outputs of one run are from what they should be, tick by tick.
+// Compares the outputs of a run with the expected ones, tick by tick.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace remote_touch {
 
-// How far two runs may differ; 0 everywhere: equal bits, but for the sign of a zero.
+// How far two runs may differ; 0 everywhere: equal bits, except for the sign of a zero.
 struct OutputTolerance {
   double position_m = 0;
   double force_fraction = 0;  // of the largest force in the run
@@ -18,11 +18,11 @@ struct OutputTolerance {
 
 // The largest difference of one kind.
 struct Deviation {
-  const char* quantity;  // "position" (of the proxy and slave, and carried), "nearest", "force", "velocity",
+  const char* quantity;  // "position" (proxy, slave, frame correction), "nearest", "force", "velocity",
                          // "normal", or "other": 1 where state, steps, counts, frame or status differ
   const char* unit;
   double tolerance = 0;
-  double max = 0;  // infinite where a number was expected and there is none, or the other way round
+  double max = 0;  // infinite if only one of the two is a finite number
 };
 
 struct Comparison {
@@ -31,7 +31,8 @@ struct Comparison {
   int ticks = 0;             // that were compared
 };
 
-// pre: as many outputs as expected. until_velocity: ends where either run has estimated a surface velocity.
+// pre: as many outputs as expected. until_velocity: ends as soon as either run has estimated a surface
+// velocity.
 Comparison compare(const std::vector<RenderOutput>& expected, const std::vector<RenderOutput>& outputs,
                    const OutputTolerance& tolerance, bool until_velocity);
 

@@ -20,10 +20,10 @@ struct PcdCloud {
 // a missing measurement: NaN in all three coordinates, in its place.
 //
 // An organised cloud gets cloud.image if a pinhole camera explains it: u = fx x/z + cx and v = fy y/z + cy,
-// fitted by least squares, leave every point less than 0.5 px off its pixel. Then pixel_slack is 1e-6 px more
-// than the largest residual.
+// fitted by least squares, leave every point less than 0.5 px off its pixel. pixel_slack is then the largest
+// residual plus 1e-6 px.
 //
-// Throws InputError if the header or the data cannot be used. Memory is asked for only in proportion to the
+// Throws InputError if the header or the data cannot be used. Memory is allocated only in proportion to the
 // bytes in the file, whatever the header claims. Bytes behind the last point of binary data (padding) are
 // ignored.
 PcdCloud read_pcd(const std::filesystem::path& file);

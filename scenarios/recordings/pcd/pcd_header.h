@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// The part of a PCD file that is still to be read, and the number of the line that was taken last.
+// The part of a PCD file that is still to be read, and the number of the line read last.
 struct PcdText {
   std::string_view text;
   std::size_t line = 0;
@@ -30,7 +30,7 @@ struct PcdField {
   std::string text() const;
 };
 
-// What DATA is decoded with. All lengths are checked: points = width * height, and none is 0.
+// What is needed to decode DATA. All lengths are checked: points = width * height, and none is 0.
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t width = 0, height = 0, points = 0;
@@ -40,9 +40,9 @@ struct PcdHeader {
   std::optional<PcdField> colour;  // rgb or rgba: SIZE 4, COUNT 1
 };
 
-// Takes the header off rest, which starts behind the DATA line then. The header's names are views into the
-// text. Throws InputError about file (with ":line" for a line that is no entry) if an entry is missing or not
-// allowed.
+// Removes the header from rest, which then starts after the DATA line. The header's names are views into the
+// text. Throws InputError about file (with ":line" for a line that is not a valid entry) if an entry is
+// missing or not allowed.
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest);
 
 // A word of the file for a message: quoted, short and printable, even where the file is not text at all.

@@ -1,4 +1,4 @@
-// Intrinsics recovered from an organised cloud: what a file that keeps only the points leaves out.
+// Intrinsics recovered from an organised cloud, for files that store only the points.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@ namespace remote_touch {
 
 // The pinhole camera that explains a cloud in its camera's frame, point v * width + u being that of pixel (u,
 // v): u = fx x/z + cx and v = fy y/z + cy, each fitted by least squares over the valid points. pixel_slack is
-// 1e-6 px more than the largest residual. Missing points are NaN. No camera: a point is behind it or 0.5 px
-// or more off its pixel, the image is mirrored, or the valid points do not cover two columns and two rows.
-// Pre: width * height points.
+// the largest residual plus 1e-6 px. Missing points are NaN. Returns none if a point is behind the camera or
+// 0.5 px or more off its pixel, the image is mirrored, or the valid points do not cover two columns and two
+// rows. Pre: width * height points.
 std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Depth and colour images in PNG files, as RGB-D recordings keep them.
+// Depth and colour images in PNG files, as RGB-D recordings store them.
 #pragma once
 
 #include <cstdint>
