@@ -143,7 +143,7 @@ Column Hdf5Reader::column(const std::string& dataset) const {
 }
 
 Column Hdf5Reader::rows(const std::string& dataset, std::size_t first, std::size_t count) const {
-  const Rows some{first, count};
+  const RowRange some{first, count};
   return guarded([&] { return read_dataset(open_dataset(handle_, dataset), last_part(dataset), &some); });
 }
 

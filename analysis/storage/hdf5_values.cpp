@@ -169,7 +169,7 @@ std::vector<hsize_t> checked_extent(hid_t data, hid_t type, hid_t space, const s
 
 }  // namespace
 
-Column read_dataset(hid_t data, const std::string& name, const Rows* some) {
+Column read_dataset(hid_t data, const std::string& name, const RowRange* some) {
   const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
   std::vector<hsize_t> size = checked_extent(data, type, space, name);
   std::vector<hsize_t> start(size.size(), 0);

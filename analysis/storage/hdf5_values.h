@@ -14,11 +14,11 @@ std::string read_text(hid_t attribute);
 // Empty if the object has no such attribute.
 std::string text_attribute(hid_t object, const char* name);
 
-struct Rows {
+struct RowRange {
   hsize_t first, count;
 };
 
 // All rows of a dataset, or some. Throws std::exception saying what is wrong with it.
-Column read_dataset(hid_t data, const std::string& name, const Rows* some);
+Column read_dataset(hid_t data, const std::string& name, const RowRange* some);
 
 }  // namespace remote_touch

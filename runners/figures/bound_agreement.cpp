@@ -54,7 +54,7 @@ Table criterion_table(const LiftMap& lifts) {
   return table;
 }
 
-std::vector<Bound> bounds(const MeasuredNoise& noise) {
+std::vector<AccelerationBound> bounds(const MeasuredNoise& noise) {
   const auto printed = [](double noise_m, double less) {
     return bound_acceleration(kLift, printed_thickness().at(noise_m) - less,
                               printed_normal_error().at(noise_m));
@@ -76,7 +76,7 @@ std::vector<Bound> bounds(const MeasuredNoise& noise) {
            [&noise](double s) { return scatter_bound(kLift, noise.at(s)); }}};
 }
 
-Agreement agreement_of(const Bound& bound, const Table& map, double max_noise) {
+Agreement agreement_of(const AccelerationBound& bound, const Table& map, double max_noise) {
   const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
              &survived = numbers(map, "survived");
   std::map<double, double> limit;
@@ -95,12 +95,12 @@ Agreement agreement_of(const Bound& bound, const Table& map, double max_noise) {
           static_cast<double>(unsafe_survived) / (cells - safe)};
 }
 
-Table agreement_table(const std::vector<Bound>& bounds, const Table& map) {
+Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table& map) {
   constexpr double kFittedNoise = kFitted_m / kContactRadius_m + 0.01;
   Column names{"bound", "1", "which bound", {}, 1, {}};
   std::vector<std::int32_t> number;
   std::vector<double> cells, low, high, safe, unsafe, fitted, fitted_safe;
-  for (const Bound& bound : bounds) {
+  for (const AccelerationBound& bound : bounds) {
     number.push_back(static_cast<std::int32_t>(number.size()));
     names.value_names.push_back(bound.name);
     const Agreement all = agreement_of(bound, map), inside = agreement_of(bound, map, kFittedNoise);

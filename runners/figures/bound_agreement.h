@@ -24,12 +24,12 @@ Criterion criterion_of(const LiftMap& lifts, double low, double high);
 Table criterion_table(const LiftMap& lifts);
 
 // A bound as a function of the noise, m/s^2. It keeps a reference to the MeasuredNoise it was made from.
-struct Bound {
+struct AccelerationBound {
   std::string name, meaning;
   std::function<double(double noise_m)> at;
   double max_noise_m = 1;  // drawn up to here: fits have no meaning beyond
 };
-std::vector<Bound> bounds(const MeasuredNoise& noise);
+std::vector<AccelerationBound> bounds(const MeasuredNoise& noise);
 
 // Agreement over the cells with noise up to a limit (r_c).
 struct Agreement {
@@ -37,8 +37,8 @@ struct Agreement {
   double safe_popped = 0, unsafe_survived = 0;  // fractions of the bound's safe and unsafe cells
   double fraction() const { return static_cast<double>(agree) / cells; }
 };
-Agreement agreement_of(const Bound& bound, const Table& map, double max_noise = 4);
-Table agreement_table(const std::vector<Bound>& bounds, const Table& map);
+Agreement agreement_of(const AccelerationBound& bound, const Table& map, double max_noise = 4);
+Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table& map);
 
 // Predicted and observed survival, by ranges of both noise and prediction.
 Table calibration_table(const MeasuredNoise& noise, const Table& map);

@@ -67,9 +67,9 @@ double max_factor_from_print(const Table& fit) {
   return max;
 }
 
-Table bound_table(const std::vector<Bound>& bounds) {
+Table bound_table(const std::vector<AccelerationBound>& bounds) {
   Table table = noise_table("bounds", "bounds on pop-through");
-  for (const Bound& bound : bounds)
+  for (const AccelerationBound& bound : bounds)
     add_bound(table, bound.name, bound.meaning, [&](double noise_m) {
       const bool is_meant = noise_m <= bound.max_noise_m * (1 + 1e-9);
       return is_meant ? bound.at(noise_m) : std::numeric_limits<double>::quiet_NaN();
@@ -89,10 +89,10 @@ Panel fit_panel(const std::string& table, const std::string& title, const std::s
        {table, "noise", "refitted", CurveStyle::line, "refitted"}}};
 }
 
-std::vector<Panel> panels(const std::vector<Bound>& bounds) {
+std::vector<Panel> panels(const std::vector<AccelerationBound>& bounds) {
   std::vector<Curve> curves = {
       {"survived", "noise", "acceleration", CurveStyle::squares, "did not pop through"}};
-  for (const Bound& bound : bounds)
+  for (const AccelerationBound& bound : bounds)
     curves.push_back({"bounds", "noise", bound.name,
                       bound.name.ends_with("_less") ? CurveStyle::dashed : CurveStyle::line, bound.meaning});
   std::vector<Panel> list = {fit_panel("thickness_fit", "Thickness of the cloud (4.23)", "h (m)"),
@@ -115,7 +115,8 @@ std::vector<Panel> panels(const std::vector<Bound>& bounds) {
 }
 
 std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Table& normal_error,
-                          const Criterion& criterion, const std::vector<Bound>& bounds, const Table& map) {
+                          const Criterion& criterion, const std::vector<AccelerationBound>& bounds,
+                          const Table& map) {
   const auto &survives = numbers(phases.table, "survives"), &pops = numbers(phases.table, "pops");
   return {
       claim_at_least("bounds", "noise-free lifts at 4.3 m/s^2 that survived, 64 grid phases",
@@ -156,7 +157,7 @@ Figure figure_bounds(const FigureContext& context) {
   const MeasuredNoise noise = measured_noise(context);
   const LiftMap lifts = lift_map(context, kSeed);
   const Criterion criterion = criterion_of(lifts, 0, 4);
-  const std::vector<Bound> list = bounds(noise);
+  const std::vector<AccelerationBound> list = bounds(noise);
   const Table thickness = fit_table("thickness_fit", "m", noise.thickness, printed_thickness());
   const Table normal_error = fit_table("normal_error_fit", "1", noise.normal_error, printed_normal_error());
   Figure figure{

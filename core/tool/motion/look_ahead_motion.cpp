@@ -58,7 +58,7 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
-  Progress progress(p_.rest_threshold_m, kLookAheadPatience);
+  MotionProgress progress(p_.rest_threshold_m, kLookAheadPatience);
   while (true) {
     const NearContacts near = source.near(pose, settling_ ? side_ : 0);
     ++report.detections;

@@ -7,11 +7,11 @@
 
 namespace remote_touch {
 
-class Progress {
+class MotionProgress {
  public:
   // min_m: getting nearer by this or less is no progress. patience: number of updates without progress that
   // end it.
-  Progress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
+  MotionProgress(double min_m, int patience) : min_m_(min_m), patience_(patience) {}
 
   // remaining_m: displacement to the device that is left, as max_point_displacement_m() measures it.
   void update(double remaining_m) {

@@ -96,7 +96,7 @@ ToolMotionReport VoxelMotion::move(ToolPose& pose, const ToolPose& device, Conta
   PoseQuery here = query(pose, contacts, report);
   const ContactState first = here.state;
   bool same_state = true;
-  Progress progress(p_.rest_threshold_m, kVoxelPatience);
+  MotionProgress progress(p_.rest_threshold_m, kVoxelPatience);
   while (true) {
     const Vector6 a_gu = displacement(pose, device);
     const DesiredStep desired = desired_step(pose, a_gu, here, report);

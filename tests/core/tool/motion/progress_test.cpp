@@ -5,16 +5,16 @@
 namespace remote_touch::progress_test {
 namespace {
 
-TEST(Progress, GoesOnWhileTheToolComesNearer) {
-  Progress progress(0.125, 2);
+TEST(MotionProgress, GoesOnWhileTheToolComesNearer) {
+  MotionProgress progress(0.125, 2);
   for (double left = 10; left > 0; left -= 0.25) {
     progress.update(left);
     EXPECT_FALSE(progress.has_ended()) << left;
   }
 }
 
-TEST(Progress, EndsAfterSoManyLooksWithout) {
-  Progress progress(0.125, 2);
+TEST(MotionProgress, EndsAfterSoManyLooksWithout) {
+  MotionProgress progress(0.125, 2);
   progress.update(10);
   progress.update(10 - 0.125);  // as little as none
   EXPECT_FALSE(progress.has_ended());
@@ -22,8 +22,8 @@ TEST(Progress, EndsAfterSoManyLooksWithout) {
   EXPECT_TRUE(progress.has_ended());
 }
 
-TEST(Progress, CountsAgainFromTheNearestWay) {
-  Progress progress(0, 2);
+TEST(MotionProgress, CountsAgainFromTheNearestWay) {
+  MotionProgress progress(0, 2);
   progress.update(10);
   progress.update(12);
   progress.update(9);
