@@ -45,7 +45,7 @@ Parameters parameters(SessionScene::Settings& s);
 std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
-// The device of the session at its ticks; between them, and where one was missed, as at the one before.
+// The device of the session at the nearest tick; where that one was missed, as at the one before.
 class SessionHand final : public Trajectory {
  public:
   struct Settings {
