@@ -1,6 +1,7 @@
 // Which part of a sweep a process does.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,7 +23,7 @@ Shard parse_shard(const std::string& text);
 
 // Of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or a program started by mpirun
 // (OMPI_COMM_WORLD_RANK, _SIZE); nothing where neither is set. Throws InputError for values that make no
-// shard.
-std::optional<Shard> shard_from_environment();
+// shard. value_of: of an environment variable, null where it is not set, as std::getenv tells it.
+std::optional<Shard> shard_from_environment(const std::function<const char*(const char*)>& value_of);
 
 }  // namespace remote_touch

@@ -27,9 +27,16 @@ class MissingRecording : public InputError {
   using InputError::InputError;
 };
 
-// Where a recording is looked for: the path itself, then below the folder that the environment variable
-// REMOTE_TOUCH_DATA names. Throws MissingRecording when it is in neither place.
+// The folder below which relative paths are looked for that are not here; empty, as at first: none. It is
+// that of the whole program, and set before anything is looked for: the command line takes REMOTE_TOUCH_DATA.
+void set_data_folder(const std::string& folder);
+
+// Where a recording is looked for: the path itself, then below the data folder. Throws MissingRecording when
+// it is in neither place.
 std::string find_recording(const std::string& path);
+
+// Those places in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
+std::string recording_places();
 
 // The frames of the part, first to last. Throws InputError when the recording has fewer.
 struct FrameRange {
