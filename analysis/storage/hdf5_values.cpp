@@ -101,11 +101,15 @@ std::vector<std::string> names_of(hid_t enumeration) {
   return names;
 }
 
-// 64 bits without a sign are hashes; with one they are numbers, which a double has exactly up to 2^53.
+// 64 bits without a sign are hashes; with one they are numbers, which a double has exactly up to 2^53. So it
+// has those of 32 bits without a sign, where the HDF5 library would cut what is above 2^31 - 1.
 Values read_integers(hid_t data, hid_t type, const Selection& wanted) {
-  if (H5Tget_size(type) <= sizeof(std::int32_t))
+  const std::size_t size = H5Tget_size(type);
+  const bool has_sign = H5Tget_sign(type) != H5T_SGN_NONE;
+  if (size < sizeof(std::int32_t) || (size == sizeof(std::int32_t) && has_sign))
     return read_numbers<std::int32_t>(data, H5T_NATIVE_INT32, wanted);
-  if (H5Tget_sign(type) == H5T_SGN_NONE) return read_numbers<std::uint64_t>(data, H5T_NATIVE_UINT64, wanted);
+  if (size > sizeof(std::int32_t) && !has_sign)
+    return read_numbers<std::uint64_t>(data, H5T_NATIVE_UINT64, wanted);
   return read_numbers<double>(data, H5T_NATIVE_DOUBLE, wanted);
 }
 

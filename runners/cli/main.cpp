@@ -12,6 +12,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/command_line.h"
 #include "runners/simulation/simulation.h"
+#include "scenarios/recordings/recording_part.h"
 
 namespace {
 
@@ -42,6 +43,11 @@ const Kernels& chosen_kernels() {
                    std::string("expected x86-64 up to ") + best.isa + " on this machine");
 }
 
+// REMOTE_TOUCH_DATA: where recordings and meshes with relative names are, if not here.
+void take_data_folder() {
+  if (const char* folder = std::getenv("REMOTE_TOUCH_DATA")) set_data_folder(folder);
+}
+
 void complain(const std::string& problem) {
   std::fprintf(stderr, "remote-touch: %s\n", printable(problem).c_str());
 }
@@ -63,6 +69,7 @@ int main(int argc, char** argv) {
   std::signal(SIGUSR1, request_report);
   std::signal(SIGUSR2, request_rearm);
   try {
+    take_data_folder();
     CommandLine line;
     line.stop = &stop_requested;
     line.report = &report_requested;

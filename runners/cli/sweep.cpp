@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
@@ -86,8 +87,9 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line) 
 
 int command_sweep(const CommandLine& line, const SweepRequest& request) {
   if (request.threads > 0) omp_set_num_threads(request.threads);
+  const auto value_of = [](const char* variable) -> const char* { return std::getenv(variable); };
   const Shard shard =
-      request.shard.empty() ? shard_from_environment().value_or(Shard{}) : parse_shard(request.shard);
+      request.shard.empty() ? shard_from_environment(value_of).value_or(Shard{}) : parse_shard(request.shard);
   const Sweep sweep = Sweep::load(request.sweep, request.overrides);
   const std::string file = with_shard(request.output, shard);
   if (file.empty() && !request.dry_run)

@@ -1,6 +1,8 @@
 #include "runners/sessions/session_file.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/schema.h"
@@ -12,6 +14,9 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kTicksAtOnce = 1000;
+// Of a tick: 24 days at 1 kHz. Memory is taken for every tick of a run, those that were missed included.
+constexpr std::uint64_t kMaxTick = std::numeric_limits<std::int32_t>::max();
+constexpr double kMaxSide_px = 65535;
 
 std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
   const CameraIntrinsics& c = view.camera;
@@ -107,30 +112,58 @@ SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
   number_ = file_.values<std::uint64_t>("/ticks/number");
   position_ = file_.values<double>("/ticks/position", 3);
   orientation_ = file_.values<double>("/ticks/orientation", 4);
-  buttons_ = file_.values<std::int32_t>("/ticks/buttons");
+  buttons_ = file_.values<double>("/ticks/buttons");
   taken_ = file_.values<std::int32_t>("/ticks/taken");
   const std::size_t ticks = number_.size(), frames = captured_s_.size();
   if (position_.size() != 3 * ticks || orientation_.size() != 4 * ticks || buttons_.size() != ticks ||
       taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
     file_.damaged("its columns differ in length");
-  for (std::size_t i = 0; i < ticks; ++i)
-    if (taken_[i] < -1 || taken_[i] >= static_cast<std::int32_t>(frames) ||
-        (i > 0 && number_[i] <= number_[i - 1]))
+  require_order();
+}
+
+// What a recording cannot be: frames and ticks come one after the other, and each frame is taken once at
+// most.
+void SessionReader::require_order() const {
+  const auto frames = static_cast<std::int32_t>(frame_count());
+  std::int32_t last_taken = -1;
+  for (std::size_t i = 0; i < tick_count(); ++i) {
+    const bool is_taken = taken_[i] != -1;
+    if (number_[i] > kMaxTick || (i > 0 && number_[i] <= number_[i - 1]) ||
+        (is_taken && (taken_[i] <= last_taken || taken_[i] >= frames)))
       file_.damaged("its ticks are out of order");
+    if (!(buttons_[i] >= 0 && buttons_[i] <= std::numeric_limits<std::uint32_t>::max()))
+      file_.damaged("/ticks/buttons has values that no buttons make");
+    if (is_taken) last_taken = taken_[i];
+  }
+  for (std::size_t i = 0; i < frame_count(); ++i)
+    if (!std::isfinite(captured_s_[i]) ||
+        (i > 0 && (captured_s_[i] <= captured_s_[i - 1] || frame_number_[i] <= frame_number_[i - 1])))
+      file_.damaged("its frames are out of order");
 }
 
 void SessionReader::read_view() try {
   const Json json = Json::parse(attribute(file_.attributes(), "view"));
+  const auto number = [this](const Json& from, const char* key, double low, double high) {
+    const double value = from.at(key);
+    if (!(value >= low && value <= high)) file_.damaged(std::string(key) + " = " + from.at(key).dump());
+    return value;
+  };
+  constexpr double kAboveZero = std::numeric_limits<double>::min(), kMax = 1e9;
   CameraIntrinsics& c = view_.camera;
-  c.width = json.at("width"), c.height = json.at("height");
-  c.fx = json.at("fx"), c.fy = json.at("fy"), c.cx = json.at("cx"), c.cy = json.at("cy");
-  view_.metres_per_unit = json.at("metres_per_unit");
-  view_.frame_rate_hz = json.at("frame_rate_hz");
-  haptic_rate_hz_ = Json::parse(config()).at("haptic_rate_hz");
+  c.width = static_cast<int>(number(json, "width", 1, kMaxSide_px));
+  c.height = static_cast<int>(number(json, "height", 1, kMaxSide_px));
+  c.fx = number(json, "fx", kAboveZero, kMax), c.fy = number(json, "fy", kAboveZero, kMax);
+  c.cx = number(json, "cx", -kMax, kMax), c.cy = number(json, "cy", -kMax, kMax);
+  view_.metres_per_unit = number(json, "metres_per_unit", kAboveZero, kMax);
+  view_.frame_rate_hz = number(json, "frame_rate_hz", kAboveZero, kMax);
+  haptic_rate_hz_ = number(Json::parse(config()), "haptic_rate_hz", kAboveZero, kMax);
   view_.has_colour = json.at("has_colour");
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
       view_.X_WC.matrix()(row, column) = json.at("X_WC").at(static_cast<std::size_t>(4 * row + column));
+  if (!view_.X_WC.matrix().allFinite() || !view_.X_WC.linear().isUnitary(1e-6) ||
+      view_.X_WC.linear().determinant() < 0)
+    file_.damaged("X_WC is no pose");
 } catch (const Json::exception&) {
   file_.damaged("its attributes view and config");
 }
@@ -145,20 +178,25 @@ DeviceState SessionReader::device(std::size_t i) const {
           static_cast<std::uint32_t>(buttons_[i])};
 }
 
+template <class Stored, class Pixel>
+void SessionReader::read_pixels(const char* dataset, std::size_t row, std::vector<Pixel>& pixels) const {
+  const Column column = file_.rows(dataset, row, 1);
+  const auto* stored = std::get_if<std::vector<Stored>>(&column.values);
+  const auto count =
+      static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
+  if (!stored || stored->size() != count) file_.damaged(std::string(dataset) + " is of another size");
+  const auto fits = [](Stored value) { return value >= 0 && value <= std::numeric_limits<Pixel>::max(); };
+  if (!std::all_of(stored->begin(), stored->end(), fits))
+    file_.damaged(std::string(dataset) + " has values that no pixel has");
+  pixels.assign(stored->begin(), stored->end());
+}
+
 SensorFrame SessionReader::frame(std::size_t i) const {
   SensorFrame frame;
   frame.number = frame_number_[i];
   frame.captured_s = captured_s_[i];
-  const auto pixels =
-      static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
-  const auto read = [&](const char* dataset, auto& to) {
-    const Column column = file_.rows(dataset, i, 1);
-    const auto* numbers = std::get_if<std::vector<std::int32_t>>(&column.values);
-    if (!numbers || numbers->size() != pixels) file_.damaged(std::string(dataset) + " is of another size");
-    to.assign(numbers->begin(), numbers->end());
-  };
-  read("/frames/depth", frame.depth);
-  if (view_.has_colour) read("/frames/colour", frame.colour);
+  read_pixels<std::int32_t>("/frames/depth", i, frame.depth);
+  if (view_.has_colour) read_pixels<double>("/frames/colour", i, frame.colour);
   return frame;
 }
 

@@ -34,6 +34,7 @@ class SessionWriter {
                 const TextAttributes& provenance);
 
   void append(const SessionTick& tick);  // written to the disk a thousand at a time
+  // pre: as many pixels as the view has, with colour if the view has colour.
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   void finish();
 
@@ -71,13 +72,16 @@ class SessionReader {
 
  private:
   void read_view();
+  void require_order() const;
+  template <class Stored, class Pixel>
+  void read_pixels(const char* dataset, std::size_t row, std::vector<Pixel>& pixels) const;
 
   Hdf5Reader file_;
   SensorView view_;
   double haptic_rate_hz_ = 0;
-  std::vector<double> captured_s_, position_, orientation_;
+  std::vector<double> captured_s_, position_, orientation_, buttons_;
   std::vector<std::uint64_t> fixtures_off_, number_;
-  std::vector<std::int32_t> frame_number_, taken_, buttons_;
+  std::vector<std::int32_t> frame_number_, taken_;
 };
 
 }  // namespace remote_touch

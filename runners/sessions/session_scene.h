@@ -45,7 +45,7 @@ Parameters parameters(SessionScene::Settings& s);
 std::string validate(const SessionScene::Settings& s);
 RecordingPart input_files(const SessionScene::Settings& s);
 
-// The device of the session at its ticks; between ticks, and at missed ones, as at the tick before.
+// The device of the session at the nearest tick; where that tick was missed, as at the one before.
 class SessionHand final : public Trajectory {
  public:
   struct Settings {

@@ -1,7 +1,6 @@
 #include "runners/sweep/shard.h"
 
 #include <charconv>
-#include <cstdlib>
 
 #include "core/parameters/input_error.h"
 
@@ -18,10 +17,9 @@ std::optional<int> integer_value(const std::string& text) {
   return value;
 }
 
-// The variable as an integer; otherwise where it is not set.
-std::optional<int> variable(const char* name, std::optional<int> otherwise = std::nullopt) {
-  const char* text = std::getenv(name);
-  if (text == nullptr || *text == '\0') return otherwise;
+// A variable of that value as an integer; nothing where it is not set.
+std::optional<int> integer_variable(const char* name, const char* text) {
+  if (text == nullptr || *text == '\0') return std::nullopt;
   const auto value = integer_value(text);
   if (!value || *value < 0) throw InputError(std::string(name) + " = " + text, "expected integers from 0");
   return value;
@@ -42,11 +40,13 @@ Shard parse_shard(const std::string& text) {
   return checked(index.value_or(0), count.value_or(0), "--shard " + text);
 }
 
-std::optional<Shard> shard_from_environment() {
+std::optional<Shard> shard_from_environment(const std::function<const char*(const char*)>& value_of) {
+  const auto variable = [&](const char* name) { return integer_variable(name, value_of(name)); };
   if (const auto id = variable("SLURM_ARRAY_TASK_ID")) {
     const auto count = variable("SLURM_ARRAY_TASK_COUNT");
     if (!count) return std::nullopt;
-    const int first = *variable("SLURM_ARRAY_TASK_MIN", 0), step = *variable("SLURM_ARRAY_TASK_STEP", 1);
+    const int first = variable("SLURM_ARRAY_TASK_MIN").value_or(0);
+    const int step = variable("SLURM_ARRAY_TASK_STEP").value_or(1);
     const int index = (*id - first) / std::max(1, step) + 1;
     return checked(index, *count, "SLURM_ARRAY_TASK_ID = " + std::to_string(*id));
   }

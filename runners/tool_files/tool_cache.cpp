@@ -32,6 +32,8 @@ void visit(Direction& pack, Stored& stored) {
 
 }  // namespace
 
+// Asked here and not in runners/cli: a cache is no input, no result depends on it, and whatever makes tools,
+// a test too, is to find the same one.
 fs::path tool_cache_folder() {
   const auto from = [](const char* variable) {
     const char* value = std::getenv(variable);

@@ -1,6 +1,5 @@
 #include "runners/tool_files/tool_loading.h"
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "analysis/storage/sha256.h"
@@ -26,11 +25,9 @@ fs::path find_mesh(const std::string& name) {
   try {
     return find_recording(name);
   } catch (const MissingRecording&) {
-    const char* data = std::getenv("REMOTE_TOUCH_DATA");
-    throw MissingRecording("renderer.tool_mesh = " + name,
-                           "no such tool: expected " + names_of_built_in() +
-                               ", or an OBJ, PLY or STL file here or below REMOTE_TOUCH_DATA" +
-                               (data != nullptr ? std::string(" = ") + data : " (not set)"));
+    throw MissingRecording("renderer.tool_mesh = " + name, "no such tool: expected " + names_of_built_in() +
+                                                               ", or an OBJ, PLY or STL file " +
+                                                               recording_places());
   }
 }
 

@@ -1,22 +1,31 @@
 #include "scenarios/recordings/recording_part.h"
 
-#include <cstdlib>
 #include <map>
 
 namespace remote_touch {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string data_folder;
+
+}  // namespace
+
+void set_data_folder(const std::string& folder) {
+  data_folder = folder;
+}
+
+std::string recording_places() {
+  return "here or below REMOTE_TOUCH_DATA" + (data_folder.empty() ? " (not set)" : " = " + data_folder);
+}
+
 std::string find_recording(const std::string& path) {
   if (fs::exists(path)) return path;
-  const char* data = std::getenv("REMOTE_TOUCH_DATA");
-  if (data != nullptr && fs::path(path).is_relative() && fs::exists(fs::path(data) / path))
-    return (fs::path(data) / path).string();
-  throw MissingRecording(
-      path,
-      std::string(
-          "no such recording, image or mesh: expected a folder or file here or below $REMOTE_TOUCH_DATA") +
-          (data != nullptr ? std::string(" = ") + data : " (not set)"));
+  const fs::path below = fs::path(data_folder) / path;
+  if (!data_folder.empty() && fs::path(path).is_relative() && fs::exists(below)) return below.string();
+  throw MissingRecording(path,
+                         "no such recording, image or mesh: expected a folder or file " + recording_places());
 }
 
 FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording) {

@@ -28,9 +28,16 @@ class MissingRecording : public InputError {
   using InputError::InputError;
 };
 
-// Finds a recording: the path itself, else below the folder that the environment variable REMOTE_TOUCH_DATA
-// names. Throws MissingRecording when it is in neither place.
+// The folder below which relative paths are searched that do not exist here; empty (the default): none. It
+// holds for the whole program and is set before the first search: the command line takes REMOTE_TOUCH_DATA.
+void set_data_folder(const std::string& folder);
+
+// Finds a recording: the path itself, else below the data folder. Throws MissingRecording when it is in neither
+// place.
 std::string find_recording(const std::string& path);
+
+// Those places in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
+std::string recording_places();
 
 // The frames of the part, first to last. Throws InputError when the recording has fewer.
 struct FrameRange {

@@ -19,6 +19,8 @@ std::string loader_says() {
 }  // namespace
 
 SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
+  // Asked here and not in runners/cli: it belongs to the loading of libraries, as the loader's
+  // LD_LIBRARY_PATH does, and which variables there are only the devices know.
   const char* named = std::getenv(variable_);
   const bool is_named = named != nullptr && *named != '\0';
   const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : place.names;

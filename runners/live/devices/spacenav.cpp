@@ -28,6 +28,7 @@ using Frame = std::array<std::int32_t, 8>;
 
 std::string socket_of(const DeviceAddress& address) {
   if (!address.place().empty()) return address.place();
+  // Asked here and not in runners/cli: it means the same to libspnav, and so to every program of spacenavd.
   const char* from_environment = std::getenv("SPNAV_SOCKET");
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
 }

@@ -31,6 +31,7 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
     out.dataset({"/a/x", "m", "lengths", Number::f64, {3}, 7});
     out.dataset({"/a/image", "1", "pixels", Number::u16, {2, 4}, 1});
     out.dataset({"/a/many", "1", "bits", Number::u64});
+    out.dataset({"/a/word", "1", "bits", Number::u32});
     for (int i = 0; i < 100; ++i) {
       const std::vector<double> rows(6, i);
       out.append("/a/x", rows.data(), 2);
@@ -39,6 +40,8 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
       const std::uint64_t bits = ~std::uint64_t{0} - static_cast<std::uint64_t>(i);
       out.append("/a/many", &bits, 1);
       out.append("/a/many", nullptr, 0);
+      const std::uint32_t word = 0xffffffffu - static_cast<std::uint32_t>(i);
+      out.append("/a/word", &word, 1);
     }
     EXPECT_FALSE(std::filesystem::exists(file)) << "before it is whole";
     out.finish();
@@ -55,6 +58,7 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
   const Column image = in.rows("/a/image", 41, 1);
   EXPECT_EQ(std::get<std::vector<std::int32_t>>(image.values), std::vector<std::int32_t>(8, 65041));
   EXPECT_EQ(numbers_of<std::uint64_t>(in, "/a/many")[99], ~std::uint64_t{0} - 99);
+  EXPECT_EQ(numbers_of<double>(in, "/a/word")[99], 0xffffffffu - 99.0);
 }
 
 TEST(Hdf5Appender, WithoutFinishNothingIsLeft) {

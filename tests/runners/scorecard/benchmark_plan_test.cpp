@@ -31,7 +31,8 @@ namespace {
 // Recordings are in REMOTE_TOUCH_DATA, else in ../shared/data beside the project.
 void look_for_recordings() {
   const auto beside = std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR).parent_path() / "shared/data";
-  ::setenv("REMOTE_TOUCH_DATA", beside.c_str(), 0);
+  const char* named = std::getenv("REMOTE_TOUCH_DATA");
+  set_data_folder(named != nullptr ? named : beside.string());
 }
 
 // The run with the noise of 0.6 r_c, or the scene's own, cut short: four frames.

@@ -7,6 +7,7 @@
 
 #include "runners/provenance/input_hashes.h"
 #include "runners/tool_files/tool_loading.h"
+#include "scenarios/recordings/recording_part.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
@@ -36,9 +37,9 @@ class ToolCacheTest : public testing::Test {
  protected:
   ToolCacheTest() {
     ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1);
-    ::setenv("REMOTE_TOUCH_DATA", folder_.path().c_str(), 1);
+    set_data_folder(folder_.path().string());
   }
-  ~ToolCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"), ::unsetenv("REMOTE_TOUCH_DATA"); }
+  ~ToolCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"), set_data_folder({}); }
 
   std::shared_ptr<const VoxelTool> bar() const { return load_tool(bar_, nullptr); }
   fs::path only_file() const {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -302,7 +301,6 @@ TEST_F(CheckBaseline, AnotherSchema) {
 // --- checks that need a recording ---
 
 TEST_F(CheckBaseline, ARecordingThatIsNotHere) {
-  ::unsetenv("REMOTE_TOUCH_DATA");
   Baseline baseline = stored_run();
   baseline.subject = "fig4.16-boxes", baseline.overrides = {"scenario.path=" + place("nowhere.pcd")};
   const BaselineCheck result = check(baseline);

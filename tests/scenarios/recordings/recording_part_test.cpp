@@ -1,0 +1,52 @@
+// Where recordings are looked for.
+#include "scenarios/recordings/recording_part.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::recording_part_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FindRecording : public testing::Test {
+ protected:
+  FindRecording() { fs::create_directory(folder_ / "here"), fs::current_path(folder_ / "here"); }
+  ~FindRecording() override { fs::current_path(before_), set_data_folder({}); }
+
+  const fs::path before_ = fs::current_path();
+  const TestFolder folder_{"find_recording"};
+};
+
+TEST_F(FindRecording, LooksHereAndThenBelowTheDataFolder) {
+  set_data_folder((folder_ / "data").string());
+  folder_.write("data/a.png", ""), folder_.write("data/scans/b.png", ""), folder_.write("here/a.png", "");
+  EXPECT_EQ(find_recording("a.png"), "a.png") << "here comes first";
+  EXPECT_EQ(find_recording("scans/b.png"), (folder_ / "data/scans/b.png").string());
+  const std::string whole = (folder_ / "data/a.png").string();
+  EXPECT_EQ(find_recording(whole), whole);
+}
+
+TEST_F(FindRecording, TellsWhereItLooked) {
+  const std::string places = "no such recording, image or mesh: expected a folder or file here or below ";
+  EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA (not set)");
+  set_data_folder("/data");
+  EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA = /data");
+  EXPECT_EQ(recording_places(), "here or below REMOTE_TOUCH_DATA = /data");
+  EXPECT_THROW(find_recording("/a.png"), MissingRecording);
+}
+
+// It is input of the program, which the command line hands on.
+TEST_F(FindRecording, DoesNotReadTheEnvironment) {
+  folder_.write("data/a.png", "");
+  ::setenv("REMOTE_TOUCH_DATA", (folder_ / "data").c_str(), 1);
+  EXPECT_THROW(find_recording("a.png"), MissingRecording);
+  ::unsetenv("REMOTE_TOUCH_DATA");
+}
+
+}  // namespace
+}  // namespace remote_touch::recording_part_test
