@@ -22,8 +22,8 @@ struct Shard {
 Shard parse_shard(const std::string& text);
 
 // The shard of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or of a program started by mpirun
-// (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. value_of: value of an environment variable, null if it
-// is not set, like std::getenv. Throws InputError for values that are not a valid shard.
+// (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. value_of: value of an environment variable, null if
+// it is not set, like std::getenv. Throws InputError for values that are not a valid shard.
 std::optional<Shard> shard_from_environment(const std::function<const char*(const char*)>& value_of);
 
 }  // namespace remote_touch

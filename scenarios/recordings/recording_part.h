@@ -32,8 +32,8 @@ class MissingRecording : public InputError {
 // holds for the whole program and is set before the first search: the command line takes REMOTE_TOUCH_DATA.
 void set_data_folder(const std::string& folder);
 
-// Finds a recording: the path itself, else below the data folder. Throws MissingRecording when it is in neither
-// place.
+// Finds a recording: the path itself, else below the data folder. Throws MissingRecording when it is in
+// neither place.
 std::string find_recording(const std::string& path);
 
 // Those places in the words of the command line: "here or below REMOTE_TOUCH_DATA = /data".
