@@ -132,7 +132,8 @@ void add_figure(Subcommands& commands) {
 
 void add_scorecard(Subcommands& commands) {
   auto [command, scorecard] = commands.add(
-      "scorecard", "compare renderers over many scenes and noise levels; writes HDF5 files and an HTML page",
+      "scorecard",
+      "compare renderers over many scenes and noise levels; writes HDF5 files, and JSON for scripts/plot",
       command_scorecard);
   command->add_option("methods", scorecard->methods,
                       "names from `remote-touch list`, or JSON files (default: all)");

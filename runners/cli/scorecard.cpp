@@ -12,12 +12,15 @@
 #include "runners/cli/progress.h"
 #include "runners/provenance/provenance.h"
 #include "runners/scorecard/evaluation.h"
+#include "runners/scorecard/report_json.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 
 namespace remote_touch {
 
 namespace {
+
+constexpr const char* kScorecardFile = "scorecard.h5";
 
 void make_folders(const std::filesystem::path& folder) {
   for (const char* part : {"runs", "traces"}) {
@@ -36,7 +39,7 @@ std::string configuration_of(const BenchmarkPlan& plan) {
   return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
 }
 
-// What a folder's scorecard has, this one must have too: its page and result are replaced.
+// What a folder's scorecard has, this one must have too: its results are replaced.
 void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
@@ -77,7 +80,19 @@ std::string normalised(const ScorecardRequest& request) {
   return command + " --seeds " + std::to_string(request.seeds);
 }
 
-void print(const Scorecard& card) {
+// Returns the digest.
+std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& plan,
+                          const ScorecardReport& report) {
+  const std::filesystem::path folder = request.folder;
+  std::string sum = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
+                                 provenance(configuration_of(plan), normalised(request), ""));
+  const std::string text = to_json(report);
+  write_file_atomically(folder / "scorecard.json", text.data(), text.size());
+  return sum;
+}
+
+void print(const ScorecardReport& report) {
+  const Scorecard& card = report.card;
   for (const SceneScore& scene : card.scenes) {
     std::printf("%s\n", scene.name.c_str());
     for (std::size_t c = 0; c < card.methods.size(); ++c) {
@@ -87,6 +102,8 @@ void print(const Scorecard& card) {
       std::printf("\n");
     }
   }
+  for (const auto& [name, why] : report.skipped)
+    std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
 }
 
 }  // namespace
@@ -97,29 +114,25 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
       {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
   const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
   require_same_benchmark(sweeps);
-  require_all_of(std::filesystem::path(request.folder) / "scorecard.h5", plan);
+  require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);
   make_folders(request.folder);
   try {
     Progress progress("scorecard", line.quiet);
     do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {
       progress.update((static_cast<double>(done) + fraction) / static_cast<double>(all));
     });
-    Progress after("traces and page", line.quiet);
-    const ScorecardPage page =
+    Progress after("traces and results", line.quiet);
+    const ScorecardReport report =
         evaluate(plan, *line.kernels, line.stop,
                  [&](std::size_t done, std::size_t all) { after.update(done, all, 0, "scenes"); });
-    const std::filesystem::path folder = request.folder;
-    const Figure figure = scorecard_figure(page.card);
-    const std::string sum = write_figure(folder / "scorecard.h5", figure,
-                                         provenance(configuration_of(plan), normalised(request), ""));
-    const std::string text = html(page);
-    write_file_atomically(folder / "index.html", text.data(), text.size());
-    print(page.card);
-    for (const auto& [name, why] : plan.skipped)
-      std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
-    std::printf("%s: %zu scenes, %zu methods, digest %s\n", (folder / "index.html").c_str(),
-                page.card.scenes.size(), page.card.methods.size(), sum.c_str());
-    return report_failed_runs(sweeps);
+    const std::string sum = write_results(request, plan, report);
+    print(report);
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n",
+                (std::filesystem::path(request.folder) / kScorecardFile).c_str(), report.card.scenes.size(),
+                report.card.methods.size(), sum.c_str());
+    const int code = report_failed_runs(sweeps);
+    std::printf("make the page: scripts/plot %s\n", request.folder.c_str());
+    return code;
   } catch (const Interrupted&) {
     std::fprintf(stderr,
                  "remote-touch: interrupted; finished runs are kept in %s, and the same command goes on\n",

@@ -6,6 +6,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "runners/provenance/provenance.h"
+#include "runners/scorecard/json_number.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 
@@ -19,16 +20,11 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(values.size());
 }
 
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-
 }  // namespace
 
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {
-  constexpr std::size_t kLevel = 3;
-  const std::size_t cell = std::min(kLevel, sweep.sweep.plan().cell_count() - 1);
+  const std::size_t cell = std::min(kCostLevel, sweep.sweep.plan().cell_count() - 1);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   Cost best{scene, method, kNone, kNone};
   try {

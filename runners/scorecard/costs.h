@@ -18,13 +18,15 @@ struct Cost {
   double frame_s = 0;  // mean of on_frame(); NaN without frames
 };
 
-// One run on one thread, at the noise level of 0.6 r_c if there are levels: the faster of two. Frames come
+inline constexpr std::size_t kCostLevel = 3;  // of scorecard_noise_m(): 0.6 r_c
+
+// One run on one thread, at the noise level kCostLevel if there are levels: the faster of two. Frames come
 // with every point computed, so the times do not contain the generation of noise. NaN if the run ends with an
 // error. Throws Interrupted.
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop);
 
-// A JSON file beside the results, so that the page of a finished scorecard does not change. origin: see
+// A JSON file beside the results, so that scorecard.json of a finished scorecard does not change. origin: see
 // cost_origin(); costs of another origin are not read. read_costs() returns none for a file that does not
 // exist or cannot be used.
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,

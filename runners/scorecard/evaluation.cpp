@@ -60,27 +60,27 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
 
 }  // namespace
 
-ScorecardPage evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
-                       const std::function<void(std::size_t, std::size_t)>& progress) {
+ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+                         const std::function<void(std::size_t, std::size_t)>& progress) {
   const std::filesystem::path& folder = plan.benchmark.folder;
-  ScorecardPage page{
+  ScorecardReport report{
       empty_card(plan.benchmark.methods), plan.benchmark.replicates, {}, plan.skipped, {}, {}, {}};
   for (const ScenePlan& one : plan.scenes) {
-    progress(page.card.scenes.size(), plan.scenes.size());
+    progress(report.card.scenes.size(), plan.scenes.size());
     const std::vector<StoredSweep> stored = read_all(one.sweeps);
-    page.card.scenes.push_back(score_of(one.scene, stored));
-    page.failures.emplace_back();
+    report.card.scenes.push_back(score_of(one.scene, stored));
+    report.failures.emplace_back();
     for (std::size_t c = 0; c < stored.size(); ++c)
-      page.failures.back().push_back(
+      report.failures.back().push_back(
           trace_failure(one.sweeps[c], stored[c], one.scene.success, folder, kernels, stop));
     if (one.scene.name != kPassivityScene) continue;
-    page.audit = empty_card(plan.laws);
-    page.audit->scenes.push_back(score_of(reported(one.scene), read_all(plan.audit)));
+    report.audit = empty_card(plan.laws);
+    report.audit->scenes.push_back(score_of(reported(one.scene), read_all(plan.audit)));
   }
-  page.costs = costs_of(plan, kernels, stop, folder / "costs.json");
-  page.cpu = cpu_name();
-  page.origin = "remote-touch " + version();
-  return page;
+  report.costs = costs_of(plan, kernels, stop, folder / "costs.json");
+  report.cpu = cpu_name();
+  report.origin = "remote-touch " + version();
+  return report;
 }
 
 }  // namespace remote_touch

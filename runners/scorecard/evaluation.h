@@ -1,4 +1,4 @@
-// From the finished runs of a scorecard to the contents of its page.
+// From the finished runs of a scorecard to its report.
 #pragma once
 
 #include <atomic>
@@ -6,13 +6,13 @@
 
 #include "core/kernels/kernels.h"
 #include "runners/scorecard/benchmark_plan.h"
-#include "runners/scorecard/page.h"
+#include "runners/scorecard/report.h"
 
 namespace remote_touch {
 
 // Reads all runs, scores them, traces typical failures and measures the costs that no earlier call measured.
 // progress: number of scenes done, and of all. Throws Interrupted. pre: do_sweeps() has finished.
-ScorecardPage evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
-                       const std::function<void(std::size_t, std::size_t)>& progress);
+ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
+                         const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace remote_touch

@@ -87,7 +87,7 @@ class Folder:
 
 def end(folder):
     if not folder.figures:
-        raise PlotError(f"{folder.directory}: no figure files (fig*.h5)")
+        raise PlotError(f"{folder.directory}: no figure files (fig*.h5) and no scorecard")
     claims = folder.write()
     passed = sum(verdict(claim)[1] == "pass" for claim in claims)
     print(f"plot: {len(folder.figures)} figure(s), {passed} of {len(claims)} claims pass: {folder.out / 'index.html'}")

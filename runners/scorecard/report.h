@@ -1,8 +1,9 @@
-// The scorecard as one self-contained HTML page: no scripts, no outside resources.
+// What the runs of a scorecard tell: its numbers, and beside them failures, costs and the audit of passivity.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/scorecard/scorecard.h"
@@ -11,10 +12,10 @@
 
 namespace remote_touch {
 
-struct ScorecardPage {
+struct ScorecardReport {
   Scorecard card;
   int replicates = 0;
-  std::string origin;  // program and commit
+  std::string origin;  // program and version
   // Scenes that could not be run here, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
   std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and method
@@ -23,10 +24,5 @@ struct ScorecardPage {
   std::optional<Scorecard> audit;
   std::string cpu = {};  // on which the costs were measured
 };
-
-std::string html(const ScorecardPage& page);
-
-// The text with the special characters of HTML escaped.
-std::string escaped(const std::string& text);
 
 }  // namespace remote_touch

@@ -1,0 +1,11 @@
+// Numbers for a JSON file.
+#pragma once
+
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+// JSON has neither NaN nor infinity.
+Json number_or_null(double value);
+
+}  // namespace remote_touch

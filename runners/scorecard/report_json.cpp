@@ -1,0 +1,184 @@
+#include "runners/scorecard/report_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "runners/scorecard/json_number.h"
+#include "runners/scorecard/summary.h"
+
+namespace remote_touch {
+
+namespace {
+
+Json proportion_json(const Proportion& share) {
+  return {{"successes", share.events},
+          {"runs", share.runs},
+          {"fraction", number_or_null(share.fraction)},
+          {"low", number_or_null(share.low)},
+          {"high", number_or_null(share.high)}};
+}
+
+Json mean_json(const MeanDifference& mean) {
+  return {{"runs", mean.pairs},
+          {"mean", number_or_null(mean.mean)},
+          {"low", number_or_null(mean.low)},
+          {"high", number_or_null(mean.high)}};
+}
+
+const char* mark_word(Mark mark) {
+  return mark == Mark::best ? "best" : mark == Mark::worst ? "worst" : "none";
+}
+
+const char* better_word(Better better) {
+  switch (better) {
+    case Better::larger:
+      return "larger";
+    case Better::smaller:
+      return "smaller";
+    case Better::near_zero:
+      return "near_zero";
+    case Better::reported:
+      break;
+  }
+  return "reported";
+}
+
+Json levels_json(const std::vector<double>& noise_m) {
+  Json levels = Json::array();
+  for (const double noise : noise_m) levels.push_back(number_or_null(noise));
+  return levels;
+}
+
+Json failure_json(const std::optional<FailureTrace>& failure) {
+  if (!failure) return {};
+  Json json = {{"level", failure->level}, {"replicate", failure->replicate}};
+  if (failure->file.empty())
+    json["error"] = failure->error;
+  else
+    json["file"] = failure->file, json["command"] = failure->command;
+  return json;
+}
+
+// Of each method: successes at each level and over all, the mark, and a typical failure.
+Json successes_json(const ScorecardReport& report, std::size_t number) {
+  const SceneScore& scene = report.card.scenes[number];
+  Json methods = Json::array();
+  for (std::size_t c = 0; c < report.card.methods.size(); ++c) {
+    Json levels = Json::array();
+    for (const Proportion& level : scene.success[c]) levels.push_back(proportion_json(level));
+    methods.push_back({{"levels", levels},
+                       {"overall", proportion_json(scene.success_overall[c])},
+                       {"mark", mark_word(mark_of(scene.ranking, c))},
+                       {"failure", failure_json(report.failures[number][c])}});
+  }
+  return methods;
+}
+
+Json measure_json(const JudgedMeasure& measure) {
+  const bool is_judged = measure.better != Better::reported;
+  Json methods = Json::array();
+  for (std::size_t c = 0; c < measure.at_level.size(); ++c) {
+    Json levels = Json::array();
+    for (const MeanDifference& level : measure.at_level[c]) levels.push_back(mean_json(level));
+    methods.push_back({{"overall", mean_json(measure.ranking.mean[c])},
+                       {"mark", mark_word(is_judged ? mark_of(measure.ranking, c) : Mark::none)},
+                       {"levels", levels}});
+  }
+  return {{"name", measure.name},
+          {"units", measure.units},
+          {"better", better_word(measure.better)},
+          {"methods", methods}};
+}
+
+Json scene_json(const ScorecardReport& report, std::size_t number) {
+  const SceneScore& scene = report.card.scenes[number];
+  Json measures = Json::array();
+  for (const JudgedMeasure& measure : scene.measures) measures.push_back(measure_json(measure));
+  return {{"name", scene.name},
+          {"title", scene.title},
+          {"success_meaning", scene.meaning},
+          {"verdict", verdict(report.card, scene)},
+          {"noise_sigma_m", levels_json(scene.noise_m)},
+          {"success", successes_json(report, number)},
+          {"measures", measures}};
+}
+
+Json methods_json(const Scorecard& card) {
+  const std::vector<MethodSummary> summaries = overview(card);
+  Json methods = Json::array();
+  for (std::size_t c = 0; c < card.methods.size(); ++c)
+    methods.push_back({{"name", card.methods[c]},
+                       {"title", card.method_titles[c]},
+                       {"scenes_held", summaries[c].held},
+                       {"scenes_best", summaries[c].best},
+                       {"scenes_worst", summaries[c].worst},
+                       {"mean_success", number_or_null(summaries[c].mean_success)}});
+  return methods;
+}
+
+// The interval excludes zero: energy for certain, or none for certain.
+const char* energy_word(const MeanDifference& energy) {
+  return energy.low > 0 ? "given" : energy.high < 0 ? "taken" : "none";
+}
+
+Json audit_json(const std::optional<Scorecard>& audit) {
+  const auto all = audit ? energies(*audit) : std::nullopt;
+  if (!all) return {};
+  const SceneScore& scene = audit->scenes.front();
+  Json laws = Json::array();
+  for (std::size_t c = 0; c < audit->methods.size(); ++c) {
+    Json levels = Json::array();
+    for (const EnergySummary& energy : (*all)[c])
+      levels.push_back({{"energy_per_cycle_J", mean_json(energy.per_cycle_J)},
+                        {"energy_per_update_J", number_or_null(energy.per_update_J)},
+                        {"mark", energy_word(energy.per_cycle_J)}});
+    laws.push_back({{"name", audit->methods[c]},
+                    {"title", audit->method_titles[c]},
+                    {"levels", levels},
+                    {"overall", proportion_json(scene.success_overall[c])}});
+  }
+  return {{"noise_sigma_m", levels_json(scene.noise_m)}, {"laws", laws}};
+}
+
+Json costs_json(const ScorecardReport& report) {
+  if (report.costs.empty() || report.card.scenes.empty()) return {};
+  Json methods = Json::array();
+  for (const CostSummary& cost : cost_summary(report.card, report.costs))
+    methods.push_back({{"tick_ratio", number_or_null(cost.tick_ratio)},
+                       {"frame_ratio", number_or_null(cost.frame_ratio)},
+                       {"tick_s", number_or_null(cost.tick_s)},
+                       {"frame_s", number_or_null(cost.frame_s)}});
+  return {{"cpu", report.cpu},
+          {"noise_sigma_m", scorecard_noise_m()[kCostLevel]},
+          {"reference", cost_reference(report.card)},
+          {"methods", methods}};
+}
+
+Json skipped_json(const ScorecardReport& report) {
+  Json skipped = Json::array();
+  for (const auto& [name, why] : report.skipped) skipped.push_back({{"name", name}, {"why", why}});
+  return skipped;
+}
+
+}  // namespace
+
+std::string to_json(const ScorecardReport& report) {
+  Json scenes = Json::array();
+  for (std::size_t i = 0; i < report.card.scenes.size(); ++i) scenes.push_back(scene_json(report, i));
+  const Json all = {{"schema", kScorecardSchema},
+                    {"origin", report.origin},
+                    {"replicates", report.replicates},
+                    {"seed", kScorecardSeed},
+                    {"last_tuned_seed", kLastTunedSeed},
+                    {"min_pairs", kMinPairs},
+                    {"held_fraction", kHeldFraction},
+                    {"contact_radius_m", kScorecardRadius_m},
+                    {"methods", methods_json(report.card)},
+                    {"skipped", skipped_json(report)},
+                    {"scenes", scenes},
+                    {"audit", audit_json(report.audit)},
+                    {"costs", costs_json(report)}};
+  // Messages name files, and names of files can be any bytes: those that are no text are replaced.
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace remote_touch

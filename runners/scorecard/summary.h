@@ -1,0 +1,45 @@
+// What a scorecard says in one place about many numbers: who stands out, how often, and at what cost.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/scorecard/report.h"
+
+namespace remote_touch {
+
+enum class Mark { none, best, worst };
+Mark mark_of(const Ranking& ranking, std::size_t method);
+
+// A sentence: who is best and worst by successes, or that nobody is told apart.
+std::string verdict(const Scorecard& card, const SceneScore& scene);
+
+// A scene counts as held where more than this share of the runs are successes.
+inline constexpr double kHeldFraction = 0.9;
+
+// Of one method over all scenes.
+struct MethodSummary {
+  int held = 0, best = 0, worst = 0;  // scenes
+  double mean_success = 0;
+};
+std::vector<MethodSummary> overview(const Scorecard& card);
+
+// Medians over the scenes in which both the method and the reference were measured; NaN where there are none.
+struct CostSummary {
+  double tick_ratio, frame_ratio;  // in units of the reference
+  double tick_s, frame_s;
+};
+// The chapter 4 proxy, or the first method. pre: there is a method.
+std::string cost_reference(const Scorecard& card);
+std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<Cost>& costs);
+
+// The energy that a hand got from a force law at one noise level.
+struct EnergySummary {
+  MeanDifference per_cycle_J;
+  double per_update_J;  // mean from one frame update to the next
+};
+// Of each law and level. None for a scene that does not measure energy.
+std::optional<std::vector<std::vector<EnergySummary>>> energies(const Scorecard& audit);
+
+}  // namespace remote_touch

@@ -1,0 +1,130 @@
+"""The tables of a scorecard's page."""
+from plotting.claims import esc
+from plotting.scorecard_plots import level_text
+
+SHOWN_UNITS = {"m": (1e3, "mm"), "J": (1e3, "mJ"), "s": (1e3, "ms"), "1": (1, "")}  # factor, words
+MARKS = {"best": "best", "worst": "worst", "none": "", "given": "worst", "taken": "best"}  # classes of the style
+BETTER = {"larger": "larger is better, successes", "smaller": "smaller is better, successes",
+          "near_zero": "near zero is better, successes", "reported": "not judged, all runs"}
+
+
+def cell(content, style=""):
+    return f'<td class="{style}">{content}</td>' if style else f"<td>{content}</td>"
+
+
+def table(heads, rows):
+    """heads: as HTML. rows: lists of cells, the first the name's."""
+    head = "".join(f"<th>{words}</th>" for words in heads)
+    body = "\n".join(f"<tr>{''.join(row)}</tr>" for row in rows)
+    return f"<div class=table><table><tr>{head}</tr>\n{body}</table></div>"
+
+
+def name_cell(one, colour=None):
+    dot = "" if colour is None else f'<i class="k{colour}"></i>'
+    return f'<th class="name" title="{esc(one["title"])}">{dot}{esc(one["name"])}</th>'
+
+
+def number(value, factor=1):
+    return "-" if value is None else f"{factor * value:.3g}"
+
+
+def with_interval(mean, factor):
+    if mean["runs"] == 0:
+        return "-"
+    low, high = mean["low"], mean["high"]
+    interval = "" if low is None else f"<small> {number(low, factor)} .. {number(high, factor)}</small>"
+    return number(mean["mean"], factor) + interval
+
+
+def share_text(share):
+    return f"{share['fraction']:.2f} <small>{share['low']:.2f} .. {share['high']:.2f}</small>"
+
+
+def unit_of(measure):
+    return SHOWN_UNITS.get(measure["units"], (1, measure["units"]))
+
+
+def level_heads(card, scene):
+    return [level_text(noise, card["contact_radius_m"]) for noise in scene["noise_sigma_m"]]
+
+
+def named_rows(card, methods, cells):
+    """A row for each method: its name, and what cells() makes of what it has here."""
+    pairs = zip(card["methods"], methods, strict=True)
+    return [[name_cell(name, c), *cells(one)] for c, (name, one) in enumerate(pairs)]
+
+
+def overview_table(card):
+    """Successes of all scenes together, and how often each method stands out."""
+    heads = ["", f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone",
+             "mean share of successes"]
+    return table(heads, named_rows(card, card["methods"], lambda method: [
+        cell(f"{method['scenes_held']:d} of {len(card['scenes'])}"), cell(f"{method['scenes_best']:d}"),
+        cell(f"{method['scenes_worst']:d}"), cell(f"{method['mean_success']:.2f}")]))
+
+
+def failure_text(failure, levels, link):
+    if failure is None:
+        return "none"
+    level = levels[failure["level"]]
+    if "error" in failure:
+        return f"error at {level}, run {failure['replicate']:d}: {esc(failure['error'])}"
+    return f'<a href="{esc(link(failure["file"]))}">trace</a> at {level}: <code>{esc(failure["command"])}</code>'
+
+
+def success_table(card, scene, link):
+    """Successes at each noise level and over all, and a typical failure. link: from its file to where that lies."""
+    levels = level_heads(card, scene)
+
+    def cells(one):
+        for share in one["levels"]:
+            successes, runs = share["successes"], share["runs"]
+            yield cell(f"{successes:d}/{runs:d}", "all" if successes == runs else "zero" if successes == 0 else "some")
+        yield cell(share_text(one["overall"]), MARKS[one["mark"]])
+        yield cell(failure_text(one["failure"], levels, link), "left")
+
+    heads = ["noise / r_c", *levels, "all, 95 % interval", "a typical failure, at the lowest noise that has one"]
+    return table(heads, named_rows(card, scene["success"], cells))
+
+
+def measure_table(card, scene):
+    """The measures over all noise levels."""
+    heads = [f"{esc(measure['name'])} {esc(unit_of(measure)[1])}<br><small>{BETTER[measure['better']]}</small>"
+             for measure in scene["measures"]]
+    of_method = [[(measure, measure["methods"][c]) for measure in scene["measures"]]
+                 for c in range(len(card["methods"]))]
+    return table(["", *heads], named_rows(card, of_method, lambda measures: [
+        cell(with_interval(one["overall"], unit_of(measure)[0]), MARKS[one["mark"]]) for measure, one in measures]))
+
+
+def level_tables(card, scene):
+    """The measures at each noise level, folded away."""
+    if len(scene["noise_sigma_m"]) < 2:
+        return ""
+    tables = []
+    for measure in scene["measures"]:
+        factor, units = unit_of(measure)
+        tables.append(table([f"{esc(measure['name'])} {esc(units)}", *level_heads(card, scene)],
+                            named_rows(card, measure["methods"], lambda one: [
+                                cell(with_interval(level, factor)) for level in one["levels"]])))
+    return f"<details><summary>measures at each noise level</summary>{''.join(tables)}</details>"
+
+
+def audit_table(card):
+    """What each force law gives to a hand, in a cycle and in an update."""
+    rows = []
+    for law in card["audit"]["laws"]:
+        cells = [cell(f"{number(level['energy_per_cycle_J']['mean'], 1e3)} "
+                      f"<small>{number(level['energy_per_update_J'], 1e3)}</small>", MARKS[level["mark"]])
+                 for level in law["levels"]]
+        rows.append([name_cell(law), *cells, cell(share_text(law["overall"]))])
+    return table(["noise / r_c", *level_heads(card, card["audit"]), "runs that are passive and felt"], rows)
+
+
+def cost_table(card):
+    """Of ticks and frames, also in units of a reference."""
+    reference = esc(card["costs"]["reference"])
+    heads = ["", f"tick / {reference}'s", f"frame / {reference}'s", "tick, us", "frame, us"]
+    return table(heads, named_rows(card, card["costs"]["methods"], lambda cost: [
+        cell(number(cost["tick_ratio"])), cell(number(cost["frame_ratio"])),
+        cell(number(cost["tick_s"], 1e6)), cell(number(cost["frame_s"], 1e6))]))

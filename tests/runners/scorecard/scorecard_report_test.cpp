@@ -1,0 +1,277 @@
+#include "runners/scorecard/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "runners/scorecard/report_json.h"
+#include "runners/scorecard/summary.h"
+#include "scenarios/text_files/json_text.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::scorecard_report_test {
+namespace {
+
+// Replicates of two noise levels that are successes, and a measure.
+SweepResult sweep_of(const std::vector<double>& depth, const std::vector<double>& noise_m) {
+  SweepResult result;
+  result.axes = {{"noise_sigma_m", "m", "", noise_m, 1, {}}};
+  result.replicates = static_cast<int>(depth.size() / noise_m.size());
+  result.measures = {{"end_distance", "m", "", {}, 1, {}}};
+  result.start(false);
+  for (RunState& state : result.state) state = RunState::done;
+  result.measures[0].values = depth;
+  return result;
+}
+
+const SceneRules kRules = {
+    "flat <&>", "a \"plane\"", "held", {{"end_distance", 0}}, {{"end_distance", Better::larger}}};
+
+Scorecard two_scenes() {
+  const std::vector<double> noise = {0, 0.005};
+  std::vector<double> good(20, 0.005), bad(20, -0.01);
+  good[19] = -0.001;
+  Scorecard card{{"one", "two"}, {"the first", "the second"}, {}};
+  card.scenes.push_back(score(kRules, {sweep_of(good, noise), sweep_of(bad, noise)}, false, 1));
+  SceneRules other = kRules;
+  other.name = "own-noise";
+  card.scenes.push_back(score(other, {sweep_of(good, {1}), sweep_of(good, {1})}, true, 1));
+  return card;
+}
+
+ScorecardReport report_of(const Scorecard& card) {
+  ScorecardReport report{card, 10, "remote-touch 1", {{"absent", "no <recording>"}}, {}, {}, {}};
+  report.failures.assign(2, std::vector<std::optional<FailureTrace>>(2));
+  report.failures[0][1] = FailureTrace{1, 3, "traces/x.h5", "remote-touch replay runs/x.h5 --cell 1"};
+  report.costs = {{"own-noise", "one", 1e-5, 1e-4}, {"own-noise", "two", 3e-5, std::nan("")}};
+  return report;
+}
+
+Json json_of(const ScorecardReport& report) {
+  return parse_json(to_json(report), "scorecard.json");
+}
+
+TEST(Score, CountsSuccessesAndTellsWhoStandsOut) {
+  const Scorecard card = two_scenes();
+  const SceneScore& scene = card.scenes[0];
+  EXPECT_EQ(scene.success[0][0].events, 1);  // without noise, ten times the same run
+  EXPECT_EQ(scene.success[0][0].runs, 1);
+  EXPECT_EQ(scene.success[0][1].events, 9);
+  EXPECT_EQ(scene.success_overall[0].events, 10);
+  EXPECT_EQ(scene.success_overall[0].runs, 11);
+  EXPECT_EQ(scene.success_overall[1].events, 0);
+  EXPECT_EQ(verdict(card, scene), "Best: one. Worst: two.");
+  EXPECT_EQ(verdict(card, card.scenes[1]), "No difference between any.");
+  EXPECT_TRUE(std::isnan(card.scenes[1].noise_m.at(0)));
+}
+
+// Three noise levels of three runs: end_distance, and last_force_time where it is the same in all.
+SweepResult timed(const std::vector<double>& depth, double last_s) {
+  SweepResult result = sweep_of(depth, {0, 0.001, 0.005});
+  result.measures.push_back({"time", "s", "", std::vector<double>(depth.size(), last_s), 1, {}});
+  return result;
+}
+
+TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
+  // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 2.5 where both hold.
+  std::vector<double> upper, at_times;
+  for (int i = 0; i < 18; ++i)
+    upper.push_back(1 + 0.01 * i), at_times.push_back(i % 3 == 0 ? 1 : -1 - 0.01 * i);
+  SweepResult held = timed(upper, 2), lost = timed(at_times, 0.1);
+  auto& time = std::get<std::vector<double>>(lost.measures[1].values);
+  for (std::size_t i = 0; i < 18; i += 3) time[i] = 2.5;
+  SceneRules rules = kRules;
+  rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
+  const SceneScore scene = score(rules, {held, lost}, false, 1);
+  const Ranking& judged = scene.measures[0].ranking;
+  EXPECT_EQ(judged.mean[1].pairs, 6);
+  EXPECT_EQ(judged.mean[1].mean, 2.5);
+  EXPECT_EQ(judged.order.front(), 0u);
+  EXPECT_TRUE(judged.has_best);
+  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 2);
+  EXPECT_EQ(scene.measures[1].ranking.mean[1].pairs, 18);
+  time[6] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[6] = -1;
+  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].ranking.has_best);  // five pairs are left
+}
+
+TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
+  const SweepResult same = sweep_of(std::vector<double>(9, 1), {0, 0.001, 0.005});
+  const SceneScore scene = score(kRules, {same, same}, false, 1);
+  EXPECT_EQ(scene.success[0][0].runs, 1);
+  EXPECT_EQ(scene.success[0][1].runs, 3);
+  EXPECT_EQ(scene.success_overall[0].runs, 7);
+  EXPECT_EQ(scene.measures[0].at_level[0][0].pairs, 1);
+  const SweepResult own = sweep_of(std::vector<double>(9, 1), {1});
+  EXPECT_EQ(score(kRules, {own}, true, 1).success[0][0].runs, 1);
+  SweepResult differ = same;
+  std::get<std::vector<double>>(differ.measures[0].values)[2] = 1 + 1e-15;
+  EXPECT_EQ(score(kRules, {differ}, false, 1).success[0][0].runs, 3);
+}
+
+TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
+  const Figure figure = scorecard_figure(two_scenes());
+  ASSERT_EQ(figure.tables.size(), 5u);
+  EXPECT_EQ(figure.tables[0].columns[0].length(), 2u * 2 + 2u * 1);
+  for (const Table& table : figure.tables)
+    for (const Column& column : table.columns)
+      EXPECT_EQ(column.length(), table.columns[0].length()) << column.name;
+  EXPECT_EQ(numbers(figure.tables[0], "fraction")[1], 0.9);
+  EXPECT_EQ(figure.panels.size(), 2u);
+}
+
+TEST(ScorecardReport, TellsWhatItIsOf) {
+  const Json json = json_of(report_of(two_scenes()));
+  EXPECT_EQ(json["schema"], kScorecardSchema);
+  EXPECT_EQ(json["origin"], "remote-touch 1");
+  EXPECT_EQ(json["replicates"], 10);
+  EXPECT_EQ(json["seed"], 301);
+  EXPECT_EQ(json["last_tuned_seed"], 40);
+  EXPECT_EQ(json["min_pairs"], 6);
+  EXPECT_EQ(json["held_fraction"], 0.9);
+  EXPECT_EQ(json["contact_radius_m"], 0.005);
+  EXPECT_EQ(json["skipped"], Json({{{"name", "absent"}, {"why", "no <recording>"}}}));
+  EXPECT_EQ(json["methods"][0], Json({{"name", "one"},
+                                      {"title", "the first"},
+                                      {"scenes_held", 2},
+                                      {"scenes_best", 1},
+                                      {"scenes_worst", 0},
+                                      {"mean_success", (10. / 11 + 19. / 20) / 2}}));
+  EXPECT_EQ(json["methods"][1]["scenes_worst"], 1);
+}
+
+// Names and titles as they are: what a page has to write otherwise, it does itself.
+TEST(ScorecardReport, HasEverySceneWithItsVerdict) {
+  const std::string text = to_json(report_of(two_scenes()));
+  const Json json = parse_json(text, "scorecard.json"), &first = json["scenes"][0], &own = json["scenes"][1];
+  EXPECT_EQ(first["name"], "flat <&>");
+  EXPECT_EQ(first["title"], "a \"plane\"");
+  EXPECT_EQ(first["success_meaning"], "held");
+  EXPECT_EQ(first["verdict"], "Best: one. Worst: two.");
+  EXPECT_EQ(first["noise_sigma_m"], Json({0.0, 0.005}));
+  EXPECT_EQ(own["name"], "own-noise");
+  EXPECT_EQ(own["verdict"], "No difference between any.");
+  EXPECT_EQ(own["noise_sigma_m"], Json::array({nullptr}));
+  for (const char* part : {"nan", "inf", "NaN", "Infinity"}) EXPECT_FALSE(contains(text, part)) << part;
+  EXPECT_EQ(text, to_json(report_of(two_scenes())));
+}
+
+TEST(ScorecardReport, HasSuccessesWithIntervalsMarksAndFailures) {
+  const Scorecard card = two_scenes();
+  const Json json = json_of(report_of(card)), &one = json["scenes"][0]["success"][0],
+             &two = json["scenes"][0]["success"][1];
+  const Proportion& noisy = card.scenes[0].success[0][1];
+  EXPECT_EQ(one["levels"][0]["successes"], 1);
+  EXPECT_EQ(one["levels"][0]["runs"], 1);
+  EXPECT_EQ(
+      one["levels"][1],
+      Json({{"successes", 9}, {"runs", 10}, {"fraction", 0.9}, {"low", noisy.low}, {"high", noisy.high}}));
+  EXPECT_EQ(one["overall"]["runs"], 11);
+  EXPECT_EQ(one["mark"], "best");
+  EXPECT_EQ(one["failure"], nullptr);
+  EXPECT_EQ(two["levels"][1]["successes"], 0);
+  EXPECT_EQ(two["mark"], "worst");
+  EXPECT_EQ(two["failure"], Json({{"level", 1},
+                                  {"replicate", 3},
+                                  {"file", "traces/x.h5"},
+                                  {"command", "remote-touch replay runs/x.h5 --cell 1"}}));
+  EXPECT_EQ(json["scenes"][1]["success"][0]["mark"], "none");
+}
+
+TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
+  const Scorecard card = two_scenes();
+  const Json json = json_of(report_of(card)), &measure = json["scenes"][0]["measures"][0];
+  EXPECT_EQ(measure["name"], "end_distance");
+  EXPECT_EQ(measure["units"], "m");
+  EXPECT_EQ(measure["better"], "larger");
+  const Json& one = measure["methods"][0];
+  EXPECT_EQ(one["overall"]["mean"], card.scenes[0].measures[0].ranking.mean[0].mean);
+  EXPECT_EQ(one["overall"]["runs"], 10);
+  EXPECT_EQ(one["levels"][1]["low"], card.scenes[0].measures[0].at_level[0][1].low);
+  EXPECT_EQ(one["levels"][0]["low"], nullptr);                     // one run has no interval
+  EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // nor who never succeeds a mean
+  EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);
+}
+
+TEST(ScorecardReport, AMeasureThatIsNotJudgedHasNoMark) {
+  Scorecard card = two_scenes();
+  JudgedMeasure& measure = card.scenes[0].measures[0];
+  measure.ranking.order = {0, 1}, measure.ranking.ranked = 2, measure.ranking.has_best = true;
+  const auto mark = [&] {
+    return json_of(report_of(card))["scenes"][0]["measures"][0]["methods"][0]["mark"];
+  };
+  EXPECT_EQ(mark(), "best");
+  measure.better = Better::reported;
+  EXPECT_EQ(mark(), "none");
+}
+
+TEST(ScorecardReport, AnErrorIsShownAsTheFailureThatItIs) {
+  ScorecardReport report = report_of(two_scenes());
+  report.failures[0][1] = FailureTrace{1, 3, {}, {}, "cannot <be> run"};
+  EXPECT_EQ(json_of(report)["scenes"][0]["success"][1]["failure"],
+            Json({{"level", 1}, {"replicate", 3}, {"error", "cannot <be> run"}}));
+}
+
+TEST(ScorecardReport, AMessageMayHoldAnyBytes) {
+  ScorecardReport report = report_of(two_scenes());
+  report.skipped = {{"absent", "no file a\xff.png"}};
+  EXPECT_EQ(json_of(report)["skipped"][0]["why"], "no file a\xEF\xBF\xBD.png");
+}
+
+// The energies of three runs at two levels: certainly above zero, and on both sides of it.
+TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
+  SweepResult sweep = sweep_of({1, 1, 1, 1, 1, 1}, {0.001, 0.005});
+  sweep.measures.push_back({"energy_injected", "J", "", std::vector<double>{3, 3.3, 3.6, -3, 0, 3}, 1, {}});
+  sweep.measures.push_back({"mean_energy_per_update", "J", "", std::vector<double>(6, 0.5), 1, {}});
+  SceneRules rules = kRules;
+  rules.measures = {{"energy_injected", Better::reported}, {"mean_energy_per_update", Better::reported}};
+  ScorecardReport report = report_of(two_scenes());
+  EXPECT_EQ(json_of(report)["audit"], nullptr);
+  report.audit = Scorecard{{"law"}, {"a law"}, {score(rules, {sweep}, false, 1)}};
+  const Json audit = json_of(report)["audit"], &law = audit["laws"][0], &levels = law["levels"];
+  EXPECT_EQ(audit["noise_sigma_m"], Json({0.001, 0.005}));
+  EXPECT_EQ(law["name"], "law");
+  EXPECT_EQ(law["title"], "a law");
+  EXPECT_EQ(law["overall"]["runs"], 6);
+  EXPECT_NEAR(levels[0]["energy_per_cycle_J"]["mean"].get<double>(), 1.1, 1e-12);  // three cycles a run
+  EXPECT_EQ(levels[0]["energy_per_update_J"], 0.5);
+  EXPECT_EQ(levels[0]["mark"], "given");
+  EXPECT_EQ(levels[1]["mark"], "none");
+  report.audit->scenes[0].measures.clear();
+  EXPECT_EQ(json_of(report)["audit"], nullptr);  // a scene of that name that measures no energy
+}
+
+TEST(Costs, WhatWasNotMeasuredIsNotSorted) {
+  ScorecardReport report = report_of(two_scenes());
+  const double none = std::nan("");
+  report.costs = {{"own-noise", "one", none, none},
+                  {"own-noise", "two", 3e-5, 1e-4},
+                  {"flat <&>", "one", 1e-5, 1e-4},
+                  {"flat <&>", "two", 2e-5, none}};
+  report.cpu = "a processor";
+  const Json costs = json_of(report)["costs"];
+  EXPECT_EQ(costs["methods"][1],
+            Json({{"tick_ratio", 2.0}, {"frame_ratio", nullptr}, {"tick_s", 2e-5}, {"frame_s", nullptr}}));
+  EXPECT_EQ(costs["reference"], "one");
+  EXPECT_EQ(costs["cpu"], "a processor");
+  EXPECT_EQ(costs["noise_sigma_m"], 0.003);
+  report.costs.clear();
+  EXPECT_EQ(json_of(report)["costs"], nullptr);
+}
+
+TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
+  const TestFolder folder("costs");
+  const TextAttributes here = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "c"}},
+                       other = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "d"}};
+  write_costs(folder / "costs.json", {{"a", "b", 1e-5, std::nan("")}}, here);
+  const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
+  ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].tick_s, 1e-5);
+  EXPECT_TRUE(std::isnan(costs[0].frame_s));
+  EXPECT_TRUE(read_costs(folder / "costs.json", other).empty());
+  EXPECT_TRUE(read_costs(folder / "none.json", here).empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::scorecard_report_test
