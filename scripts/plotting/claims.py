@@ -3,7 +3,7 @@ import html
 import json
 import sys
 
-from plotting.figure_file import PlotError
+from plotting.plot_error import PlotError
 
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
 NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty

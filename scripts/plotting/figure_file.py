@@ -6,13 +6,11 @@ import re
 import h5py
 import numpy as np
 
+from plotting.plot_error import PlotError
+
 SCHEMA = "remote-touch-figure/2"
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image")
 NEED_Z = ("map", "band", "image")
-
-
-class PlotError(Exception):
-    """What is wrong with the input, in one line."""
 
 
 @dataclasses.dataclass

@@ -6,9 +6,10 @@ import signal
 import sys
 
 from plotting.claims import read_claims, verdict
-from plotting.figure_file import SCHEMA, PlotError, schema_of
+from plotting.figure_file import SCHEMA, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
+from plotting.plot_error import PlotError
 from plotting.progress import read_progress
 from plotting.results import read_drawable
 

@@ -5,7 +5,8 @@ import warnings
 import h5py
 import numpy as np
 
-from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, PlotError, open_file, read_figure, text
+from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, open_file, read_figure, text
+from plotting.plot_error import PlotError
 
 MAX_PANELS = 8
 AUTOMATIC = [math.nan, math.nan]

@@ -5,7 +5,7 @@ import os
 import urllib.parse
 
 from plotting.claims import esc
-from plotting.figure_file import PlotError
+from plotting.plot_error import PlotError
 from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
 from plotting.scorecard_plots import colours_css, level_text, noise_plot

@@ -6,16 +6,16 @@ namespace remote_touch {
 
 namespace {
 
-constexpr const char* kNotCompiledIn = "not compiled in: install libfreenect-dev and build again";
+constexpr const char* kNoFreenect = "not compiled in: install libfreenect-dev and build again";
 
 }  // namespace
 
 std::unique_ptr<DepthSource> open_freenect(const std::string&, Clock&) {
-  throw InputError("freenect", kNotCompiledIn);
+  throw InputError("freenect", kNoFreenect);
 }
 
 Availability freenect_availability() {
-  return {.compiled_in = false, .found = false, .detail = kNotCompiledIn};
+  return {.compiled_in = false, .found = false, .detail = kNoFreenect};
 }
 
 }  // namespace remote_touch

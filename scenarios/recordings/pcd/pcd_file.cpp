@@ -1,5 +1,7 @@
 #include "scenarios/recordings/pcd/pcd_file.h"
 
+#include <lzf.h>
+
 #include <array>
 #include <bit>
 #include <charconv>
@@ -13,7 +15,6 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/pcd/lzf.h"
 #include "scenarios/recordings/pcd/pcd_header.h"
 #include "scenarios/recordings/pcd/pinhole_fit.h"
 
@@ -23,6 +24,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "PCD data are little-endian");
 
 constexpr std::uint32_t kRgb = 0xFFFFFF;  // of a colour word 0xAARRGGBB
+// Maximum number of raw bytes for one byte of an LZF block: the longest back reference makes 264 out of 3.
+constexpr std::size_t kLzfMaxExpansion = 88;
 
 // The whole file: header and data are views into it.
 std::string read_bytes(const std::filesystem::path& file) {
@@ -129,6 +132,19 @@ void read_binary(const PcdHeader& header, const char* bytes, bool field_after_fi
   }
 }
 
+// The block expanded to exactly raw_size bytes.
+std::vector<char> expand(const std::string& file, std::string_view block, std::uint32_t raw_size) {
+  std::vector<char> raw(raw_size);
+  // liblzf checks every access but that to the first byte.
+  const unsigned expanded =
+      block.empty() ? 0
+                    : lzf_decompress(block.data(), static_cast<unsigned>(block.size()), raw.data(), raw_size);
+  if (expanded != raw_size)
+    throw InputError(file, "damaged LZF block of " + std::to_string(block.size()) + " bytes: expected " +
+                               std::to_string(raw_size) + " bytes from it");
+  return raw;
+}
+
 // binary_compressed: two uint32, the compressed and the raw size in bytes, then the LZF block.
 std::vector<char> read_compressed_block(const std::string& file, const PcdHeader& header,
                                         std::string_view data) {
@@ -147,7 +163,7 @@ std::vector<char> read_compressed_block(const std::string& file, const PcdHeader
     throw InputError(file, "raw size = " + std::to_string(sizes[1]) + ": expected " + std::to_string(needed) +
                                ", as the header says");
   }
-  return lzf_expand(file, data.substr(0, sizes[0]), needed);
+  return expand(file, data.substr(0, sizes[0]), sizes[1]);
 }
 
 // NaN in all three coordinates fails every distance test. Sensors mark a hole by nan or by the origin.

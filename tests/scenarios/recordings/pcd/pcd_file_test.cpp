@@ -203,13 +203,13 @@ TEST_F(PcdFile, RefusesDamagedCompressedData) {
   EXPECT_HAS(error(head + compressed(good, 16)), "raw size = 16: expected 12");
   const auto block_error = [&](const std::string& block) { return error(head + compressed(block, 12)); };
   const std::string four = lzf_literals("1234"), damaged = "damaged LZF block";
-  EXPECT_HAS(block_error(good.substr(0, 5)), damaged + " at byte 1 of 5");    // run cut short
-  EXPECT_HAS(block_error(four), damaged + " at byte 5 of 5: 4 of 12 bytes");  // too little
+  EXPECT_HAS(block_error(good.substr(0, 5)), damaged + " of 5 bytes");        // run cut short
+  EXPECT_HAS(block_error(four), damaged + " of 5 bytes: expected 12 bytes");  // too little
   EXPECT_HAS(block_error(lzf_literals(std::string(13, 'x'))), damaged);       // too much
   EXPECT_HAS(block_error(four + std::string("\x20\x04", 2)), damaged);        // before the start
   EXPECT_HAS(block_error(four + std::string("\xe0\xff\x00", 3)), damaged);    // past the end
-  EXPECT_HAS(block_error(four + "\xe0"), damaged + " at byte 6 of 6");        // no length
-  EXPECT_HAS(block_error(four + "\x20"), damaged + " at byte 6 of 6");        // no distance
+  EXPECT_HAS(block_error(four + "\xe0"), damaged + " of 6 bytes");            // no length
+  EXPECT_HAS(block_error(four + "\x20"), damaged + " of 6 bytes");            // no distance
 }
 
 TEST_F(PcdFile, RefusesACompressedSizeThatLies) {
@@ -220,8 +220,8 @@ TEST_F(PcdFile, RefusesACompressedSizeThatLies) {
   EXPECT_HAS(error(claiming(13).substr(0, head.size() + 15)), "compressed size = 13: the file has 7 bytes");
   EXPECT_HAS(error(claiming(14)), "compressed size = 14: the file has 13 bytes left");
   EXPECT_HAS(error(claiming(0xFFFFFFFF)), "compressed size = 4294967295: the file has 13 bytes left");
-  EXPECT_HAS(error(claiming(12)), "damaged LZF block at byte 1 of 12: 0 of 12 bytes expanded");
-  EXPECT_HAS(error(claiming(0)), "damaged LZF block at byte 0 of 0: 0 of 12 bytes expanded");
+  EXPECT_HAS(error(claiming(12)), "damaged LZF block of 12 bytes: expected 12 bytes from it");
+  EXPECT_HAS(error(claiming(0)), "damaged LZF block of 0 bytes: expected 12 bytes from it");
 }
 
 TEST_F(PcdFile, NeverDoesMoreThanRefuseDamagedFiles) {
