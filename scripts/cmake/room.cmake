@@ -9,18 +9,22 @@ function(room_target path result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
-# room(USES core/cloud core/geometry ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...])
+# room(USES core/cloud core/geometry ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...] [COLD])
 #   USES     the rooms whose headers this folder includes
 #   LINKS    libraries from outside; they stay private, since no public header includes one
 #   SOURCES  files beyond the .cpp files of the folder
+#   COLD     nothing in this room is called often: it is compiled with -O1, which takes two thirds of the time
 function(room)
-  cmake_parse_arguments(ROOM "" "" "USES;LINKS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ROOM COLD "" "USES;LINKS;SOURCES" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   room_target(${path} name)
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   add_library(${name} STATIC ${sources} ${ROOM_SOURCES})
   precompile_headers_as(room_headers ${name})
   target_link_libraries(${name} PUBLIC build_settings PRIVATE ${ROOM_LINKS})
+  if(ROOM_COLD)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   foreach(used ${ROOM_USES})
     room_target(${used} target)
     target_link_libraries(${name} PUBLIC ${target})

@@ -1,5 +1,5 @@
-"""Makes index.html of a scorecard, one file that needs nothing else, from the scorecard.json that
-`remote-touch scorecard` writes. It only gives a form to what the file says."""
+"""Makes index.html of a scorecard, one self-contained file, from the scorecard.json that `remote-touch scorecard`
+writes. Nothing is computed here."""
 import json
 import os
 import urllib.parse
@@ -26,27 +26,27 @@ td.all { background: #eaf7ee; } td.zero { background: #fbe9e6; }
 
 
 def how_to_read(card):
-    """What has to be known to read the tables."""
-    return f"""<p>Each method ran each scene {card["replicates"]:d} times at each noise level, in units of the contact \
-radius r_c = {1e3 * card["contact_radius_m"]:g} mm (own: the scene has its own noise). Noise is keyed by seed \
-{card["seed"]:d}, level and number of the run, not by method: all met the same points in the same frames. The \
-parameters of the tracked sheet were fixed with seeds 1 to {card["last_tuned_seed"]:d}, which no run here has. Lines \
-are shares of successful runs with Wilson's 95 % intervals. Where there is no noise and all runs of a method have the \
-same numbers to the last bit, they count as one run, in every share and mean, and in a comparison where that is so of \
-both.</p>
-<p><b>Success.</b> A surface counts as held while the proxy is no deeper than 0.5 r_c below it; popped through means \
-lost to the other side. This does not ask the same of all: a proxy that is a ball rests 1 r_c above a surface and may \
-sink by 1.5 r_c, one that is a point rests on it, with noise a little below, and may sink by 0.5 r_c; the surface of \
-metaballs lies higher than either. Direct rendering has no proxy: its place is the HIP itself, and where a scene \
-presses deeper than 0.5 r_c it is lost. What is held has to be felt too: a force in the last 0.1 s or, where the path \
-ends in the open, in a quarter of the ticks.</p>
-<p><b>Best and worst</b> are marked only where the paired differences to all others, run by run over all noise \
-levels, have 95 % intervals on the better, or the worse, side of zero (shares: Agresti and Min; else the percentile \
-bootstrap with fixed keys); otherwise these runs do not show it. A measure that is judged is compared over the pairs \
-of runs in which both succeeded, and with fewer than {card["min_pairs"]:d} such pairs there is no verdict; its means \
-are over the successful runs of each, so who succeeds only where it is easy has the mean of easy runs. A measure that \
-is not judged has its mean over all runs that have a number. The intervals are not adjusted for how many comparisons \
-there are.</p>"""
+    """What the reader of the tables must know."""
+    return f"""<p>Each method ran each scene {card["replicates"]:d} times at each noise level. Noise is given in units \
+of the contact radius r_c = {1e3 * card["contact_radius_m"]:g} mm ("own": the scene has its own noise). It depends on \
+the seed {card["seed"]:d}, the level and the number of the run, not on the method: all methods got the same points in \
+the same frames. The parameters of the tracked sheet were chosen with seeds 1 to {card["last_tuned_seed"]:d}, which no \
+run here uses. Lines are fractions of successful runs with Wilson's 95 % intervals. Where there is no noise and all \
+runs of a method have the same numbers to the last bit, they count as one run in every fraction and mean, and in a \
+comparison if this holds for both methods.</p>
+<p><b>Success.</b> A surface is held while the proxy is at most 0.5 r_c below it; popped through means that the proxy \
+is on the other side. This does not ask the same of all methods: a proxy that is a ball rests 1 r_c above a surface \
+and may sink by 1.5 r_c; a proxy that is a point rests on the surface, with noise a little below it, and may sink by \
+0.5 r_c; the surface of metaballs is higher than both. Direct rendering has no proxy: its position is the HIP itself, \
+so it fails where a scene presses deeper than 0.5 r_c. A held surface must also be felt: there must be a force in the \
+last 0.1 s or, where the path ends in free space, in a quarter of the ticks.</p>
+<p><b>Best and worst</b> are marked only if the paired differences to all other methods, run by run over all noise \
+levels, have 95 % intervals on one side of zero (fractions: Agresti and Min; others: percentile bootstrap with fixed \
+keys). Without a mark these runs do not show a difference. A measure that is judged is compared over the pairs of runs \
+in which both methods succeeded; with fewer than {card["min_pairs"]:d} such pairs there is no verdict. Its means are \
+over the successful runs of each method, so a method that succeeds only where it is easy has the mean of easy runs. A \
+measure that is not judged has its mean over all runs that have a number. The intervals are not adjusted for the \
+number of comparisons.</p>"""
 
 
 def scene_section(card, scene, link):
@@ -63,12 +63,12 @@ def audit_section(card):
     if not card["audit"]:
         return ""
     return f"""<h2 id="audit">Passivity</h2>
-<p>A hand, a mass that a spring and a damper draw along closed cycles, presses and slides on a plane at rest and is \
-moved by the rendered force. In each cell the energy that the hand got from the renderer in a cycle, and small from \
-one frame update to the next while there is force, in mJ: below 0 the renderer took energy, as one does, too, that \
-loses the surface and is pressed into it again. Red: its 95 % interval is above 0, green: below it; one run alone has \
-none. v_plus and v_none are the sign of the velocity term of (4.15), minus where nothing is said; k_d3 is a damper of \
-3 Ns/m in (4.16), and k_d_minus its printed sign.</p>
+<p>A simulated hand (a mass, moved along closed cycles by a spring and a damper) presses and slides on a plane at \
+rest; the rendered force acts on it. Each cell gives the energy that the hand received from the renderer in one cycle \
+and, in small print, from one frame update to the next while there is force, in mJ. Below 0 the renderer took energy; \
+this also happens when it loses the surface and is pressed into it again. Red: the 95 % interval is above 0; green: \
+below 0; a single run has no interval. v_plus and v_none give the sign of the velocity term of (4.15), which is minus \
+otherwise; k_d3 is a damper of 3 Ns/m in (4.16), and k_d_minus its printed sign.</p>
 {audit_table(card)}"""
 
 
@@ -78,9 +78,9 @@ def costs_section(card):
         return ""
     return f"""<h2 id="costs">Costs</h2>
 <p>Wall clock on {esc(costs["cpu"] or "the machine that measured them")}, one thread, one run of each scene at \
-{level_text(costs["noise_sigma_m"], card["contact_radius_m"])} r_c, medians over the scenes. Frames came with all \
-their points made: neither ticks nor frames contain the making of noise. Not the same twice: in costs.json, outside \
-of every digest. Proxy steps per tick are the measure mean_steps of the sweeps in runs/.</p>
+{level_text(costs["noise_sigma_m"], card["contact_radius_m"])} r_c, medians over the scenes. All points \
+of a frame were made before it was timed, so the times do not contain the making of noise. Times differ from run to \
+run; they are in costs.json and in no digest. Proxy steps per tick are the measure mean_steps of the sweeps in runs/.</p>
 {cost_table(card)}"""
 
 

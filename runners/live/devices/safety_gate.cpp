@@ -58,10 +58,11 @@ DeviceFault SafetyGate::trouble(const DeviceReading& reading, const DeviceFault&
 // How much of the command counts.
 double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
   if (state_ == GateState::waiting) {
-    const double torque_fraction =
+    const double engage_torque_Nm =
         limits_.max_force_N > 0 ? limits_.engage_force_N * limits_.max_torque_Nm / limits_.max_force_N : 0;
-    if (command.force_N.norm() >= limits_.engage_force_N || command.torque_Nm.norm() > torque_fraction)
-      return 0;
+    // Where the limit is 0 no torque gets to the device, so none of it can come as a jolt.
+    const bool has_torque = limits_.max_torque_Nm > 0 && command.torque_Nm.norm() > engage_torque_Nm;
+    if (command.force_N.norm() >= limits_.engage_force_N || has_torque) return 0;
     state_ = GateState::ramping;
     ramp_began_s_ = now_s;
   }

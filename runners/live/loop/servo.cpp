@@ -113,6 +113,7 @@ void Servo::one_tick() {
   const DeviceFault refused = links_.device.write(row_.written);
   row_.gate = gate_.state();
   if (refused) {
+    row_.written = {};
     if (!is_released(refused)) gate_.latch(refused);
     links_.device.release();
   }

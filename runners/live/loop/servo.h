@@ -28,7 +28,7 @@ struct LiveTick {
   RenderOutput out;
   int taken = -1;          // the frame that the renderer got before this tick; -1: none
   std::uint64_t hash = 0;  // of the newest frame taken
-  Wrench written;          // to the device, in its axes
+  Wrench written;          // to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
   float step_s = 0;             // taking the frame and rendering
   float since_last_tick_s = 0;  // from the start of the tick before to the start of this one

@@ -54,6 +54,14 @@ TEST(SafetyGate, ATorqueKeepsItWaitingToo) {
   EXPECT_EQ(loop.gate.state(), GateState::waiting);
 }
 
+TEST(SafetyGate, ATorqueThatTheDeviceNeverGetsDoesNotKeepItWaiting) {
+  SafetyLimits limits;
+  limits.max_torque_Nm = 0;
+  Loop loop(limits);
+  EXPECT_TRUE(loop.tick(Vec3::Zero(), {0.1, 0, 0}).torque_Nm.isZero(0));
+  EXPECT_EQ(loop.gate.state(), GateState::ramping);
+}
+
 TEST(SafetyGate, CutsForceAndTorqueToTheirLargestLength) {
   Loop loop;
   loop.engage();

@@ -202,6 +202,16 @@ TEST_F(ServoTest, ADeviceThatRefusedAForceIsNotHeldAgain) {
   EXPECT_EQ(device_.rearmed, 0);
 }
 
+TEST_F(ServoTest, ARefusedForceDoesNotCountAsWritten) {
+  renderer_.force_N = Vec3(0.1, 0, 0);
+  device_.on_write = [calls = 0]() mutable { return ++calls == 3 ? DeviceFault{"refused"} : DeviceFault{}; };
+  run();
+  const std::vector<LiveTick> ticks = rows();
+  ASSERT_GE(ticks.size(), 3u);
+  EXPECT_GT(ticks[1].written.force_N.norm(), 0);
+  EXPECT_EQ(ticks[2].written.force_N.norm(), 0);
+}
+
 // By what a fault says, not by where the text is: an adapter in a library of its own has its own copy.
 TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
   const std::string said = kReleased.what;
