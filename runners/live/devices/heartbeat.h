@@ -21,14 +21,14 @@ class Heartbeat {
   // From a thread that does not depend on the loop, about every period_s(): releases the device when there
   // was no beat for longer than max_s.
   void check(std::int64_t now_ns) noexcept;
-  double period_s() const { return 1e-9 * static_cast<double>(longest_ns_) / 5; }
+  double period_s() const { return 1e-9 * static_cast<double>(max_ns_) / 5; }
   int stalls() const { return stalls_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr std::int64_t kNone = -1;
 
   HapticDevice& device_;
-  const std::int64_t longest_ns_;
+  const std::int64_t max_ns_;
   std::atomic<std::int64_t> last_ns_ = kNone;
   std::int64_t stalled_at_ns_ = kNone;  // of check() alone
   std::atomic<bool> released_ = false;

@@ -42,8 +42,8 @@ bool CameraFeed::end(std::string why) {
 }
 
 CameraCounts CameraFeed::counts() const {
-  const std::lock_guard lock(told_mutex_);
-  return told_;
+  const std::lock_guard lock(reported_mutex_);
+  return reported_;
 }
 
 bool CameraFeed::step(double patience_s) noexcept try {
@@ -51,8 +51,8 @@ bool CameraFeed::step(double patience_s) noexcept try {
   switch (source_->next(sensed_, patience_s)) {
     case SensorState::frame: {
       handle(sensed_);
-      const std::lock_guard lock(told_mutex_);
-      told_ = counts_;
+      const std::lock_guard lock(reported_mutex_);
+      reported_ = counts_;
       return true;
     }
     case SensorState::waiting:

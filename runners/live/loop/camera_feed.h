@@ -63,8 +63,8 @@ class CameraFeed {
   const FrameSink sink_;
   SensorFrame sensed_;
   CameraCounts counts_;
-  mutable std::mutex told_mutex_;
-  CameraCounts told_;  // after the newest frame
+  mutable std::mutex reported_mutex_;
+  CameraCounts reported_;  // after the newest frame
   int index_ = 0, last_number_ = -1;
   double last_captured_s_ = 0;
   std::deque<Frame> held_;
