@@ -1,13 +1,12 @@
 #include "analysis/measures/contact_measures.h"
 
 #include <cmath>
-#include <limits>
+
+#include "analysis/measures/no_value.h"
 
 namespace remote_touch {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // 0 / 0 has the sign that a machine likes
 
 bool has_force(const Trace& trace, std::size_t i) {
   return !trace.force_N[i].isZero(0);
@@ -24,7 +23,7 @@ double mean_in_contact(const Trace& trace, Value&& value) {
       continue;
     sum += value(height), ++count;
   }
-  return count == 0 ? kNone : sum / count;
+  return count == 0 ? kNoValue : sum / count;
 }
 
 // The same of the distance itself, for the ticks with a force and a known truth.
@@ -34,17 +33,7 @@ double mean_with_force(const Trace& trace, Value&& value) {
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]))
       sum += value(trace.signed_distance_m[i]), ++count;
-  return count == 0 ? kNone : sum / count;
-}
-
-// Root mean square change of the force to the tick before, over those ticks that are updates or are not.
-double rms_force_change_N(const Trace& trace, bool at_updates) {
-  double squares = 0, count = 0;
-  for (std::size_t i = 1; i < trace.length(); ++i) {
-    if (trace.frame_update(i) != at_updates || !has_force(trace, i) || !has_force(trace, i - 1)) continue;
-    squares += (trace.force_N[i] - trace.force_N[i - 1]).squaredNorm(), ++count;
-  }
-  return count == 0 ? kNone : std::sqrt(squares / count);
+  return count == 0 ? kNoValue : sum / count;
 }
 
 }  // namespace
@@ -57,7 +46,7 @@ double height_sd_m(const Trace& trace) {
   const double mean = mean_height_m(trace);
   const double variance =
       mean_in_contact(trace, [mean](double height) { return (height - mean) * (height - mean); });
-  return std::isnan(variance) ? kNone : std::sqrt(variance);
+  return std::isnan(variance) ? kNoValue : std::sqrt(variance);
 }
 
 double mean_distance_m(const Trace& trace) {
@@ -68,11 +57,11 @@ double distance_sd_m(const Trace& trace) {
   const double mean = mean_distance_m(trace);
   const double variance =
       mean_with_force(trace, [mean](double distance) { return (distance - mean) * (distance - mean); });
-  return std::isnan(variance) ? kNone : std::sqrt(variance);
+  return std::isnan(variance) ? kNoValue : std::sqrt(variance);
 }
 
 double end_distance_m(const Trace& trace) {
-  return trace.length() == 0 ? kNone : trace.signed_distance_m.back();
+  return trace.length() == 0 ? kNoValue : trace.signed_distance_m.back();
 }
 
 double force_fraction(const Trace& trace) {
@@ -84,22 +73,7 @@ double force_fraction(const Trace& trace) {
 double last_force_time_s(const Trace& trace) {
   for (std::size_t i = trace.length(); i > 0; --i)
     if (has_force(trace, i - 1)) return trace.time_s[i - 1];
-  return kNone;
-}
-
-double rms_force_jump_N(const Trace& trace) {
-  return rms_force_change_N(trace, true);
-}
-
-double force_noise_N(const Trace& trace) {
-  return rms_force_change_N(trace, false);
-}
-
-double energy_injected_J(const Trace& trace) {
-  double energy_J = 0;
-  for (std::size_t i = 0; i + 1 < trace.length(); ++i)
-    energy_J += trace.force_N[i].dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
-  return energy_J;
+  return kNoValue;
 }
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
 // Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
-// one, how steady the force is and when it ends, and the energy given to the hand.
+// one, and when the force ends.
 #pragma once
 
 #include "analysis/trace/trace.h"
@@ -22,12 +22,5 @@ double end_distance_m(const Trace& trace);
 double force_fraction(const Trace& trace);
 // Time of the last tick with a force, s; NaN without any.
 double last_force_time_s(const Trace& trace);
-// Root mean square change of the force from one tick to the next, if there is force in both, N: over the
-// ticks with a new frame (jump), and over the others (noise). NaN without any.
-double rms_force_jump_N(const Trace& trace);
-double force_noise_N(const Trace& trace);
-// Work that the rendered force does on the hand: the sum of force . displacement of the HIP until the next
-// tick, J. Negative if the hand did more work on the surface.
-double energy_injected_J(const Trace& trace);
 
 }  // namespace remote_touch

@@ -6,7 +6,10 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/contact_point.h"
+#include "analysis/measures/force_change_measures.h"
+#include "analysis/measures/no_value.h"
 #include "analysis/measures/passivity_measures.h"
+#include "analysis/measures/tool_measures.h"
 
 namespace remote_touch {
 
@@ -20,42 +23,79 @@ double fraction(const Trace& trace, Condition&& holds) {
   return trace.length() == 0 ? 0 : static_cast<double>(count) / static_cast<double>(trace.length());
 }
 
+using enum MeasuredRuns;
+
 constexpr Measure kMeasures[] = {
-    {"popped_through", "1", "1 when the proxy's centre ended below the true surface", popped_through},
-    {"max_penetration", "m", "maximum depth of the proxy's centre behind the true surface",
+    {"popped_through", "1", "1 when the proxy's centre ended below the true surface", proxy, popped_through},
+    {"max_penetration", "m", "maximum depth of the proxy's centre behind the true surface", proxy,
      max_penetration_m},
-    {"min_slave_distance", "m", "minimum distance of the slave command to the true surface",
+    {"min_slave_distance", "m", "minimum distance of the slave command to the true surface", all,
      min_slave_distance_m},
     {"rms_surface_error", "m", "rms distance between the rendered surface and the true one, in contact",
-     rms_surface_error_m},
-    {"max_force_jump", "N", "maximum change of the force at a frame update", max_force_jump_N},
-    {"max_force", "N", "maximum force", max_force_N},
-    {"mean_steps", "1", "mean number of proxy steps in a tick", mean_steps},
-    {"max_steps", "1", "maximum number of proxy steps in a tick", max_steps},
-    {"unconverged_fraction", "1", "fraction of ticks that ended without convergence (4.8)",
+     proxy, rms_surface_error_m},
+    {"max_force_jump", "N", "maximum change of the force at a frame update", all, max_force_jump_N},
+    {"max_force", "N", "maximum force", all, max_force_N},
+    {"mean_steps", "1", "mean number of proxy steps in a tick", all, mean_steps},
+    {"max_steps", "1", "maximum number of proxy steps in a tick", all, max_steps},
+    {"unconverged_fraction", "1", "fraction of ticks that ended without convergence (4.8)", proxy,
      unconverged_fraction},
-    {"non_finite_fraction", "1", "fraction of ticks with a value that is not finite", non_finite_fraction},
-    {"mean_height", "m", "mean height of the rendered surface above the true one, in contact", mean_height_m},
+    {"non_finite_fraction", "1", "fraction of ticks with a value that is not finite", all,
+     non_finite_fraction},
+    {"mean_height", "m", "mean height of the rendered surface above the true one, in contact", proxy,
+     mean_height_m},
     {"height_sd", "m",
-     "standard deviation of the height of the rendered surface above the true one, in contact", height_sd_m},
+     "standard deviation of the height of the rendered surface above the true one, in contact", proxy,
+     height_sd_m},
     {"mean_distance", "m", "mean distance of the proxy's centre to the true surface, while there is force",
-     mean_distance_m},
+     proxy, mean_distance_m},
     {"distance_sd", "m",
-     "standard deviation of the distance of the centre to the true surface, while there is force",
+     "standard deviation of the distance of the centre to the true surface, while there is force", proxy,
      distance_sd_m},
-    {"end_distance", "m", "distance of the proxy's centre to the true surface in the last tick",
+    {"end_distance", "m", "distance of the proxy's centre to the true surface in the last tick", proxy,
      end_distance_m},
-    {"force_fraction", "1", "fraction of ticks with a force", force_fraction},
-    {"last_force_time", "s", "time of the last tick with a force", last_force_time_s},
-    {"rms_force_jump", "N", "rms change of the force at a frame update", rms_force_jump_N},
-    {"force_noise", "N", "rms change of the force from tick to tick, without an update", force_noise_N},
-    {"energy_injected", "J", "work of the rendered force on the hand", energy_injected_J},
-    {"max_energy_injected", "J", "maximum over time of the energy injected into the hand",
+    {"force_fraction", "1", "fraction of ticks with a force", all, force_fraction},
+    {"last_force_time", "s", "time of the last tick with a force", all, last_force_time_s},
+    {"rms_force_jump", "N", "rms change of the force at a frame update", all, rms_force_jump_N},
+    {"force_noise", "N", "rms change of the force from tick to tick, without an update", all, force_noise_N},
+    {"energy_injected", "J", "work of the device on the hand, by force and torque", all, energy_injected_J},
+    {"max_energy_injected", "J", "maximum over time of the energy injected into the hand", all,
      max_energy_injected_J},
     {"mean_energy_per_update", "J", "mean work on the hand from one frame update to the next, with force",
-     mean_energy_per_update_J},
+     all, mean_energy_per_update_J},
     {"max_energy_per_update", "J", "maximum work on the hand from one frame update to the next, with force",
-     max_energy_per_update_J},
+     all, max_energy_per_update_J},
+
+    {"max_torque", "N m", "maximum torque about the HIP", tool, max_torque_Nm},
+    {"max_torque_jump", "N m", "maximum change of the torque at a frame update", tool, max_torque_jump_Nm},
+    {"rms_torque_jump", "N m", "rms change of the torque at a frame update", tool, rms_torque_jump_Nm},
+    {"torque_noise", "N m", "rms change of the torque from tick to tick, without an update", tool,
+     torque_noise_Nm},
+    {"mean_contact_count", "1", "mean number of contacts of the tool", tool, mean_contact_count},
+    {"max_contact_count", "1", "maximum number of contacts of the tool", tool, max_contact_count},
+    {"mean_active_constraints", "1", "mean number of active constraints of (6.5)", tool,
+     mean_active_constraints},
+    {"max_active_constraints", "1", "maximum number of active constraints of (6.5)", tool,
+     max_active_constraints},
+    {"max_contact_clusters", "1", "maximum number of groups of touching points", tool, max_contact_clusters},
+    {"max_tool_penetration", "m", "maximum depth of a point of the newest frame in the tool", tool,
+     max_tool_penetration_m},
+    {"min_clearance", "m", "minimum gap between the tool and the nearest point or region, negative inside it",
+     tool, min_clearance_m},
+    {"mean_detections", "1", "mean number of collision detections in a tick", tool, mean_detections},
+    {"max_detections", "1", "maximum number of collision detections in a tick", tool, max_detections},
+    {"exhausted_fraction", "1", "fraction of ticks that ended before the tool had converged", tool,
+     exhausted_fraction},
+    {"mean_tool_lag", "m", "mean distance of the tool's centre of mass from the HIP", tool, mean_tool_lag_m},
+    {"max_tool_lag", "m", "maximum distance of the tool's centre of mass from the HIP", tool, max_tool_lag_m},
+    {"mean_tool_lag_angle", "rad", "mean angle between tool and device", tool, mean_tool_lag_rad},
+    {"max_tool_lag_angle", "rad", "maximum angle between tool and device", tool, max_tool_lag_rad},
+
+    {"guidance_fraction", "1", "fraction of ticks with active guidance to a visible target", guidance,
+     guidance_fraction},
+    {"guidance_error", "m", "distance of tool or proxy from the goal at the last tick with guidance",
+     guidance, guidance_error_m},
+    {"guidance_error_angle", "rad", "angle between tool and goal at the last tick with guidance", guidance,
+     guidance_error_rad},
 };
 
 }  // namespace
@@ -64,8 +104,26 @@ std::span<const Measure> measures() {
   return kMeasures;
 }
 
+bool applies(const Measure& measure, const Trace& trace) {
+  switch (measure.runs) {
+    case proxy:
+      return !trace.has_tool();
+    case tool:
+      return trace.has_tool();
+    case guidance:
+      return trace.has_guidance();
+    default:
+      return true;
+  }
+}
+
+double value_of(const Measure& measure, const Trace& trace) {
+  return applies(measure, trace) ? measure.of(trace) : kNoValue;
+}
+
 double popped_through(const Trace& trace) {
-  return trace.length() > 0 && trace.signed_distance_m.back() < 0 ? 1 : 0;
+  const double distance_m = end_distance_m(trace);
+  return std::isnan(distance_m) ? distance_m : (distance_m < 0 ? 1 : 0);
 }
 
 double max_penetration_m(const Trace& trace) {
@@ -104,15 +162,6 @@ double rms_surface_error_m(const Trace& trace) {
   if (count == 0)
     return std::numeric_limits<double>::quiet_NaN();  // not 0 / 0: its sign is the machine's choice
   return std::sqrt(squares / static_cast<double>(count));
-}
-
-double max_force_jump_N(const Trace& trace) {
-  double max = 0;
-  for (std::size_t i = 1; i < trace.length(); ++i) {
-    if (!trace.frame_update(i) || trace.force_N[i].isZero(0) || trace.force_N[i - 1].isZero(0)) continue;
-    max = std::max(max, (trace.force_N[i] - trace.force_N[i - 1]).norm());
-  }
-  return max;
 }
 
 double no_force_fraction(const Trace& trace, double contact_radius_m) {

@@ -8,7 +8,8 @@
 
 namespace remote_touch {
 
-// 1 when the proxy's centre ended below the true surface, else 0.
+// 1 when the proxy's centre ended below the true surface, else 0; NaN where the truth is not known at the
+// end.
 double popped_through(const Trace& trace);
 // Maximum distance of the proxy's centre behind the true surface, m; 0 if it never was. Over the ticks with a
 // known truth; NaN without any.
@@ -23,9 +24,6 @@ double wrong_side_fraction(const Trace& trace);
 // surface and to the nearest point, over the ticks that end in contact and have a known truth, m; NaN without
 // any.
 double rms_surface_error_m(const Trace& trace);
-// Largest change of the force from one tick to the next when a new frame came in, if there is force in both,
-// N.
-double max_force_jump_N(const Trace& trace);
 // Force dropouts: fraction without force of the ticks in which the surface holds the proxy back, see
 // pressing().
 double no_force_fraction(const Trace& trace, double contact_radius_m);
@@ -39,13 +37,21 @@ double unconverged_fraction(const Trace& trace);
 double non_finite_fraction(const Trace& trace);
 double max_force_N(const Trace& trace);
 
+// The runs in which a measure means something: all, those of a point proxy, those with a tool, those with
+// guidance.
+enum class MeasuredRuns { all, proxy, tool, guidance };
+
 // The measures that need only a trace, by name: for summaries and for sweeps.
 struct Measure {
   const char* name;
   const char* unit;
   const char* meaning;
+  MeasuredRuns runs;
   double (*of)(const Trace&);
 };
 std::span<const Measure> measures();
+bool applies(const Measure& measure, const Trace& trace);
+// NaN where the measure does not apply.
+double value_of(const Measure& measure, const Trace& trace);
 
 }  // namespace remote_touch

@@ -1,18 +1,27 @@
 #include "analysis/measures/passivity_measures.h"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
+
+#include "analysis/measures/no_value.h"
+#include "core/geometry/rotation.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr double kNoCycle = std::numeric_limits<double>::quiet_NaN();
-
 // From tick i until the next.
 double work_J(const Trace& trace, std::size_t i) {
-  return trace.force_N[i].dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
+  const Vec3& force_N = trace.has_hand() ? trace.device_force_N[i] : trace.force_N[i];
+  const double by_force = force_N.dot(trace.hip_position_m[i + 1] - trace.hip_position_m[i]);
+  if (!trace.has_tool()) return by_force;
+  const Vec3& torque_Nm = trace.has_hand() ? trace.device_torque_Nm[i] : trace.torque_Nm[i];
+  return by_force +
+         torque_Nm.dot(rotation_vector(trace.hip_orientation[i + 1] * trace.hip_orientation[i].conjugate()));
+}
+
+bool has_wrench(const Trace& trace, std::size_t i) {
+  return !trace.force_N[i].isZero(0) || (trace.has_tool() && !trace.torque_Nm[i].isZero(0));
 }
 
 // Of each piece that begins and ends with an update and has a force.
@@ -25,13 +34,19 @@ std::vector<double> work_between_updates_J(const Trace& trace) {
       if (begun && felt) pieces.push_back(work);
       work = 0, begun = true, felt = false;
     }
-    felt |= !trace.force_N[i].isZero(0);
+    felt |= has_wrench(trace, i);
     if (i + 1 < trace.length()) work += work_J(trace, i);
   }
   return pieces;
 }
 
 }  // namespace
+
+double energy_injected_J(const Trace& trace) {
+  double given = 0;
+  for (std::size_t i = 0; i + 1 < trace.length(); ++i) given += work_J(trace, i);
+  return given;
+}
 
 double max_energy_injected_J(const Trace& trace) {
   double given = 0, max = 0;
@@ -46,12 +61,12 @@ double mean_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
   double sum = 0;
   for (const double piece : pieces) sum += piece;
-  return pieces.empty() ? kNoCycle : sum / static_cast<double>(pieces.size());
+  return pieces.empty() ? kNoValue : sum / static_cast<double>(pieces.size());
 }
 
 double max_energy_per_update_J(const Trace& trace) {
   const std::vector<double> pieces = work_between_updates_J(trace);
-  return pieces.empty() ? kNoCycle : *std::max_element(pieces.begin(), pieces.end());
+  return pieces.empty() ? kNoValue : *std::max_element(pieces.begin(), pieces.end());
 }
 
 }  // namespace remote_touch

@@ -1,10 +1,15 @@
-// Energy that a renderer gives to the hand, observed at the device alone: force . displacement of the HIP
-// until the next tick, which is the work done on a hand that moves under that force.
+// Energy that the device gives to the hand: force . displacement of the HIP until the next tick, and with a
+// tool torque . rotation, which is the work done on a hand that moves under them. Where the run simulates a
+// device, the force and torque are what the device exerts with the motors that it has, else what the renderer
+// commands.
 #pragma once
 
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
+
+// Work on the hand in the whole run, J. Negative if the hand did more work on the surface.
+double energy_injected_J(const Trace& trace);
 
 // The maximum over time of the net energy injected into the hand since the start, J; 0 if it was never
 // positive. A passive renderer without stored energy at the start cannot exceed 0: the passivity observer of

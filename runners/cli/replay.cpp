@@ -40,7 +40,7 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
   const bool stored = result.state[run] == RunState::done;
   bool same = true;
   for (std::size_t i = 0; i < result.measures.size(); ++i) {
-    const double now = sweep.measures()[i].of(trace);
+    const double now = value_of(sweep.measures()[i], trace);
     const double then = std::get<std::vector<double>>(result.measures[i].values)[run];
     const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
     same &= equal || !stored;

@@ -61,7 +61,8 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   for (const Measure& measure : measures())
-    std::printf("  %-20s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);
+    if (applies(measure, trace))
+      std::printf("  %-23s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }

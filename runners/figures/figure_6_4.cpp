@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/measures/force_change_measures.h"
 #include "analysis/measures/measures.h"
 #include "core/geometry/rotation.h"
 #include "runners/figures/fixture_run.h"

@@ -1,6 +1,6 @@
 // Equation (4.15): the force between the updates of a cloud that moves evenly, for the three readings of its
 // sign.
-#include "analysis/measures/measures.h"
+#include "analysis/measures/force_change_measures.h"
 #include "runners/figures/figures.h"
 
 namespace remote_touch {

@@ -21,7 +21,7 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     simulation.stop = options.stop;
     const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
-      std::get<std::vector<double>>(result.measures[i].values)[run] = sweep.measures()[i].of(trace);
+      std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);
     result.state[run] = RunState::done;
   } catch (const std::exception& error) {
     result.error[run] = std::string(error.what()).substr(0, kMaxError);

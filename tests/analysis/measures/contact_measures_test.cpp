@@ -83,32 +83,6 @@ TEST(ContactMeasures, TicksWithAForce) {
   EXPECT_TRUE(std::isnan(last_force_time_s(trace_of({pushed(0, 0)}))));
 }
 
-// Changes of 3 and 4 N at updates, of 1, 1 and 2 N between them; no change counts from or to no force.
-TEST(ContactMeasures, ChangesOfTheForceAtUpdatesAndBetweenThem) {
-  const Trace trace = trace_of({pushed(0, 0), pushed(5, 1), pushed(6, 1), pushed(9, 2), pushed(8, 2),
-                                pushed(4, 3), pushed(2, 3), pushed(0, 3), pushed(0, 4), pushed(7, 5)});
-  EXPECT_NEAR(rms_force_jump_N(trace), std::sqrt((9.0 + 16.0) / 2), 1e-15);
-  EXPECT_NEAR(force_noise_N(trace), std::sqrt((1.0 + 1.0 + 4.0) / 3), 1e-15);
-  EXPECT_TRUE(std::isnan(rms_force_jump_N(trace_of({pushed(1, 0), pushed(2, 0), pushed(0, 1)}))));
-  EXPECT_TRUE(std::isnan(force_noise_N(trace_of({pushed(1, 0), pushed(2, 1), pushed(0, 1)}))));
-  // A force that turns changes by the way between its ends.
-  Tick along_x = pushed(0, 0), along_z = pushed(0, 0);
-  along_x.force_N = {3, 0, 0}, along_z.force_N = {0, 0, 4};
-  EXPECT_EQ(force_noise_N(trace_of({along_x, along_z})), 5);
-}
-
-// A spring that is pressed and let go gives back what it took; one that grows in between gives more.
-TEST(ContactMeasures, EnergyIsForceTimesTheWayOfTheHand) {
-  const auto at = [](double y_m, double force_N) {
-    return Tick{0.005, 0.005, {0.5, force_N, 0}, {0, y_m, 0.1}, 0};
-  };
-  EXPECT_NEAR(energy_injected_J(trace_of({at(0, 2), at(-0.01, 2), at(0, 2)})), 0, 1e-17);
-  EXPECT_NEAR(energy_injected_J(trace_of({at(0, 2), at(-0.01, 5), at(0, 100)})), 0.01 * (5 - 2), 1e-17);
-  EXPECT_LT(energy_injected_J(trace_of({at(0, 2), at(-0.01, 2)})), 0);
-  EXPECT_EQ(energy_injected_J(trace_of({at(0, 2)})), 0);
-  EXPECT_EQ(energy_injected_J(Trace()), 0);
-}
-
 TEST(ContactMeasures, AreInTheTable) {
   const Trace trace = trace_of({pushed(5, 0), pushed(6, 0), pushed(9, 1)});
   for (const auto& [name, of] : std::vector<std::pair<std::string, double (*)(const Trace&)>>{
@@ -118,10 +92,7 @@ TEST(ContactMeasures, AreInTheTable) {
            {"distance_sd", distance_sd_m},
            {"end_distance", end_distance_m},
            {"force_fraction", force_fraction},
-           {"last_force_time", last_force_time_s},
-           {"rms_force_jump", rms_force_jump_N},
-           {"force_noise", force_noise_N},
-           {"energy_injected", energy_injected_J}}) {
+           {"last_force_time", last_force_time_s}}) {
     const auto found = std::find_if(measures().begin(), measures().end(),
                                     [&name = name](const Measure& m) { return m.name == name; });
     ASSERT_NE(found, measures().end()) << name;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/geometry/rotation.h"
+
 namespace remote_touch::passivity_measures_test {
 namespace {
 
@@ -36,6 +38,44 @@ TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * squares, 1e-9);
   for (Tick& tick : ticks) tick.force_N *= tick.frame < 16 ? 1 : 1.5;  // stiffer on the way out
   EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 0.5 * 0.03, 2e-3);
+}
+
+// A spring that is pressed and let go gives back what it took; one that grows in between gives more.
+TEST(PassivityMeasures, EnergyIsForceTimesDisplacementOfTheHand) {
+  EXPECT_NEAR(energy_injected_J(trace_of({{2, 0}, {2, -0.01}, {2, 0}})), 0, 1e-17);
+  EXPECT_NEAR(energy_injected_J(trace_of({{2, 0}, {5, -0.01}, {100, 0}})), 0.01 * (5 - 2), 1e-17);
+  EXPECT_LT(energy_injected_J(trace_of({{2, 0}, {2, -0.01}})), 0);
+  EXPECT_EQ(energy_injected_J(trace_of({{2, 0}})), 0);
+  EXPECT_EQ(energy_injected_J(Trace()), 0);
+}
+
+// A torque of 0.5 N m turns the hand by 0.2 rad about an axis at 60 degrees to it, and 2 N push it by 1 cm.
+TEST(PassivityMeasures, WorkHasTorqueInIt) {
+  const Vec3 axis_W(0.5, std::sqrt(0.75), 0);
+  Trace trace;
+  for (int i = 0; i < 2; ++i) {
+    RenderOutput out;
+    out.force_N = {0, 2, 0};
+    out.tool.emplace().torque_Nm = {0.5, 0, 0};
+    DeviceState device{Vec3(0, 0.01 * i, 0)};
+    device.orientation_W = rotation(0.2 * i * axis_W) * rotation({0.3, -0.1, 0.7});
+    trace.append(0.001 * i, device, out, {});
+  }
+  EXPECT_NEAR(energy_injected_J(trace), 2 * 0.01 + 0.5 * 0.2 * 0.5, 1e-15);
+}
+
+// What the device exerts does work, not what the renderer commands: here a motor is missing.
+TEST(PassivityMeasures, WorkIsThatOfTheMotors) {
+  Trace trace;
+  for (int i = 0; i < 2; ++i) {
+    RenderOutput out;
+    out.force_N = {3, 2, 0};
+    HandState hand;
+    hand.force_N = {0, 2, 0};
+    trace.append(0.001 * i, {Vec3(0.01 * i, 0.01 * i, 0)}, out, {}, hand);
+  }
+  EXPECT_NEAR(energy_injected_J(trace), 0.02, 1e-17);
+  EXPECT_NEAR(max_energy_injected_J(trace), 0.02, 1e-17);
 }
 
 TEST(PassivityMeasures, TheLargestIsThatOfAnyTime) {

@@ -1,0 +1,124 @@
+#include "analysis/measures/tool_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "analysis/measures/measures.h"
+#include "core/geometry/rotation.h"
+
+namespace remote_touch::tool_measures_test {
+namespace {
+
+const Measure& measure(const std::string& name) {
+  for (const Measure& each : measures())
+    if (each.name == name) return each;
+  ADD_FAILURE() << "no measure " << name;
+  return measures().front();
+}
+
+struct Tick {
+  Vec3 torque_Nm = Vec3::Zero();
+  int contacts = 0, active = 0, clusters = 0, detections = 1;
+  double penetration_m = 0, gap_m = 0.01;
+  bool exhausted = false;
+  Vec3 lag_m = Vec3::Zero();
+  Vec3 lag_rad = Vec3::Zero();
+};
+
+// The tool is anywhere, and turned; the device is ahead of it by the lag.
+Trace trace_of(const std::vector<Tick>& ticks) {
+  Trace trace;
+  for (const Tick& tick : ticks) {
+    const double i = static_cast<double>(trace.length());
+    RenderOutput out;
+    out.proxy_W = {0.1, 0.02 * i, -0.3};
+    out.contact_count = tick.contacts;
+    out.nearest_distance_m = tick.gap_m;
+    ToolOutput& tool = out.tool.emplace();
+    tool.orientation_W = rotation({0.5, 0.1 * i, -0.4});
+    tool.torque_Nm = tick.torque_Nm;
+    tool.active_constraints = tick.active;
+    tool.contact_clusters = tick.clusters;
+    tool.tool_penetration_m = tick.penetration_m;
+    tool.detections = tick.detections;
+    tool.budget_exhausted = tick.exhausted;
+    DeviceState device{out.proxy_W + tick.lag_m};
+    device.orientation_W = rotation(tick.lag_rad) * tool.orientation_W;
+    trace.append(0.001 * i, device, out, {});
+  }
+  return trace;
+}
+
+TEST(ToolMeasures, AreMeansAndMaximaOfTheTicks) {
+  const double none = std::numeric_limits<double>::infinity();
+  const Trace trace =
+      trace_of({{{0, 0, 0}, 0, 0, 0, 1, 0, none, false, {0, 0, 0}, {0, 0, 0}},
+                {{0.3, 0, 0.4}, 10, 2, 1, 3, 0.001, 0.002, false, {0.003, 0, 0.004}, {0, 0.2, 0}},
+                {{0, -0.2, 0}, 30, 6, 4, 60, 0.004, -0.001, true, {0, -0.03, 0}, {0.3, 0, 0}},
+                {{0, 0, 0}, 4, 0, 2, 4, 0, 0.005, true, {0, 0, 0.001}, {0, 0, -0.1}}});
+  EXPECT_NEAR(max_torque_Nm(trace), 0.5, 1e-15);
+  EXPECT_EQ(mean_contact_count(trace), 11);
+  EXPECT_EQ(max_contact_count(trace), 30);
+  EXPECT_EQ(mean_active_constraints(trace), 2);
+  EXPECT_EQ(max_active_constraints(trace), 6);
+  EXPECT_EQ(max_contact_clusters(trace), 4);
+  EXPECT_EQ(max_tool_penetration_m(trace), 0.004);
+  EXPECT_EQ(min_clearance_m(trace), -0.001);
+  EXPECT_EQ(mean_detections(trace), 17);
+  EXPECT_EQ(max_detections(trace), 60);
+  EXPECT_EQ(exhausted_fraction(trace), 0.5);
+  EXPECT_NEAR(mean_tool_lag_m(trace), (0.005 + 0.03 + 0.001) / 4, 1e-15);
+  EXPECT_NEAR(max_tool_lag_m(trace), 0.03, 1e-15);
+  EXPECT_NEAR(mean_tool_lag_rad(trace), (0.2 + 0.3 + 0.1) / 4, 1e-15);
+  EXPECT_NEAR(max_tool_lag_rad(trace), 0.3, 1e-15);
+}
+
+TEST(ToolMeasures, AClearanceThatNeverWasIsUnknown) {
+  Tick alone;
+  alone.gap_m = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(min_clearance_m(trace_of({alone, alone}))));
+}
+
+TEST(ToolMeasures, ErrorOfGuidanceIsThatOfItsLastTick) {
+  Trace trace;
+  for (const double active : {0, 1, 1, 0}) {
+    const double i = static_cast<double>(trace.length());
+    RenderOutput out;
+    out.proxy_W = {0.01 * i, 0, 0};
+    out.tool.emplace().orientation_W = rotation({0, 0.2 * i, 0});
+    GuidanceOutput& guidance = out.guidance.emplace();
+    guidance.active = active != 0;
+    if (guidance.active)
+      guidance.goal_W = {0.05, 0, 0.04}, guidance.goal_orientation_W = rotation({0, 0.5, 0});
+    trace.append(0.001 * i, {}, out, {});
+  }
+  EXPECT_EQ(guidance_fraction(trace), 0.5);
+  EXPECT_NEAR(guidance_error_m(trace), 0.05, 1e-15);
+  EXPECT_NEAR(guidance_error_rad(trace), 0.1, 1e-15);
+}
+
+TEST(ToolMeasures, ApplyToTheirRunsOnly) {
+  Trace point;
+  point.append(0, {}, {}, {});
+  const Trace tool = trace_of({{}, {}});
+  for (const Measure& each : measures()) {
+    const bool of_tool = each.runs == MeasuredRuns::tool, of_proxy = each.runs == MeasuredRuns::proxy,
+               of_guidance = each.runs == MeasuredRuns::guidance;
+    EXPECT_EQ(applies(each, point), !of_tool && !of_guidance) << each.name;
+    EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance) << each.name;
+    if (of_tool || of_guidance) {
+      EXPECT_TRUE(std::isnan(each.of(point))) << each.name;
+    }
+    if (of_proxy) {
+      EXPECT_TRUE(std::isnan(value_of(each, tool))) << each.name;
+    }
+  }
+  EXPECT_EQ(value_of(measure("mean_detections"), tool), 1);
+  EXPECT_EQ(value_of(measure("max_force"), tool), 0);
+}
+
+}  // namespace
+}  // namespace remote_touch::tool_measures_test
