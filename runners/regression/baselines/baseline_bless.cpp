@@ -179,15 +179,53 @@ void enter(const Baseline& baseline, Manifest& manifest) {
             [](const Baseline& a, const Baseline& b) { return a.name < b.name; });
 }
 
+std::string with_precision(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", number);
+  return text;
+}
+
+// Which columns or measures are not what they were: "force: 12 of 867 rows, up to 0.4 N; normal: ...".
+std::string moved(const std::vector<Column>& before, const std::vector<Column>& now) {
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  const auto named = [](const std::vector<Column>& columns, const std::string& name) {
+    return std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+  };
+  for (const Column& column : now) {
+    const auto old = named(before, column.name);
+    if (old == before.end()) {
+      add(column.name + ": new");
+      continue;
+    }
+    const ColumnComparison c = compare_columns(*old, column, {});
+    if (c.is_same()) continue;
+    add(column.name + ": " +
+        (c.problem.empty() ? std::to_string(c.outside) + " of " + std::to_string(c.rows) + " rows, up to " +
+                                 with_precision(c.max) + " " + c.units
+                           : c.problem));
+  }
+  for (const Column& column : before)
+    if (named(now, column.name) == now.end()) add(column.name + ": gone");
+  return text;
+}
+
 std::string spread_text(const Tolerances& spread) {
   if (spread.empty()) return "exact";
   std::string text = "spread";
-  for (const auto& [name, tolerance] : spread) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.3g", tolerance.absolute);
-    text += " " + name + " " + number;
-  }
+  for (const auto& [name, tolerance] : spread) text += " " + name + " " + with_precision(tolerance.absolute);
   return text;
+}
+
+Measured measured_over_builds(const Blessing& blessing, const Baseline& baseline,
+                              const std::filesystem::path& scratch) {
+  std::vector<std::string> programs = {this_program()};
+  programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
+  Measured measured = measure_spread(blessing.folder, baseline, programs, scratch, blessing.stop);
+  if (measured.compilers.size() < 2 && !blessing.one_compiler)
+    throw InputError("--other-build", "by the same compiler, " + *measured.compilers.begin() +
+                                          ": expected a build by another compiler, or --one-compiler");
+  return measured;
 }
 
 }  // namespace
@@ -198,15 +236,8 @@ std::string bless(const Blessing& blessing) {
   Baseline baseline = definition(blessing, manifest);
   require_places(blessing.folder);
   require_runnable(blessing.folder, baseline);
-  std::vector<std::string> programs = {this_program()};
-  programs.insert(programs.end(), blessing.also.begin(), blessing.also.end());
   const Scratch scratch;
-  const Measured measured =
-      measure_spread(blessing.folder, baseline, programs, scratch.path(), blessing.stop);
-  if (measured.compilers.size() < 2 && !blessing.one_compiler)
-    throw InputError("--other-build", "by the same compiler, " + *measured.compilers.begin() +
-                                          ": expected a build by another compiler, or --one-compiler");
-
+  const Measured measured = measured_over_builds(blessing, baseline, scratch.path());
   const std::filesystem::path file = file_of(blessing.folder, baseline);
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);
   std::vector<Column> now = judged_columns(measured.reference, baseline.command);
@@ -216,16 +247,22 @@ std::string bless(const Blessing& blessing) {
   if (!is_new && stored && same_definition(*stored, baseline) && measured.spread == baseline.tolerances &&
       sha256_of_file(file) == baseline.sha256)
     return baseline.name + ": nothing to store, every number is within the spread of the stored one";
+  const std::string what_moved = is_new && !old.empty() ? moved(old, now) : "";
   if (is_new) {
     make_folder(blessing.folder);
     store(file, baseline.command, measured.reference, std::move(now));
   }
-  baseline.sha256 = sha256_of_file(file), baseline.reason = blessing.reason;
-  baseline.builds = measured.over, baseline.tolerances = measured.spread;
+  const std::string sha256 = sha256_of_file(file);
+  // The file that was stored, made once more in the place of a damaged one, keeps its reason.
+  if (!stored || sha256 != stored->sha256 || !same_definition(*stored, baseline)) {
+    if (stored) baseline.history.push_back(stored->revision);
+    baseline.revision = {blessing.reason, what_moved};
+  }
+  baseline.sha256 = sha256, baseline.builds = measured.over, baseline.tolerances = measured.spread;
   enter(baseline, manifest);
   write_manifest(blessing.folder, manifest);
   return baseline.name + ": " + (is_new ? "stored" : "the manifest is new, the numbers are kept") + ", " +
-         spread_text(baseline.tolerances);
+         spread_text(baseline.tolerances) + (what_moved.empty() ? "" : "; moved: " + what_moved);
 }
 
 }  // namespace remote_touch

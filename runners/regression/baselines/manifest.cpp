@@ -16,12 +16,23 @@ std::filesystem::path manifest_file(const std::filesystem::path& folder) {
   return folder / "manifest.json";
 }
 
+Revision revision_of(const Json& json) {
+  return {json.at("reason"), json.value("moved", "")};
+}
+
+Json json_of(const Revision& revision) {
+  return {{"reason", revision.reason}, {"moved", revision.moved}};
+}
+
 Baseline baseline_of(const Json& json, const std::filesystem::path& file) {
   Baseline baseline{json.at("name"), json.at("command"), json.at("subject")};
   if (baseline.command != "run" && baseline.command != "sweep")
     throw InputError(file.string(), "baseline " + baseline.name + ": command: expected run, sweep");
   baseline.overrides = json.at("set").get<std::vector<std::string>>();
-  baseline.sha256 = json.at("sha256"), baseline.reason = json.at("reason");
+  baseline.sha256 = json.at("sha256"), baseline.revision = revision_of(json);
+  if (const auto found = json.find("history"); found != json.end())
+    for (const Json& one : found->get_ref<const Json::array_t&>())
+      baseline.history.push_back(revision_of(one));
   baseline.builds = json.at("measured_over").get<std::vector<std::string>>();
   for (const auto& [name, spread] : json.at("spread").get_ref<const Json::object_t&>()) {
     if (!(spread.get<double>() >= 0))
@@ -35,9 +46,18 @@ Baseline baseline_of(const Json& json, const std::filesystem::path& file) {
 Json json_of(const Baseline& baseline) {
   Json spread = Json::object();
   for (const auto& [name, tolerance] : baseline.tolerances) spread[name] = tolerance.absolute;
-  return {{"name", baseline.name},     {"command", baseline.command},     {"subject", baseline.subject},
-          {"set", baseline.overrides}, {"sha256", baseline.sha256},       {"reason", baseline.reason},
-          {"spread", spread},          {"measured_over", baseline.builds}};
+  Json history = Json::array();
+  for (const Revision& revision : baseline.history) history.push_back(json_of(revision));
+  return {{"name", baseline.name},
+          {"command", baseline.command},
+          {"subject", baseline.subject},
+          {"set", baseline.overrides},
+          {"sha256", baseline.sha256},
+          {"reason", baseline.revision.reason},
+          {"moved", baseline.revision.moved},
+          {"history", history},
+          {"spread", spread},
+          {"measured_over", baseline.builds}};
 }
 
 }  // namespace

@@ -9,6 +9,12 @@
 
 namespace remote_touch {
 
+// Why numbers were stored, and which of them moved against those stored before, and by how much.
+struct Revision {
+  std::string reason;
+  std::string moved;  // "" where nothing had been stored before, or it was not recorded
+};
+
 // A result with which later programs are compared, NAME.h5 beside the manifest.
 struct Baseline {
   std::string name;
@@ -16,7 +22,8 @@ struct Baseline {
   std::string subject;  // what it runs: a name of the list, or a JSON file in the same folder
   std::vector<std::string> overrides = {};  // --set
   std::string sha256 = {};                  // of the file
-  std::string reason = {};                  // why it was stored
+  Revision revision = {};                   // of the stored numbers
+  std::vector<Revision> history = {};       // of all before them, oldest first
   std::vector<std::string> builds = {};  // compilers, levels and threads over which the spread was measured
   // The spread, by column or measure; those not named are exact.
   Tolerances tolerances = {};

@@ -23,7 +23,9 @@ TEST(Manifest, IsReadAsItWasWritten) {
   const TestFolder folder("baseline_test");
   Baseline run{"lift", "run", "fig4.12"};
   run.overrides = {"seed=2", "title=\"two\nlines\""}, run.sha256 = std::string(64, 'a');
-  run.reason = "it's grün: \"\\\" and\ttabs", run.builds = {"GNU 12.2.0", "x86-64-v4", "8 threads"};
+  run.revision = {"it's grün: \"\\\" and\ttabs", "force: 3 of 9 rows, up to 2 N"};
+  run.history = {{"first", ""}, {"second", "normal: new"}},
+  run.builds = {"GNU 12.2.0", "x86-64-v4", "8 threads"};
   run.tolerances = {{"force", {1e-17}}, {"proxy_position", {0.1}}, {"normal", {5e-324}}, {"*", {1e300}}};
   const Manifest written{true, {run, {"map", "sweep", "my map.json"}, {"", "run", ""}}};
   write_manifest(folder.path(), written);
@@ -37,7 +39,13 @@ TEST(Manifest, IsReadAsItWasWritten) {
     EXPECT_EQ(a.subject, b.subject);
     EXPECT_EQ(a.overrides, b.overrides);
     EXPECT_EQ(a.sha256, b.sha256);
-    EXPECT_EQ(a.reason, b.reason);
+    EXPECT_EQ(a.revision.reason, b.revision.reason);
+    EXPECT_EQ(a.revision.moved, b.revision.moved);
+    ASSERT_EQ(a.history.size(), b.history.size());
+    for (std::size_t k = 0; k < a.history.size(); ++k) {
+      EXPECT_EQ(a.history[k].reason, b.history[k].reason);
+      EXPECT_EQ(a.history[k].moved, b.history[k].moved);
+    }
     EXPECT_EQ(a.builds, b.builds);
     EXPECT_EQ(a.tolerances, b.tolerances);
   }
