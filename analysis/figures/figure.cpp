@@ -29,6 +29,22 @@ Claim claim_of(std::string figure, std::string claim, std::string paper, double 
 
 }  // namespace
 
+const char* verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::fail:
+      return "fail";
+    case Verdict::open:
+      return "open";
+    case Verdict::differs:
+      return "differs";
+    case Verdict::not_run:
+      break;
+  }
+  return "not run";
+}
+
 // Comparisons are written so that NaN fails.
 Claim claim_between(std::string figure, std::string claim, std::string paper, double measured, double low,
                     double high, std::string unit) {
@@ -47,6 +63,20 @@ Claim claim_at_least(std::string figure, std::string claim, std::string paper, d
                      std::string unit) {
   return claim_of(std::move(figure), std::move(claim), std::move(paper), measured, "at least " + text(limit),
                   std::move(unit), measured >= limit);
+}
+
+Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
+                    double high, std::string unit) {
+  Claim made = claim_of(std::move(figure), std::move(claim), std::move(paper), measured,
+                        "as known here: from " + text(low) + " to " + text(high), std::move(unit),
+                        measured >= low && measured <= high);
+  if (made.verdict == Verdict::pass) made.verdict = Verdict::differs;
+  return made;
+}
+
+Claim set_up(Claim check) {
+  check.set_up = true;
+  return check;
 }
 
 Claim claim_not_run(std::string figure, std::string claim, std::string reason) {

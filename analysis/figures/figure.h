@@ -31,8 +31,10 @@ struct Panel {
   std::optional<Scene> scene = {};                      // drawn instead of curves, without axes
 };
 
-// open: measured, but only on a part of the claim's range.
-enum class Verdict { pass, fail, open, not_run };
+// open: measured, but only on a part of the claim's range. differs: the paper prints something else than what
+// is measured here, and what is measured is as known.
+enum class Verdict { pass, fail, open, differs, not_run };
+const char* verdict_name(Verdict verdict);  // as in claims.json: "pass", "not run"
 
 // One statement of the paper, or of this project, compared with a measurement. A claim that fails stays in
 // the list.
@@ -44,6 +46,7 @@ struct Claim {
   std::string unit;
   Verdict verdict = Verdict::not_run;
   bool of_map = false;  // about a whole map: not to be judged on a part of it
+  bool set_up = false;  // says only that the run is what it was meant to be: shown apart from the claims
 };
 
 // measured within [low, high].
@@ -54,6 +57,12 @@ Claim claim_at_most(std::string figure, std::string claim, std::string paper, do
                     std::string unit);
 Claim claim_at_least(std::string figure, std::string claim, std::string paper, double measured, double limit,
                      std::string unit);
+// The paper prints another value than what is measured. The range is where this program has it: outside, the
+// claim fails.
+Claim claim_differs(std::string figure, std::string claim, std::string paper, double measured, double low,
+                    double high, std::string unit);
+// A check that the run is what it was meant to be.
+Claim set_up(Claim check);
 Claim claim_not_run(std::string figure, std::string claim, std::string reason);
 
 struct Figure {

@@ -12,10 +12,6 @@ namespace remote_touch {
 
 namespace {
 
-bool is_judged(const Claim& claim) {
-  return claim.verdict == Verdict::pass || claim.verdict == Verdict::fail;
-}
-
 Json claim_json(const Claim& claim) {
   const Json none;
   return {{"figure", claim.figure},
@@ -24,7 +20,8 @@ Json claim_json(const Claim& claim) {
           {"measured", std::isfinite(claim.measured) ? Json(claim.measured) : none},
           {"criterion", claim.criterion},
           {"unit", claim.unit},
-          {"pass", is_judged(claim) ? Json(claim.verdict == Verdict::pass) : none}};
+          {"verdict", verdict_name(claim.verdict)},
+          {"set_up", claim.set_up}};
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
 }
 
 std::string line_of(const Claim& claim) {
-  const char* verdict = claim.verdict == Verdict::pass   ? "pass"
-                        : claim.verdict == Verdict::fail ? "FAIL"
-                        : claim.verdict == Verdict::open ? "open"
-                                                         : "not run";
+  const char* verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
+  const std::string paper =
+      claim.verdict == Verdict::differs ? ", the dissertation prints: " + claim.paper : "";
   char line[1000];
-  std::snprintf(line, sizeof line, "  %-7s %s: %.6g %s (%s)\n", verdict, claim.claim.c_str(), claim.measured,
-                claim.unit.c_str(), claim.criterion.c_str());
+  std::snprintf(line, sizeof line, "  %-7s %s%s: %.6g %s (%s%s)\n", verdict, claim.set_up ? "set-up: " : "",
+                claim.claim.c_str(), claim.measured, claim.unit.c_str(), claim.criterion.c_str(),
+                paper.c_str());
   return line;
 }
 

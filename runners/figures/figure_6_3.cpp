@@ -7,6 +7,7 @@
 #include "analysis/measures/measures.h"
 #include "core/geometry/rotation.h"
 #include "runners/figures/fixture_run.h"
+#include "runners/figures/second_implementation.h"
 #include "runners/figures/tool_picture.h"
 
 namespace remote_touch {
@@ -145,6 +146,17 @@ double max_gap_untouched_m(const Trace& t) {
   return gap;
 }
 
+// How far before and behind the walls a corner of the tool may stop, against the outline that the second
+// implementation turns in closed form. The mesh has corners of 8 mm, cut by chords of 2.5 mm: 0.1 mm less.
+// Its distance field is exact to a tenth of that. Voxels, at the angle at which the tool stops, are 0.65 mm
+// thick, so their surface is within half of that; a point may be a sub-step of 0.25 mm deep, and a corner
+// sinks 0.14 mm between points 3 mm apart.
+std::pair<double, double> plateau_slack_mm(const std::string& rule) {
+  constexpr double kChord = 0.1, kField = 0.01, kVoxel = 0.65 / 2, kSubStep = 0.25, kSinks = 0.14;
+  if (rule == "look-ahead") return {kField, kChord + kField};
+  return {kVoxel, kChord + kVoxel + kSubStep + kSinks};
+}
+
 void add_rule_claims(Figure& figure, const BoxRun& run) {
   const Trace& t = run.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
@@ -160,17 +172,18 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
       name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),
       0, "ticks"));
-  claim(claim_at_least(name, rule + "ticks in which it lags by over 1 deg", "-",
-                       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500,
-                       "ticks"));
+  const auto [early, late] = plateau_slack_mm(run.rule);
+  const double stops = second_number("chapter_6", "/box/stop_angle_deg"),
+               deg_per_mm = second_number("chapter_6", "/box/deg_per_mm");
   claim(claim_between(name, rule + "rotation of the tool where the device has turned 30 deg", "-",
-                      tool_deg(t, plateau(t)), 20.5, 22.5, "deg"));
+                      tool_deg(t, plateau(t)), stops - early * deg_per_mm, stops + late * deg_per_mm, "deg"));
   claim(claim_at_most(name, rule + "gap between device and tool along y while nothing touches", "0",
                       max_gap_untouched_m(t), 1e-9, "m"));
-  claim(
-      claim_at_most(name, rule + "most constraints active at once", "6", max(t.active_constraints), 6, "1"));
   claim(claim_at_most(name, rule + "fraction of ticks with a value that is not finite", "-",
                       non_finite_fraction(t), 0, "fraction"));
+  claim(set_up(claim_at_least(name, rule + "ticks in which it lags by over 1 deg", "-",
+                              ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad; }), 500,
+                              "ticks")));
 }
 
 // As many points touch as lie on the faces: more where they lie closer. runs: of one rule, 3, 2, 1 mm.

@@ -47,13 +47,13 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   const Trace& t = task.trace;
   const std::size_t held = tick_of(t, held_s);
   const std::string valve = side;
-  figure.claims.push_back(claim_between(figure.name, "device behind the tool, pushed to the " + valve, "-",
-                                        lag_m(t, held), 0.018, 0.022, "m"));
-  figure.claims.push_back(
-      claim_between(figure.name, "force there", "rises when pushed", t.force_N[held].norm(), 5, 8, "N"));
+  figure.claims.push_back(claim_between(figure.name, "force when pushed to the " + valve, "rises when pushed",
+                                        t.force_N[held].norm(), 5, 8, "N"));
   figure.claims.push_back(claim_at_least(figure.name, "largest torque of the push to the " + valve,
                                          "rises when pushed", max_torque_Nm(t, held_s - 1, held_s + 1), 0.01,
                                          "N m"));
+  figure.claims.push_back(set_up(claim_between(figure.name, "device behind the tool, pushed to the " + valve,
+                                               "-", lag_m(t, held), 0.018, 0.022, "m")));
 }
 
 void add_claims(Figure& figure, const ValveTask& task) {

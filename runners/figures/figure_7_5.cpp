@@ -46,10 +46,6 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
     claim(claim_not_run(name, words + "guidance", "it never pulled"));
     return;
   }
-  claim(claim_between(name, words + "when guidance begins to pull", "about 3", t.time_s[first], kPressed_s,
-                      kPressed_s + 1e-9, "s"));
-  claim(claim_between(name, words + "its force in that tick, cut at 4 N", "a step",
-                      t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N"));
   claim(claim_at_least(name, words + "force of the region before, pushed to the left", "rises",
                        t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N"));
   claim(claim_at_most(name, words + "force at the end", "decays", residual_N(t), 0.2, "N"));
@@ -58,6 +54,10 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   claim(claim_at_least(name, words + "least distance of the tool's mesh to the true left valve", "-",
                        min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m"));
   add_task_claims(figure, task);
+  claim(set_up(claim_between(name, words + "when guidance begins to pull", "about 3", t.time_s[first],
+                             kPressed_s, kPressed_s + 1e-9, "s")));
+  claim(set_up(claim_between(name, words + "its force in that tick, cut at 4 N", "a step",
+                             t.guidance_force_N[first].norm(), kClamp_N - 1e-9, kClamp_N + 1e-9, "N")));
 }
 
 void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six) {

@@ -82,12 +82,12 @@ void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
   claim(claim_at_most(name, "how far the goal moves while the camera rests", "-", goal_wander_m(t), 0.002,
                       "m"));
   const std::vector<SequenceEntry> log = sequence_log(t);
-  claim(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s,
-                      kButtonPressed_s, kButtonPressed_s + 1e-9, "s"));
   claim(claim_at_most(name, "steps of the task that are missed", "-", t.sequence_missed.back(), 0, "steps"));
   claim(claim_between(name, "steps of the task that are done or missed at the end", "-",
                       t.sequence_step.back(), 1, 1, "steps"));
   add_task_claims(figure, task);
+  claim(set_up(claim_between(name, "when guidance is activated", "-", log.empty() ? 0 : log[0].began_s,
+                             kButtonPressed_s, kButtonPressed_s + 1e-9, "s")));
 }
 
 // Nearer than the wall behind, every second pixel of every second row.

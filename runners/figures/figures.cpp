@@ -18,6 +18,8 @@ constexpr FigureEntry kFigures[] = {
     {"4.13-tracked", "the pop-through map of the renderer tracked-sheet, next to that of the proxy",
      figure_4_13_tracked, 150, true, 4},
     {"bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds, 38},
+    {"proxy-rates", "whether (4.23), (4.24) and the 16 r_c/s of [1] can come from one machine",
+     figure_proxy_rates, 20},
     {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15},
     {"eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15, 0.02},
     {"4.16", "ramp and box seen by a simulated depth camera: proxy path and force", figure_4_16, 1.3},

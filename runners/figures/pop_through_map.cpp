@@ -1,10 +1,13 @@
 #include "runners/figures/pop_through_map.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "analysis/statistics/proportion.h"
+#include "runners/figures/second_implementation.h"
 
 namespace remote_touch {
 
@@ -70,6 +73,30 @@ Table region_table(const std::string& name, const Table& map) {
   table.add("acceleration_from", "r_c/s^2", "lower edge of the region", acceleration);
   table.add("survived", "1", "share of lifts that did not pop through", success);
   return table;
+}
+
+double SharedLifts::standard_error(double our_lifts_a_node) const {
+  const double lifts = nodes * lifts_a_node, at_least = (variance * lifts + 1) / (lifts + 1);
+  return std::sqrt(at_least / nodes * (1 / lifts_a_node + 1 / our_lifts_a_node));
+}
+
+Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
+                   double measured, const SharedLifts& other, double our_lifts_a_node) {
+  const double slack = kByChance * other.standard_error(our_lifts_a_node);
+  return claim_between(figure, claim, paper, measured, std::max(0.0, other.survived - slack),
+                       std::min(1.0, other.survived + slack), "fraction");
+}
+
+double max_apart(const Table& table) {
+  double max = 0;
+  for (const double apart : numbers(table, "apart")) max = std::max(max, std::abs(apart));
+  return max;
+}
+
+SharedLifts second_map(const std::string& name) {
+  const auto number = [&](const std::string& what) { return second_number("chapter_4", "/map/" + what); };
+  return {number(name + "/survived"), number(name + "/variance"), number(name + "/nodes"),
+          number("lifts_a_node")};
 }
 
 Table survivors(const std::string& name, const Table& map) {

@@ -29,6 +29,26 @@ Table survivors(const std::string& name, const Table& map);
 // r_c/s^2, and for each of these noise from 0, 0.5, 1, 1.5, 2 r_c.
 Table region_table(const std::string& name, const Table& map);
 
+// A share of lifts that another implementation computed too: how far two shares may lie apart by chance.
+struct SharedLifts {
+  double survived = 0;  // by the other implementation
+  double variance = 0;  // of one lift about the probability of its node
+  double nodes = 0, lifts_a_node = 0;
+  // Standard error of the difference to a share of as many nodes, with so many lifts at each. Where no lift
+  // differed from its node's others the variance is that of one that did.
+  double standard_error(double our_lifts_a_node) const;
+};
+// Of chance one in a thousand: for one comparison, and for the largest of n. Normal distribution, two-sided.
+inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1;
+// Within what chance allows of the other implementation's share.
+Claim claim_agrees(const std::string& figure, const std::string& claim, const std::string& paper,
+                   double measured, const SharedLifts& other, double our_lifts_a_node);
+// Of a column apart, in standard errors.
+double max_apart(const Table& table);
+// The share of all lifts of Fig 4.13 by the second implementation, or without the velocity estimate: name
+// "survived" or "without_estimate".
+SharedLifts second_map(const std::string& name);
+
 // Noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);
 // Noise in r_c against a bound in r_c/s^2, as a column of a table that begins with noise.

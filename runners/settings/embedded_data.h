@@ -16,6 +16,8 @@ std::span<const EmbeddedText> embedded_sweeps();
 // Renderers with their settings, and scenes, of the scorecard.
 std::span<const EmbeddedText> embedded_methods();
 std::span<const EmbeddedText> embedded_scenes();
+// Numbers of tests/second_implementation, by chapter.
+std::span<const EmbeddedText> embedded_second_implementation();
 
 // The text of that name, or of that file. Throws InputError when there is neither. kind: for its message,
 // such as "an experiment's".

@@ -45,8 +45,12 @@ def figure_of(claim):
 
 def verdict(claim):
     """(CSS class, word)"""
-    unjudged = "not run" if claim.get("measured") is None else "open"
-    return {True: ("pass", "pass"), False: ("fail", "FAIL")}.get(claim.get("pass"), ("none", unjudged))
+    word = str(claim.get("verdict", "not run"))
+    return (word if word in ("pass", "fail", "differs") else "none"), word.upper() if word == "fail" else word
+
+
+def is_set_up(claim):
+    return claim.get("set_up") is True
 
 
 def claim_row(anchor, claim):
@@ -60,25 +64,54 @@ def claim_row(anchor, claim):
     return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{word}</td></tr>'
 
 
-def claim_table(anchored):
-    if not anchored:
-        return "<p class=none>No claims.</p>"
+def table(rows):
     head = "".join(f"<th{' class=number' if name == 'measured' else ''}>{words}</th>"
                    for name, words in [*COLUMNS.items(), ("verdict", "Verdict")])
-    rows = "\n".join(claim_row(anchor, claim) for anchor, claim in anchored)
-    return f"<div class=table><table><thead><tr>{head}</tr></thead><tbody>\n{rows}\n</tbody></table></div>"
+    body = "\n".join(rows)
+    return f"<div class=table><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>"
+
+
+def claim_table(anchored):
+    """The claims of a figure; below them, apart, what only says that its runs are what they were meant to be."""
+    claims = [claim_row(anchor, claim) for anchor, claim in anchored if not is_set_up(claim)]
+    checks = [claim_row(anchor, claim) for anchor, claim in anchored if is_set_up(claim)]
+    parts = [table(claims) if claims else "<p class=none>No claims.</p>"]
+    if checks:
+        parts.append(f"<p class=none>Checks of the set-up, no claims:</p>\n{table(checks)}")
+    return "\n".join(parts)
+
+
+def differing(anchored):
+    """What the dissertation prints and this program does not give, before everything else."""
+    rows = []
+    for anchor, claim in anchored:
+        if verdict(claim)[1] != "differs":
+            continue
+        unit = "" if claim.get("unit") in NOTHING["unit"] else f" {claim['unit']}"
+        rows.append(f'<tr><td class=short><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}</a></td>'
+                    f'<td>{esc(claim.get("claim", ""))}</td><td>{esc(claim.get("paper", ""))}</td>'
+                    f'<td class=number>{esc(value_text(claim.get("measured")) + unit)}</td></tr>')
+    if not rows:
+        return ""
+    body = "\n".join(rows)
+    return (f"<h2 id=differs>What the dissertation prints and this program does not give</h2>\n<div class=table><table>"
+            f"<thead><tr><th>Figure</th><th>What</th><th>Dissertation</th><th class=number>Measured here</th></tr></thead>"
+            f"<tbody>\n{body}\n</tbody></table></div>")
 
 
 def overview(anchored):
-    words = [verdict(claim)[1] for _, claim in anchored]
+    claims = [one for one in anchored if not is_set_up(one[1])]
+    words = [verdict(claim)[1] for _, claim in claims]
     failed = [(anchor, claim) for anchor, claim in anchored if verdict(claim)[1] == "FAIL"]
     style = "fail" if failed else "pass"
     lines = [f'<p class="count"><span class="{style}">{words.count("pass")} of {len(words)} claims pass</span>'
-             f', {len(failed)} failed, {words.count("open")} open, {words.count("not run")} not run.</p>',
-             "<p class=none>A claim is a statement about a figure with a criterion for a measured number. Open: measured on a "
-             "part of the runs only. Not run: a recording is missing.</p>"]
+             f', {words.count("differs")} differ from the dissertation, {words.count("FAIL")} failed, '
+             f'{words.count("open")} open, {words.count("not run")} not run.</p>',
+             "<p class=none>A claim is a statement about a figure with a criterion for a measured number. Differs: the dissertation "
+             "prints another value. Open: measured on a part of the runs only. Not run: a recording is missing.</p>"]
     if failed:
         items = "\n".join(f'<li><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}: '
                           f'{esc(claim.get("claim", ""))}</a></li>' for anchor, claim in failed)
         lines.append(f"<p class=fail>Failed:</p>\n<ul>\n{items}\n</ul>")
-    return "\n".join(lines)
+    lines.append(differing(anchored))
+    return "\n".join(line for line in lines if line)

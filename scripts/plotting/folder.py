@@ -5,7 +5,7 @@ import select
 import signal
 import sys
 
-from plotting.claims import read_claims, verdict
+from plotting.claims import is_set_up, read_claims, verdict
 from plotting.figure_file import SCHEMA, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
@@ -89,9 +89,9 @@ class Folder:
 def end(folder):
     if not folder.figures:
         raise PlotError(f"{folder.directory}: no figure files (fig*.h5) and no scorecard")
-    claims = folder.write()
-    passed = sum(verdict(claim)[1] == "pass" for claim in claims)
-    print(f"plot: {len(folder.figures)} figure(s), {passed} of {len(claims)} claims pass: {folder.out / 'index.html'}")
+    words = [verdict(claim)[1] for claim in folder.write() if not is_set_up(claim)]
+    print(f"plot: {len(folder.figures)} figure(s), {words.count('pass')} of {len(words)} claims pass, "
+          f"{words.count('differs')} differ: {folder.out / 'index.html'}")
 
 
 def plot(directory, out):

@@ -18,6 +18,7 @@ th { color: #555; font-weight: 600; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; } th.number { text-align: right; }
 tr:target { background: #fff3cd; }
 .pass { color: #1d6b37; font-weight: 600; } .fail { color: #b3141c; font-weight: 700; } .none { color: #666; }
+.differs { color: #8a5a00; font-weight: 700; }
 td.verdict, td.short { white-space: nowrap; }
 .count { font-size: 1.15rem; }
 .progress { background: #eef3f8; border-left: 4px solid #1f4e79; padding: .6rem 1rem; }

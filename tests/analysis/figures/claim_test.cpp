@@ -1,0 +1,42 @@
+// Verdicts of claims: what differs from the dissertation is no failure, until it is not as it was known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/figures/figure.h"
+
+namespace remote_touch::claim_test {
+namespace {
+
+Verdict differs(double measured) {
+  return claim_differs("1.1", "speed", "16", measured, 28, 30, "m/s").verdict;
+}
+
+TEST(Claim, DiffersWhereItIsKnownToDiffer) {
+  EXPECT_EQ(differs(29), Verdict::differs);
+  EXPECT_EQ(differs(28), Verdict::differs);
+  EXPECT_EQ(differs(16), Verdict::fail) << "what the paper prints is no longer different: to be looked at";
+  EXPECT_EQ(differs(30.1), Verdict::fail);
+  EXPECT_EQ(differs(std::nan("")), Verdict::fail);
+  EXPECT_EQ(claim_differs("1.1", "speed", "16", 29, 28, 30, "m/s").paper, "16");
+}
+
+TEST(Claim, ASetUpCheckIsMarkedAndStillJudged) {
+  const Claim good = set_up(claim_at_most("1.1", "depth", "-", 1, 2, "m")),
+              bad = set_up(claim_at_most("1.1", "depth", "-", 3, 2, "m"));
+  EXPECT_TRUE(good.set_up && bad.set_up);
+  EXPECT_EQ(good.verdict, Verdict::pass);
+  EXPECT_EQ(bad.verdict, Verdict::fail);
+  EXPECT_FALSE(claim_at_most("1.1", "depth", "-", 1, 2, "m").set_up);
+}
+
+TEST(Claim, EveryVerdictHasItsName) {
+  EXPECT_STREQ(verdict_name(Verdict::pass), "pass");
+  EXPECT_STREQ(verdict_name(Verdict::fail), "fail");
+  EXPECT_STREQ(verdict_name(Verdict::open), "open");
+  EXPECT_STREQ(verdict_name(Verdict::differs), "differs");
+  EXPECT_STREQ(verdict_name(Verdict::not_run), "not run");
+}
+
+}  // namespace
+}  // namespace remote_touch::claim_test
