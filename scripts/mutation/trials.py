@@ -1,0 +1,133 @@
+"""Runs the tests that reach a mutation, until one fails."""
+import dataclasses
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+STAGES = ("unit", "program", "bits")  # in this order; "bits": the stored results
+MAX_FIGURE_S = 6
+# A mistake may ask for all memory or write without end.
+LIMITS = ("prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
+
+
+@dataclasses.dataclass
+class Test:
+    name: str
+    command: list
+    stage: str
+    seconds: float = 0.0
+    reached: frozenset = frozenset()
+
+
+def unit_tests(build):
+    listed = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, capture_output=True, text=True, check=True)
+    for test in json.loads(listed.stdout)["tests"]:
+        labels = [p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"]
+        if labels == [["unit"]]:
+            yield Test(test["name"], test["command"][:2], "unit")
+
+
+def listed(program, section):
+    text = subprocess.run([program, "list"], capture_output=True, text=True, check=True).stdout
+    lines = iter(text.splitlines())
+    for line in lines:
+        if line == section:
+            break
+    for line in lines:
+        if not line.startswith("  "):
+            return
+        yield line.split()[0]
+
+
+def program_tests(root, build):
+    """Figures with their claims, the metamorphic checks, the command line where it judges results; the stored results."""
+    program = str(build / "remote-touch")
+    for name in listed(program, "figures"):
+        yield Test(f"figure {name}", [program, "-q", "figure", name, "-o", "figures"], "program")
+    for renderer in ("proxy", "tracked-sheet"):
+        yield Test(f"verify {renderer}", [program, "verify", renderer], "program")
+    for subject in ("compare", "results", "live", "scorecard", "sweep"):
+        yield Test(f"command_line_{subject}", [str(root / "tests/system/command_line" / subject), program], "program")
+    manifest = json.loads((root / "data/baselines/manifest.json").read_text())
+    for name in [baseline["name"] for baseline in manifest["baselines"]]:
+        yield Test(f"baseline {name}", [program, "-q", "baseline", "check", "--folder", str(root / "data/baselines"), name],
+                   "bits")
+
+
+class Machine:
+    """Runs commands of one build, each in an empty folder with limits."""
+
+    def __init__(self, root, build, scratch):
+        self.root, self.build, self.scratch = root, build, scratch
+        scratch.mkdir(parents=True, exist_ok=True)
+
+    def run(self, command, seconds, mutation=None, reached=None):
+        """True when the command ends with 0 in time."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.scratch))
+        env = os.environ | {"TMPDIR": str(folder), "OMP_NUM_THREADS": "1"}
+        env.setdefault("REMOTE_TOUCH_DATA", str(self.root.parent / "shared" / "data"))
+        for name, value in (("REMOTE_TOUCH_MUTATION", mutation), ("REMOTE_TOUCH_MUTATION_REACHED", reached)):
+            env.pop(name, None)
+            if value is not None:
+                env[name] = str(value)
+        process = subprocess.Popen([*LIMITS, *command], cwd=folder, env=env, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=0)
+        try:
+            return process.wait(seconds) == 0
+        except subprocess.TimeoutExpired:
+            return False
+        finally:
+            try:
+                os.killpg(process.pid, 9)
+            except ProcessLookupError:
+                pass
+            process.wait()
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def observe(self, test):
+        """Runs the test without a mutation: it has to pass. Notes its time and which mutations it reaches."""
+        with tempfile.NamedTemporaryFile(dir=self.scratch) as file:
+            begin = time.monotonic()
+            passed = self.run(test.command, 600, reached=file.name)
+            test.seconds = time.monotonic() - begin
+            data = pathlib.Path(file.name).read_bytes()
+        test.reached = frozenset(number for number, byte in enumerate(data) if byte)
+        return passed
+
+
+def room_of(test):
+    return test.name.split(".")[0] if test.stage == "unit" else ""
+
+
+def batches(tests, mutation_file):
+    """The tests of one program in one process; the programs of the mutation's own room first, then the quickest."""
+    programs = {}
+    for test in tests:
+        key = test.command[0] if test.stage == "unit" else test.name
+        programs.setdefault(key, []).append(test)
+    def place(group):
+        own = group[0].stage == "unit" and mutation_file.startswith(room_of(group[0]) + "/")
+        return (not own, sum(test.seconds for test in group))
+    for group in sorted(programs.values(), key=place):
+        seconds = 10 + 5 * sum(test.seconds for test in group)
+        if group[0].stage == "unit":
+            names = ":".join(test.command[1].split("=", 1)[1] for test in group)
+            program = group[0].command[0]
+            yield [program, f"--gtest_filter={names}", "--gtest_fail_fast"], seconds, program.split("/")[-1]
+        else:
+            yield group[0].command, seconds, group[0].name
+
+
+def try_mutation(machine, number, file, tests):
+    """(stage, name of what found it), or ("survived", "") or ("unreached", "")."""
+    reaching = [test for test in tests if number in test.reached]
+    for stage in STAGES:
+        of_stage = [test for test in reaching if test.stage == stage]
+        for command, seconds, name in batches(of_stage, file):
+            if not machine.run(command, seconds, mutation=number):
+                return stage, name
+    return ("survived" if reaching else "unreached"), ""
