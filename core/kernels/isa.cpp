@@ -10,6 +10,7 @@ namespace remote_touch {
 
 namespace {
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): level is a namespace
 #define REMOTE_TOUCH_KERNELS(name, level)                                                         \
   {                                                                                               \
     .isa = name, .gather = level::kGatherKernels, .proxy = level::kProxyKernels,                  \

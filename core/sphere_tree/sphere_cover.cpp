@@ -20,7 +20,7 @@ SphereCover::SphereCover(std::vector<Vec3> points, std::vector<Sphere> choice, d
     : choice_(std::move(choice)), cell_m_(cell_m) {
   const BoundingBox box = points.empty() ? BoundingBox(Vec3(Vec3::Zero())) : bounding_box(points);
   low_ = box.min();
-  const Vec3 high = box.max();
+  const Vec3& high = box.max();
   while (((high - low_) / cell_m_ + Vec3::Ones()).prod() > kMaxCellsOfBox) cell_m_ *= 2;
   for (int axis = 0; axis < 3; ++axis)
     cells_[axis] = static_cast<std::int64_t>((high[axis] - low_[axis]) / cell_m_) + 1;

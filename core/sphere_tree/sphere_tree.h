@@ -39,6 +39,7 @@ struct SphereNode {
   std::uint32_t first = 0, count = 0;
 };
 
+// NOLINTNEXTLINE(bugprone-reserved-identifier): a name that the compiler gives in a comparison of arrays
 class SphereTree {
  public:
   // Bounding spheres above the lowest level hold this many each, as long as there are more.

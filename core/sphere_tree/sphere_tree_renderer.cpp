@@ -39,7 +39,8 @@ Parameters region_parameters(ToolParameters& p) {
 
 SphereTreeRenderer::SphereTreeRenderer(const ToolParameters& parameters,
                                        std::shared_ptr<const VoxelTool> tool,
-                                       std::shared_ptr<const SphereTree> spheres, const Kernels& kernels)
+                                       const std::shared_ptr<const SphereTree>& spheres,
+                                       const Kernels& kernels)
     : p_(parameters),
       tool_(std::move(tool)),
       kernels_(kernels),

@@ -24,7 +24,7 @@ class SphereTreeRenderer final : public Renderer {
   // Uses only the parameters that region_parameters() lists. spheres: of the tool, in its frame. pre:
   // validate(parameters) is empty.
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
-                     std::shared_ptr<const SphereTree> spheres, const Kernels& kernels);
+                     const std::shared_ptr<const SphereTree>& spheres, const Kernels& kernels);
 
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;

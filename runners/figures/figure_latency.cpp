@@ -177,8 +177,10 @@ std::vector<Panel> panels() {
     list[3].curves.push_back(
         {"heart", "latency", column + "_ahead", CurveStyle::dashed, "slave sent ahead, settled"});
   }
-  for (std::size_t i = 0; i < list.size(); ++i)
-    list[i].place = std::pair(static_cast<double>(i / 2), static_cast<double>(i % 2));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::size_t row = i / 2, column = i % 2;
+    list[i].place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  }
   return list;
 }
 

@@ -13,6 +13,11 @@ namespace {
 // Updates in which the velocity estimate has reached its level.
 constexpr SettledFrom kSettled{kRiseFrames + 5};
 
+// Where the grid lies below the proxy, in units of its spacing: one of eight places.
+double phase_of(std::size_t step) {
+  return 0.125 * static_cast<double>(step);
+}
+
 LiftUpdates updates_of(const Trace& trace) {
   return lift_updates(trace, Vec3(0, 1, 0), kLift.r1_m, kLift.frame_rate_hz);
 }
@@ -24,8 +29,8 @@ std::vector<double> popped_over_phases(const FigureContext& context,
     lifts.push_back(Experiment::load(
         "fig4.12",
         {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=" + std::to_string(acceleration[i]),
-         "scenario.phase_x=" + std::to_string(0.125 * static_cast<double>(i / 8)),
-         "scenario.phase_z=" + std::to_string(0.125 * static_cast<double>(i % 8))}));
+         "scenario.phase_x=" + std::to_string(phase_of(i / 8)),
+         "scenario.phase_z=" + std::to_string(phase_of(i % 8))}));
   return context.measure(lifts, popped_through);
 }
 
@@ -42,8 +47,7 @@ Phases critical_over_phases(const FigureContext& context) {
     const std::vector<double> popped = popped_over_phases(context, middle);
     for (std::size_t i = 0; i < kCount; ++i) (popped[i] > 0.5 ? high : low)[i] = middle[i];
   }
-  for (std::size_t i = 0; i < kCount; ++i)
-    x.push_back(0.125 * static_cast<double>(i / 8)), z.push_back(0.125 * static_cast<double>(i % 8));
+  for (std::size_t i = 0; i < kCount; ++i) x.push_back(phase_of(i / 8)), z.push_back(phase_of(i % 8));
   phases.table.add("phase_x", "1", "shift of the grid in units of its spacing", x);
   phases.table.add("phase_z", "1", "shift of the grid in units of its spacing", z);
   phases.table.add("survives", "m/s^2", "largest acceleration tried without pop-through", low);

@@ -14,7 +14,7 @@ bool is_there(const std::filesystem::path& file, const Experiment& experiment, c
   if (!std::filesystem::is_regular_file(file, unreachable)) return false;
   try {
     const Hdf5Reader reader(file);
-    const TextAttributes attributes = reader.attributes();
+    const TextAttributes& attributes = reader.attributes();
     return attribute(attributes, "config") == experiment.to_json() &&
            attribute(attributes, "source_digest") == attribute(stored.attributes, "source_digest");
   } catch (const InputError&) {

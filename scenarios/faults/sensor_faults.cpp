@@ -39,8 +39,10 @@ std::vector<double> readout(const PointCloud& cloud) {
   if (cloud.image) {
     const auto width = static_cast<std::size_t>(cloud.image->camera.width);
     const double last = cloud.image->camera.height - 1;
-    for (std::size_t i = 0; last > 0 && i < fraction.size(); ++i)
-      fraction[i] = static_cast<double>(i / width) / last;
+    for (std::size_t i = 0; last > 0 && i < fraction.size(); ++i) {
+      const std::size_t row = i / width;
+      fraction[i] = static_cast<double>(row) / last;
+    }
     return fraction;
   }
   double low = std::numeric_limits<double>::infinity(), high = -low;

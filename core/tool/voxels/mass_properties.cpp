@@ -43,8 +43,8 @@ MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uin
   double count = 0;
   for (std::size_t n = 0; n < inside_nodes.size(); ++n) {
     if (!inside_nodes[n]) continue;
-    const Vec3 at(static_cast<double>(n % columns), static_cast<double>(n / columns % rows),
-                  static_cast<double>(n / columns / rows));
+    const std::size_t i = n % columns, j = n / columns % rows, k = n / columns / rows;
+    const Vec3 at(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
     ++count, first += at, second += at * at.transpose();
   }
   MassProperties all;

@@ -67,8 +67,10 @@ bool add_far(Variation& run) {
   const Vec3 middle = run.scene.hip_W.front();
   const double distance = kSceneRadius_m + kReaches * run.reach_m;
   std::vector<Vec3> points;
-  for (int i = 0; i < 27; ++i)
-    if (i != 13) points.push_back(middle + distance * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+  for (int i = 0; i < 27; ++i) {
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+    if (i != 13) points.push_back(middle + distance * Vec3(x, y, z));
+  }
   search_by_grid(run, run.scene.cell_m);
   add_points(run, points);
   return true;
