@@ -30,8 +30,7 @@ void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
   hdf5.save(file);
 }
 
-StoredHashes read_hashes(const std::filesystem::path& file) {
-  const Hdf5Reader hdf5(file);
+StoredHashes read_hashes(const Hdf5Reader& hdf5) {
   hdf5.require_kind("hashes", "the result of remote-touch hashes");
   StoredHashes stored{
       {hdf5.values<std::int32_t>("/hashes/tick"), hdf5.values<std::uint64_t>("/hashes/tick_hash")},

@@ -25,7 +25,10 @@ struct StoredHashes {
   TickHashes hashes;
   TextAttributes attributes;
 };
-StoredHashes read_hashes(const std::filesystem::path& file);  // throws InputError for any other file
+StoredHashes read_hashes(const Hdf5Reader& file);  // throws InputError for any other file
+inline StoredHashes read_hashes(const std::filesystem::path& file) {
+  return read_hashes(Hdf5Reader(file));
+}
 
 // Over the ticks that both have. The runs are equal up to and including tick `same`, and differ from tick
 // `different` on; the ticks between were not stored.

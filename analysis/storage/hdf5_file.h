@@ -63,7 +63,4 @@ struct Hdf5Content {
 // Reads every dataset; see hdf5_reader.h.
 Hdf5Content read_hdf5(const std::filesystem::path& file);
 
-// Offset in the file, bytes, of the values of a dataset that was stored in_place.
-std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset);
-
 }  // namespace remote_touch

@@ -1,13 +1,12 @@
 #include "analysis/storage/hdf5_reader.h"
 
 #include <algorithm>
-#include <array>
+#include <fstream>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 #include "analysis/storage/file_digest.h"
-#include "analysis/storage/hdf5_handle.h"
-#include "analysis/storage/hdf5_values.h"
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
@@ -21,52 +20,35 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 
 namespace {
 
-herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
-  if (info->type == H5O_TYPE_DATASET)
-    static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
-  return 0;
-}
-
-TextAttributes root_attributes(hid_t file) {
-  TextAttributes found;
-  H5O_info_t root;
-  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS));
-  for (hsize_t i = 0; i < root.num_attrs; ++i) {
-    const Handle attribute(H5Aopen_by_idx(file, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Aclose);
-    std::array<char, 256> name{};
-    H5Aget_name(attribute, name.size(), name.data());
-    found.emplace_back(name.data(), read_text(attribute));
+// Where the HDF5 part of a file may begin: at 0, 512, 1024, 2048, ...
+bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::ifstream stream(file, std::ios::binary);
+  for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
+    std::string found(kSignature.size(), '\0');
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(found.data(), static_cast<std::streamsize>(found.size()))) return false;
+    if (found == kSignature) return true;
   }
-  return found;
+  return false;
 }
 
 // Throws InputError unless the file exists, is HDF5 and as it was written. True when it is sealed.
 bool require_readable(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& what, const char* expected = "an HDF5 result") {
+    throw InputError(file.string(), what + ": expected " + expected);
+  };
   std::error_code unreachable;
-  if (!std::filesystem::exists(file, unreachable))
-    throw InputError(file.string(), "no such file: expected an HDF5 result");
-  if (std::filesystem::is_directory(file, unreachable))
-    throw InputError(file.string(), "a folder: expected an HDF5 result");
-  if (std::filesystem::file_size(file, unreachable) == 0)
-    throw InputError(file.string(), "empty: expected an HDF5 result");
+  if (!std::filesystem::exists(file, unreachable)) refuse("no such file");
+  if (std::filesystem::is_directory(file, unreachable)) refuse("a folder");
+  if (!std::filesystem::is_regular_file(file, unreachable)) refuse("a pipe or a device");
+  const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
+  if (size == 0) refuse("empty");
   const FileDigest found = file_digest_of(file);
   if (found == FileDigest::broken)
-    throw InputError(file.string(),
-                     "damaged or modified (its SHA-256 does not match): expected a result of this program");
-  if (H5Fis_hdf5(file.c_str()) <= 0)
-    throw InputError(file.string(), "not a readable HDF5 file: expected a result of this program");
+    refuse("damaged or modified (its SHA-256 does not match)", "a result of this program");
+  if (!has_hdf5_signature(file, size)) refuse("not a readable HDF5 file", "a result of this program");
   return found == FileDigest::valid;
-}
-
-Handle open_dataset(const std::shared_ptr<void>& file, const std::string& dataset) {
-  const hid_t found = H5Dopen2(*static_cast<Handle*>(file.get()), dataset.c_str(), H5P_DEFAULT);
-  if (found < 0) throw std::runtime_error(dataset + " is missing");
-  return Handle(found, H5Dclose);
-}
-
-std::string last_part(const std::string& path) {
-  return path.substr(path.rfind('/') + 1);
 }
 
 }  // namespace
@@ -106,31 +88,26 @@ void Hdf5Reader::require_version() const {
   throw InputError(file_, "is of schema " + schema + ": expected " + readable);
 }
 
-void Hdf5Reader::require_file_digest() const {
-  if (!sealed_)
-    damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
+Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> content)
+    : file_(std::move(file)), content_(std::move(content)) {
+  attributes_ = guarded([&] { return content_->attributes(); });
+  require_version();
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string()) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
-  sealed_ = require_readable(file);
+  const bool is_sealed = require_readable(file);
   guarded([&] {
-    handle_ = std::make_shared<Handle>(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    attributes_ = root_attributes(*static_cast<Handle*>(handle_.get()));
+    content_ = is_sealed ? open_hdf5(file) : open_hdf5_in_child(file);
+    attributes_ = content_->attributes();
   });
   require_version();
   // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
-  if (attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
-    require_file_digest();
+  if (!is_sealed && attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
+    damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
 }
 
 std::vector<std::string> Hdf5Reader::datasets() const {
-  return guarded([&] {
-    std::vector<std::string> names;
-    check(H5Ovisit2(*static_cast<Handle*>(handle_.get()), H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names,
-                    H5O_INFO_BASIC));
-    return names;
-  });
+  return guarded([&] { return content_->datasets(); });
 }
 
 bool Hdf5Reader::has(const std::string& dataset) const {
@@ -139,20 +116,15 @@ bool Hdf5Reader::has(const std::string& dataset) const {
 }
 
 Column Hdf5Reader::column(const std::string& dataset) const {
-  return guarded([&] { return read_dataset(open_dataset(handle_, dataset), last_part(dataset), nullptr); });
+  return guarded([&] { return content_->column(dataset); });
 }
 
 Column Hdf5Reader::rows(const std::string& dataset, std::size_t first, std::size_t count) const {
-  const RowRange some{first, count};
-  return guarded([&] { return read_dataset(open_dataset(handle_, dataset), last_part(dataset), &some); });
+  return guarded([&] { return content_->rows(dataset, first, count); });
 }
 
 std::int64_t Hdf5Reader::offset(const std::string& dataset) const {
-  return guarded([&] {
-    const haddr_t offset = H5Dget_offset(open_dataset(handle_, dataset));
-    if (offset == HADDR_UNDEF) throw std::runtime_error(dataset + " is not stored in one piece");
-    return static_cast<std::int64_t>(offset);
-  });
+  return guarded([&] { return content_->offset(dataset); });
 }
 
 Hdf5Content read_hdf5(const std::filesystem::path& file) {
@@ -160,10 +132,6 @@ Hdf5Content read_hdf5(const std::filesystem::path& file) {
   Hdf5Content content{reader.attributes(), {}};
   for (const std::string& path : reader.datasets()) content.datasets.emplace_back(path, reader.column(path));
   return content;
-}
-
-std::int64_t offset_of(const std::filesystem::path& file, const std::string& dataset) {
-  return Hdf5Reader(file).offset(dataset);
 }
 
 }  // namespace remote_touch

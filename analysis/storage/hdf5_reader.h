@@ -8,16 +8,20 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/hdf5_source.h"
 
 namespace remote_touch {
 
-// Every member throws InputError naming the file when it is damaged.
+// Every member throws InputError naming the file when it is damaged. A file with a valid seal is read in this
+// process; one without, which another program wrote or which is not finished, in a child process with limits
+// for each column: there the HDF5 library may crash or hang.
 class Hdf5Reader {
  public:
   // Throws InputError when the file is missing or not HDF5, when its seal is broken or a finished result of
   // this program has none, or when its layout is that of another version of this program.
   explicit Hdf5Reader(const std::filesystem::path& file);
+  // The content of a sealed file of that name; throws InputError for another version of this program.
+  Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> content);
 
   const std::string& file() const { return file_; }
   // Throws InputError unless the file is of that kind, see schema_name(); made_by: the command that makes
@@ -44,12 +48,10 @@ class Hdf5Reader {
 
  private:
   void require_version() const;
-  void require_file_digest() const;
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;
-  bool sealed_ = false;
-  std::shared_ptr<void> handle_;
+  std::shared_ptr<const Hdf5Source> content_;
   TextAttributes attributes_;
 };
 

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
@@ -61,7 +60,8 @@ std::vector<std::int32_t> checksums(const SweepResult& result) {
   return sums;
 }
 
-// Of what stays as it is while the sweep runs; the rest has a checksum for each run.
+}  // namespace
+
 std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   std::sort(attributes.begin(), attributes.end());
   std::vector<std::string> texts;
@@ -71,6 +71,8 @@ std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   if (!result.round.empty()) columns.push_back(round_column(result));
   return digest(columns);
 }
+
+namespace {
 
 // The attributes by name, as they come back when the file is read: whoever wrote it last, it has the same
 // bytes.
@@ -153,7 +155,7 @@ namespace {
 
 class SweepReader {
  public:
-  explicit SweepReader(const std::filesystem::path& file) : hdf5_(file), datasets_(hdf5_.datasets()) {
+  explicit SweepReader(const Hdf5Reader& file) : hdf5_(file), datasets_(hdf5_.datasets()) {
     hdf5_.require_kind("sweep", "the result of remote-touch sweep or merge");
   }
 
@@ -185,6 +187,14 @@ class SweepReader {
   std::vector<Value> values(const std::string& name, std::size_t length) const {
     return std::get<std::vector<Value>>(column<Value>(name, length).values);
   }
+  // Of its axes and replicates, which may be named more often than they are there.
+  std::size_t run_count(const SweepResult& result) const {
+    auto runs = static_cast<std::size_t>(result.replicates);
+    for (const Column& each : result.axes)
+      if (__builtin_mul_overflow(runs, each.length(), &runs)) damaged("its axes have too many values");
+    if (runs == 0) damaged("it has no runs");
+    return runs;
+  }
   [[noreturn]] void damaged(const std::string& how) const { hdf5_.damaged(how); }
 
  private:
@@ -207,7 +217,7 @@ void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result)
 
 }  // namespace
 
-StoredSweep read_sweep(const std::filesystem::path& file) {
+StoredSweep read_sweep(const Hdf5Reader& file) {
   const SweepReader reader(file);
   StoredSweep stored;
   SweepResult& result = stored.result;
@@ -215,7 +225,7 @@ StoredSweep read_sweep(const std::filesystem::path& file) {
   stored.in_progress = reader.has("checksum");
   for (const std::string& name : split(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
-  const std::size_t runs = result.run_count();
+  const std::size_t runs = reader.run_count(result);
   for (const std::string& name : split(reader.text("measures")))
     result.measures.push_back(reader.column<double>(name, runs));
   if (result.axes.empty() || result.measures.empty()) reader.damaged("it names no axes or no measures");

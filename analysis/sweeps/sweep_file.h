@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
@@ -26,13 +26,18 @@ struct StoredSweep {
   TextAttributes attributes;  // without schema and digest
   bool in_progress = false;
 };
-StoredSweep read_sweep(const std::filesystem::path& file);
+StoredSweep read_sweep(const Hdf5Reader& file);
+inline StoredSweep read_sweep(const std::filesystem::path& file) {
+  return read_sweep(Hdf5Reader(file));
+}
 
 // The layout while the sweep runs: nothing compressed, so that runs can be written in place, and a checksum
 // of every run in place of the error texts. A run whose checksum is wrong was written only in part.
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes);
 std::int32_t checksum(const SweepResult& result, std::size_t run);
+// Of what stays as it is while the sweep runs: axes, rounds and attributes.
+std::string plan_digest(const SweepResult& result, TextAttributes attributes);
 // Size of that file, bytes; the finished one is smaller.
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -22,10 +23,11 @@ SweepInProgress::SweepInProgress(const std::filesystem::path& file, const SweepR
                                  const TextAttributes& attributes, bool already_there)
     : file_(file) {
   if (!already_there) write_sweep_in_progress(file, result, attributes);
+  const Hdf5Reader there(file);
   for (const Column& measure : result.measures)
-    measure_offsets_.push_back(offset_of(file, "/sweep/" + measure.name));
-  state_offset_ = offset_of(file, "/sweep/state");
-  checksum_offset_ = offset_of(file, "/sweep/checksum");
+    measure_offsets_.push_back(there.offset("/sweep/" + measure.name));
+  state_offset_ = there.offset("/sweep/state");
+  checksum_offset_ = there.offset("/sweep/checksum");
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
     refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "): expected a writable file");

@@ -1,6 +1,8 @@
 #include "runners/provenance/recipe.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
@@ -29,10 +31,29 @@ void take(const Json& json, const char* name, Value& value) {
   if (const auto found = json.find(name); found != json.end()) value = found->get<Value>();
 }
 
+// Any number, which the library would convert, is no integer.
+void take_integer(const Json& json, const char* name, int& value) {
+  const auto found = json.find(name);
+  if (found == json.end()) return;
+  const auto number = found->is_number_integer() ? found->get<std::int64_t>() : -1;
+  if (number < 0 || number > std::numeric_limits<int>::max())
+    throw InputError(std::string(kRecipe) + "." + name, "expected an integer");
+  value = static_cast<int>(number);
+}
+
+void take_cell(const Json& json, std::vector<std::size_t>& cell) {
+  const auto found = json.find("cell");
+  if (found == json.end()) return;
+  for (const Json& place : found->get_ref<const Json::array_t&>()) {
+    if (!place.is_number_unsigned()) throw InputError(std::string(kRecipe) + ".cell", "expected integers");
+    cell.push_back(place.get<std::size_t>());
+  }
+}
+
 Recipe recipe_in(const Json& json) {
   Recipe recipe{json.at("action").get<std::string>(), json.at("subject").get<std::string>()};
-  take(json, "set", recipe.overrides), take(json, "cell", recipe.cell);
-  take(json, "replicate", recipe.replicate), take(json, "coarse", recipe.coarse);
+  take(json, "set", recipe.overrides), take_cell(json, recipe.cell);
+  take_integer(json, "replicate", recipe.replicate), take_integer(json, "coarse", recipe.coarse);
   take(json, "candidate", recipe.candidate), take(json, "tolerances", recipe.tolerances);
   return recipe;
 }

@@ -12,7 +12,6 @@ namespace remote_touch {
 
 namespace {
 
-using Json = nlohmann::json;
 constexpr std::size_t kTicksAtOnce = 1000;
 // Of a tick: 24 days at 1 kHz. Memory is taken for every tick of a run, those that were missed included.
 constexpr std::uint64_t kMaxTick = std::numeric_limits<std::int32_t>::max();
@@ -20,15 +19,15 @@ constexpr double kMaxSide_px = 65535;
 
 std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
   const CameraIntrinsics& c = view.camera;
-  Json json = {{"width", c.width},
-               {"height", c.height},
-               {"fx", c.fx},
-               {"fy", c.fy},
-               {"cx", c.cx},
-               {"cy", c.cy},
-               {"metres_per_unit", view.metres_per_unit},
-               {"frame_rate_hz", view.frame_rate_hz},
-               {"has_colour", view.has_colour}};
+  nlohmann::json json = {{"width", c.width},
+                         {"height", c.height},
+                         {"fx", c.fx},
+                         {"fy", c.fy},
+                         {"cx", c.cx},
+                         {"cy", c.cy},
+                         {"metres_per_unit", view.metres_per_unit},
+                         {"frame_rate_hz", view.frame_rate_hz},
+                         {"has_colour", view.has_colour}};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) json["X_WC"].push_back(X_WC(row, column));
   return json.dump();
@@ -103,7 +102,7 @@ void SessionWriter::finish() {
   file_.finish();
 }
 
-SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
+SessionReader::SessionReader(Hdf5Reader file) : file_(std::move(file)) {
   file_.require_kind("session", "which remote-touch live --record makes");
   read_view();
   captured_s_ = file_.values<double>("/frames/captured");
@@ -142,8 +141,8 @@ void SessionReader::require_order() const {
 }
 
 void SessionReader::read_view() try {
-  const Json json = Json::parse(attribute(file_.attributes(), "view"));
-  const auto number = [this](const Json& from, const char* key, double low, double high) {
+  const nlohmann::json json = nlohmann::json::parse(attribute(file_.attributes(), "view"));
+  const auto number = [this](const nlohmann::json& from, const char* key, double low, double high) {
     const double value = from.at(key);
     if (!(value >= low && value <= high)) file_.damaged(std::string(key) + " = " + from.at(key).dump());
     return value;
@@ -156,7 +155,7 @@ void SessionReader::read_view() try {
   c.cx = number(json, "cx", -kMax, kMax), c.cy = number(json, "cy", -kMax, kMax);
   view_.metres_per_unit = number(json, "metres_per_unit", kAboveZero, kMax);
   view_.frame_rate_hz = number(json, "frame_rate_hz", kAboveZero, kMax);
-  haptic_rate_hz_ = number(Json::parse(config()), "haptic_rate_hz", kAboveZero, kMax);
+  haptic_rate_hz_ = number(nlohmann::json::parse(config()), "haptic_rate_hz", kAboveZero, kMax);
   view_.has_colour = json.at("has_colour");
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
@@ -164,7 +163,7 @@ void SessionReader::read_view() try {
   if (!view_.X_WC.matrix().allFinite() || !view_.X_WC.linear().isUnitary(1e-6) ||
       view_.X_WC.linear().determinant() < 0)
     file_.damaged("X_WC is no pose");
-} catch (const Json::exception&) {
+} catch (const nlohmann::json::exception&) {
   file_.damaged("its attributes view and config");
 }
 

@@ -54,7 +54,8 @@ class SessionWriter {
 // Throws InputError naming the file when it is not a session or damaged.
 class SessionReader {
  public:
-  explicit SessionReader(const std::filesystem::path& file);
+  explicit SessionReader(const std::filesystem::path& file) : SessionReader(Hdf5Reader(file)) {}
+  explicit SessionReader(Hdf5Reader file);
 
   std::string config() const;  // the experiment that was run, as JSON
   double haptic_rate_hz() const { return haptic_rate_hz_; }

@@ -7,6 +7,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/sessions/sensor_cloud.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
@@ -94,17 +95,20 @@ double SessionHand::duration_s() const {
   return static_cast<double>(session_.tick_number(session_.tick_count() - 1) + 1) / session_.haptic_rate_hz();
 }
 
-std::string session_experiment(const std::string& path) try {
-  using Json = nlohmann::ordered_json;
-  Json json = Json::parse(SessionReader(find_recording(path)).config());
+std::string session_experiment(const SessionReader& session, const std::string& path) {
+  Json json = parse_json(session.config(), path + " config");
+  if (!json.is_object())
+    throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
   for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};
   // The hand is the recorded one, and frames come when and as they came.
   for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
   for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
     json[setting] = 0;
   return json.dump();
-} catch (const nlohmann::json::exception&) {
-  throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
+}
+
+std::string session_experiment(const std::string& path) {
+  return session_experiment(SessionReader(find_recording(path)), path);
 }
 
 }  // namespace remote_touch

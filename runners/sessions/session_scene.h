@@ -69,5 +69,6 @@ RecordingPart input_files(const SessionHand::Settings& s);
 
 // The experiment of a session, as JSON: what was run, with the recorded frames and hand.
 std::string session_experiment(const std::string& path);
+std::string session_experiment(const SessionReader& session, const std::string& path);
 
 }  // namespace remote_touch

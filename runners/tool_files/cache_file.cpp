@@ -70,7 +70,7 @@ void CacheWriter::write(const char* data, std::size_t size) {
 }
 
 bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
-                     const std::function<void(CacheReader&)>& take) {
+                     const std::function<void(Unpacker&)>& take) {
   if (folder.empty()) return false;
   const MappedFile file(folder / (key + "." + kind.name));
   const std::string_view bytes = file.bytes();
@@ -80,7 +80,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
   Sha256 hash;
   hash.add(content.data(), content.size());
   if (hash.hex() != bytes.substr(content.size())) return false;
-  CacheReader unpack(content.data() + line.size(), content.data() + content.size());
+  Unpacker unpack(content.data() + line.size(), content.data() + content.size());
   std::string stored_key;
   unpack.text(stored_key);
   take(unpack);

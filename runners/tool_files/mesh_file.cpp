@@ -10,9 +10,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "analysis/storage/child_process.h"
+#include "analysis/storage/packed_values.h"
 #include "core/parameters/input_error.h"
-#include "runners/tool_files/cache_file.h"
-#include "runners/tool_files/child_process.h"
+#include "core/tool/mesh/mesh_corners.h"
 #include "runners/tool_files/ply_header.h"
 
 namespace remote_touch {
@@ -20,23 +21,13 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 5'000'000;
-// What reading may take: so much for any file, and for each byte of it, more than the costliest kind needs.
-constexpr std::size_t kMinMemory = 512u << 20, kMemoryPerByte = 64;
-constexpr unsigned kMinTime_s = 10;  // and 1 s for each MiB
+constexpr std::size_t kMemoryPerByte = 64;  // of a file: more than the costliest kind needs
 
 std::string ending_of(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return ending;
-}
-
-// As Unpacking takes it.
-template <class Value>
-std::string packed(const std::vector<Value>& values) {
-  const std::size_t count = values.size();
-  std::string bytes(reinterpret_cast<const char*>(&count), sizeof count);
-  return bytes.append(reinterpret_cast<const char*>(values.data()), count * sizeof(Value));
 }
 
 std::string one_line(std::string text) {
@@ -71,6 +62,9 @@ void add_mesh(const aiMesh& from, Welded& welded, TriangleMesh& mesh) {
   for (unsigned v = 0; v < from.mNumVertices; ++v) index.push_back(welded.add(from.mVertices[v]));
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
     const aiFace& face = from.mFaces[f];
+    for (unsigned corner = 0; corner < face.mNumIndices; ++corner)
+      if (face.mIndices[corner] >= index.size())
+        throw std::runtime_error("a face has a vertex that is not there");
     for (unsigned corner = 2; corner < face.mNumIndices; ++corner)
       mesh.triangles.push_back(
           {index[face.mIndices[0]], index[face.mIndices[corner - 1]], index[face.mIndices[corner]]});
@@ -103,17 +97,16 @@ TriangleMesh mesh_by_assimp(const std::filesystem::path& file) {
 }
 
 TriangleMesh mesh_in_child(const std::filesystem::path& file) {
-  const std::size_t size = std::filesystem::file_size(file);
-  const ChildLimits limits{kMinMemory + kMemoryPerByte * size,
-                           kMinTime_s + static_cast<unsigned>(size >> 20)};
-  const std::string bytes = in_child(limits, [&file] {
+  const std::string bytes = in_child(limits_to_read(file, kMemoryPerByte), [&file] {
     const TriangleMesh mesh = mesh_by_assimp(file);
-    return packed(mesh.vertices) + packed(mesh.triangles);
+    MemoryPacker pack;
+    pack.list(mesh.vertices), pack.list(mesh.triangles);
+    return pack.take();
   });
   TriangleMesh mesh;
-  CacheReader unpack(bytes.data(), bytes.data() + bytes.size());
+  Unpacker unpack(bytes);
   unpack.list(mesh.vertices), unpack.list(mesh.triangles);
-  if (!unpack.done()) throw std::runtime_error("its reader gave half an answer");
+  if (!unpack.done() || !has_its_vertices(mesh)) throw std::runtime_error("its reader gave half an answer");
   return mesh;
 }
 

@@ -25,18 +25,19 @@ FlatTree flat(const SphereTree& tree) {
   return all;
 }
 
-// False where the counts are not those of the leaves.
+// False where the counts are not those of the leaves, or there are none.
 bool grow(const FlatTree& flat, SphereTree& tree) {
   std::size_t at = 0;
   for (const std::size_t count : flat.counts) {
-    if (4 * count > flat.leaves.size() - at) return false;
+    if (count == 0 || 4 * count > flat.leaves.size() - at) return false;
     std::vector<Sphere> node;
     for (std::size_t i = 0; i < count; ++i, at += 4)
       node.push_back({{flat.leaves[at], flat.leaves[at + 1], flat.leaves[at + 2]}, flat.leaves[at + 3]});
     tree.add(node);
   }
+  if (tree.empty() || at != flat.leaves.size()) return false;
   tree.finish();
-  return at == flat.leaves.size();
+  return true;
 }
 
 // Every field, in order, for both directions.
@@ -59,7 +60,7 @@ std::string spheres_key(const std::string& tool_key, int max_leaves) {
 std::optional<ToolSpheres> read_spheres(const fs::path& folder, const std::string& key) {
   ToolSpheres spheres;
   FlatTree tree;
-  const auto take = [&](CacheReader& unpack) { visit(unpack, tree, spheres); };
+  const auto take = [&](Unpacker& unpack) { visit(unpack, tree, spheres); };
   if (!read_cache_file(folder, kSpheresKind, key, take) || !grow(tree, spheres.spheres)) return {};
   return spheres;
 }

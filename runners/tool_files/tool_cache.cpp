@@ -1,7 +1,9 @@
 #include "runners/tool_files/tool_cache.h"
 
+#include <cmath>
 #include <cstdlib>
 
+#include "core/tool/mesh/mesh_corners.h"
 #include "runners/tool_files/cache_file.h"
 
 namespace remote_touch {
@@ -28,6 +30,17 @@ void visit(Direction& pack, Stored& stored) {
   for (int i = 0; i < 9; ++i) pack.value(tool.inertia_m2(i / 3, i % 3));
   pack.value(tool.reach_m);
   pack.text(stored.report);
+}
+
+// What a program that makes tools cannot have written, whatever the hash says.
+bool is_sound(const VoxelTool& tool) {
+  std::size_t cells = 1, nodes = 1;
+  for (const int along : tool.grid.cells)
+    if (along < 1 || __builtin_mul_overflow(cells, static_cast<std::size_t>(along), &cells) ||
+        __builtin_mul_overflow(nodes, static_cast<std::size_t>(along) + 1, &nodes))
+      return false;
+  return tool.voxels.size() == cells && tool.distance_m.size() == nodes && has_its_vertices(tool.mesh) &&
+         tool.grid.origin_T.allFinite() && tool.grid.size_m > 0 && std::isfinite(tool.grid.size_m);
 }
 
 }  // namespace
@@ -62,11 +75,8 @@ std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& se
 
 std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
   StoredTool stored;
-  if (!read_cache_file(folder, kToolKind, key, [&](CacheReader& unpack) { visit(unpack, stored); }))
-    return {};
-  const VoxelGrid& grid = stored.tool.grid;
-  if (stored.tool.voxels.size() != grid.cell_count() || stored.tool.distance_m.size() != grid.node_count())
-    return {};
+  if (!read_cache_file(folder, kToolKind, key, [&](Unpacker& unpack) { visit(unpack, stored); })) return {};
+  if (!is_sound(stored.tool)) return {};
   return stored;
 }
 

@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 }
 
 constexpr double kNominalRate_hz = 30;  // of the Kinect class; used where a recording does not tell
+constexpr double kMaxRate_hz = 10000;   // the fastest haptic rate: more would only pile frames up in a tick
 
 // What camera.json tells of a camera; the rate, which TUM folders do not need, is read apart.
 struct CameraFile {
@@ -69,11 +70,9 @@ int pixel_count(const fs::path& file, const Json& json, const std::string& key) 
   refuse(file, key + " = " + shown(json[key]) + ": expected an integer from 1 to 65535");
 }
 
-// Up to 10 kHz, the fastest haptic rate: more would only pile frames up within a tick.
 double frame_rate(const fs::path& file, const Json& json) {
-  constexpr double kMax_hz = 10000;
   const double value = number(file, json, "frame_rate_hz", true);
-  if (value <= kMax_hz) return value;
+  if (value <= kMaxRate_hz) return value;
   refuse(file, "frame_rate_hz = " + shown(json["frame_rate_hz"]) + ": expected above 0 to 10000");
 }
 
@@ -137,6 +136,8 @@ RecordingIndex index_tum(const fs::path& folder) {
   index.frames = associate_stamps(depth, colour);
   const double intervals = static_cast<double>(depth.size() - 1);
   index.frame_rate_hz = intervals > 0 ? intervals / index.frames.back().captured_s : kNominalRate_hz;
+  if (index.frame_rate_hz > kMaxRate_hz)
+    refuse(folder / "depth.txt", "has timestamps of more than 10000 frames a second: expected seconds");
   return index;
 }
 

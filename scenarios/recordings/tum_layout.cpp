@@ -11,12 +11,15 @@
 namespace remote_touch {
 namespace {
 
+constexpr double kMaxStamp_s = 1e12;  // some ten thousand years: differences of stamps are exact to 0.1 ms
+
 // Seconds since an arbitrary origin; digits that from_chars does not take to the end, nan and inf are
 // refused. where: the list with ":line".
 double read_stamp(const std::string& where, const std::string& stamp) {
   double stamp_s = 0;
   const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
-  if (error == std::errc() && end == stamp.data() + stamp.size() && std::isfinite(stamp_s)) return stamp_s;
+  if (error == std::errc() && end == stamp.data() + stamp.size() && std::abs(stamp_s) <= kMaxStamp_s)
+    return stamp_s;
   throw InputError(where, "timestamp '" + stamp.substr(0, 32) + "': expected a number of seconds");
 }
 
@@ -52,14 +55,18 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
 
 std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
                                             const std::vector<StampedFile>& colour) {
-  constexpr double kMaxStamp_s = 0.02;  // the tolerance of the benchmark's own association
+  constexpr double kMaxApart_s = 0.02;  // the tolerance of the benchmark's own association
   std::vector<RecordedFrame> frames;
+  auto first = colour.begin();
   for (const StampedFile& image : depth) {
     RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
-    double nearest_s = kMaxStamp_s;
-    for (const StampedFile& other : colour) {
-      const double off_s = std::abs(other.stamp_s - image.stamp_s);
-      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other.file;
+    double nearest_s = kMaxApart_s;
+    // Stamps rise: what is too early for this image is too early for all later ones.
+    while (first != colour.end() && image.stamp_s - first->stamp_s > kMaxApart_s) ++first;
+    for (auto other = first; other != colour.end() && other->stamp_s - image.stamp_s <= kMaxApart_s;
+         ++other) {
+      const double off_s = std::abs(other->stamp_s - image.stamp_s);
+      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other->file;
     }
     frames.push_back(frame);
   }

@@ -11,6 +11,7 @@
 #include <cerrno>
 
 #include "runners/live/devices/deadline_socket.h"
+#include "runners/live/devices/haply_place.h"
 #endif
 
 namespace remote_touch {
@@ -183,33 +184,6 @@ class BeastLink final : public HaplyLink {
   DeviceFault lost_;
 };
 
-struct Place {
-  std::string host = "127.0.0.1", port = "10001", target = "/";
-};
-
-Place place_of(const DeviceAddress& address) {
-  Place place;
-  std::string rest = address.place();
-  if (rest.empty()) return place;
-  const std::string scheme = "ws://";
-  if (rest.compare(0, scheme.size(), scheme) != 0)
-    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
-  rest.erase(0, scheme.size());
-  const std::size_t slash = rest.find('/');
-  if (slash != std::string::npos) place.target = rest.substr(slash);
-  rest.erase(std::min(slash, rest.size()));
-  const std::size_t colon = rest.rfind(':');
-  if (colon != std::string::npos && rest.back() != ']') {
-    place.port = rest.substr(colon + 1);
-    rest.erase(colon);
-  }
-  if (rest.size() > 2 && rest.front() == '[' && rest.back() == ']') rest = rest.substr(1, rest.size() - 2);
-  if (rest.empty() || place.port.empty())
-    throw address.refusal("is no address of the Haply service; write ws://HOST:PORT");
-  place.host = rest;
-  return place;
-}
-
 }  // namespace
 
 bool haply_link_is_compiled_in() {
@@ -218,7 +192,7 @@ bool haply_link_is_compiled_in() {
 
 std::unique_ptr<HaplyLink> open_haply_link(const DeviceAddress& address, const Clock& clock,
                                            double deadline_s) {
-  const Place place = place_of(address);
+  const HaplyPlace place = haply_place(address);
   try {
     return std::make_unique<BeastLink>(place.host, place.port, place.target, clock, deadline_s);
   } catch (const std::exception& error) {

@@ -134,18 +134,17 @@ void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
 }
 
 StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
-  if (kind == "hashes") return read_hashes(result.file());
+  if (kind == "hashes") return read_hashes(result);
   return {hashes_of_trace(StoredTrace(result), 1), result.attributes()};
 }
 
-ResultComparison compare_files(const std::filesystem::path& baseline, const std::filesystem::path& candidate,
-                               const ComparisonRules& rules) {
-  const Hdf5Reader first_file(baseline), second_file(candidate);
+ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader& second_file,
+                                 const ComparisonRules& rules) {
   const std::string ours = kind_of(first_file), theirs = kind_of(second_file);
   const auto is_trace_or_hashes = [](const std::string& kind) { return kind == "trace" || kind == "hashes"; };
   const bool hashed = ours == "hashes" || theirs == "hashes";
   if (ours != theirs && !(hashed && is_trace_or_hashes(ours) && is_trace_or_hashes(theirs)))
-    throw InputError(candidate.string(), "is a " + theirs + ": expected a " + ours + ", as the baseline is");
+    throw InputError(second_file.file(), "is a " + theirs + ": expected a " + ours + ", as the baseline is");
   if (hashed) {
     if (!rules.tolerances.empty())
       throw InputError("tolerance of " + rules.tolerances.begin()->first,
@@ -157,7 +156,7 @@ ResultComparison compare_files(const std::filesystem::path& baseline, const std:
     const StoredTrace first(first_file), second(second_file);
     return compare_trace(first, first.attributes(), second, second.attributes(), rules);
   }
-  const StoredSweep first = read_sweep(baseline), second = read_sweep(candidate);
+  const StoredSweep first = read_sweep(first_file), second = read_sweep(second_file);
   return compare_sweep(first.result, first.attributes, second.result, second.attributes, rules);
 }
 
@@ -230,10 +229,10 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
   return result;
 }
 
-ResultComparison compare_results(const std::filesystem::path& baseline,
-                                 const std::filesystem::path& candidate, const ComparisonRules& rules) {
-  ResultComparison result = compare_files(baseline, candidate, rules);
-  result.baseline = baseline.string(), result.candidate = candidate.string();
+ResultComparison compare_results(const Hdf5Reader& baseline, const Hdf5Reader& candidate,
+                                 const ComparisonRules& rules) {
+  ResultComparison result = compare_by_kind(baseline, candidate, rules);
+  result.baseline = baseline.file(), result.candidate = candidate.file();
   return result;
 }
 

@@ -41,8 +41,13 @@ std::string kind_of(const Hdf5Reader& result);
 
 // Throws InputError for files that cannot be read or are of different kinds (but hashes may be compared with
 // a trace), and for tolerances of unknown columns; hashes have no tolerances.
-ResultComparison compare_results(const std::filesystem::path& baseline,
-                                 const std::filesystem::path& candidate, const ComparisonRules& rules);
+ResultComparison compare_results(const Hdf5Reader& baseline, const Hdf5Reader& candidate,
+                                 const ComparisonRules& rules);
+inline ResultComparison compare_results(const std::filesystem::path& baseline,
+                                        const std::filesystem::path& candidate,
+                                        const ComparisonRules& rules) {
+  return compare_results(Hdf5Reader(baseline), Hdf5Reader(candidate), rules);
+}
 
 // Compares traces from any source. The attributes hold configuration and provenance of each.
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,

@@ -1,5 +1,6 @@
 // Files that cannot be read as results are refused in one line.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -29,6 +30,8 @@ TEST(ReadHdf5, MissingOrAnotherKindOfFile) {
   expect_unreadable(folder.write("signature.h5", "\x89HDF\r\n\x1a\n"));
   expect_unreadable(folder.write("a file", "") / "inside.h5");
   expect_unreadable(folder / std::string(300, 'a'));
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);  // nobody writes into it
+  expect_unreadable(folder / "pipe");
   fs::create_symlink(folder / "loop", folder / "loop");
   expect_unreadable(folder / "loop");
 }

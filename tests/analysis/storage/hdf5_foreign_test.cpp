@@ -194,5 +194,13 @@ TEST(ForeignDatasets, LongIntegersKeepTheirValues) {
             Values(std::vector<double>(values.begin(), values.end())));
 }
 
+// Each ended the program: by a signal, or never. Which of the library's ways it is depends on its version.
+TEST(DamagedFiles, ThatTheLibraryDoesNotSurviveAreRefused) {
+  const fs::path seeds = fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus/hdf5_bytes";
+  for (const char* name : {"library-bus-error", "library-crashes-1", "library-crashes-2", "library-crashes-3",
+                           "library-divides-by-zero", "library-never-ends"})
+    EXPECT_HAS(refusal_of(seeds / name), std::string(name) + ": damaged (") << name;
+}
+
 }  // namespace
 }  // namespace remote_touch::hdf5_foreign_test

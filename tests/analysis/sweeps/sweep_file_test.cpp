@@ -12,6 +12,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/file_lock.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
@@ -129,7 +130,8 @@ TEST(SweepInProgress, ARunWrittenInPartIsPending) {
       {"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}};
   for (const auto& [name, size] : parts) {
     const auto begin =
-        static_cast<std::size_t>(offset_of(folder / "x.h5", std::string("/sweep/") + name)) + 8 * size;
+        static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name)) +
+        8 * size;
     for (std::size_t byte = 0; byte < size; ++byte) {
       if (std::string(name) == "state" && byte > 0) continue;  // no state at all: the file is refused below
       std::string torn = whole;
@@ -138,7 +140,7 @@ TEST(SweepInProgress, ARunWrittenInPartIsPending) {
     }
   }
   std::string mad = whole;
-  mad[static_cast<std::size_t>(offset_of(folder / "x.h5", "/sweep/state")) + 33] ^= 1;
+  mad[static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset("/sweep/state")) + 33] ^= 1;
   EXPECT_HAS(refusal([&] { read_sweep(folder.write("mad.h5", mad)); }), "damaged (a state is unknown)");
 }
 
@@ -148,7 +150,7 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   std::string swapped = bytes_of(folder / "x.h5");
   for (const auto& [name, size] : {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}}) {
-    char* begin = swapped.data() + offset_of(folder / "x.h5", std::string("/sweep/") + name);
+    char* begin = swapped.data() + Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name);
     std::memcpy(begin + 2 * size, begin + 8 * size, static_cast<std::size_t>(size));  // run 8 over run 2
   }
   EXPECT_EQ(read_sweep(folder.write("swapped.h5", swapped)).result.state[2], RunState::pending);
@@ -162,7 +164,7 @@ TEST(SweepInProgress, DamageAsksForNoRuns) {
   for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[4] = kNan;
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   std::string torn = bytes_of(folder / "x.h5");
-  torn[static_cast<std::size_t>(offset_of(folder / "x.h5", "/sweep/first")) + 32] ^= 1;
+  torn[static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset("/sweep/first")) + 32] ^= 1;
   EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
 }
 
@@ -223,6 +225,23 @@ TEST(SweepFile, DamageIsRefused) {
   why(sound.substr(0, sound.size() / 2)), why(sound.substr(0, 100)), why(""), why("text");
   write_trace(folder / "trace.h5", awkward_trace(20), kProvenance, {});
   EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/2");
+}
+
+// 2^64 runs are none for a computer that counts with 64 bits.
+TEST(SweepFile, AxesNamedMoreOftenThanTheyAreThereAreRefused) {
+  const TestFolder folder("sweep_file_test");
+  const auto why = [&](int times, const std::vector<double>& values) {
+    std::string axes = "a";
+    for (int i = 1; i < times; ++i) axes += ",a";
+    Hdf5Writer hdf5;
+    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", axes}, {"measures", "m"}});
+    hdf5.group("/sweep");
+    hdf5.columns("/sweep", {{"a", "1", "", values, 1, {}}, {"m", "1", "", std::vector<double>{}, 1, {}}}, "");
+    hdf5.save(folder / "x.h5");
+    return refusal([&] { read_sweep(folder / "x.h5"); });
+  };
+  EXPECT_HAS(why(64, {0, 1}), "damaged (its axes have too many values)");
+  EXPECT_HAS(why(1, {}), "damaged (it has no runs)");
 }
 
 }  // namespace

@@ -46,6 +46,10 @@ TEST(Recipe, OfAnotherKindIsNone) {
                            "{\"action\": \"run\", \"subject\": \"x\", \"set\": \"seed=3\"}",
                            "{\"action\": \"run\", \"subject\": \"x\", \"set\": [1]}",
                            "{\"action\": \"replay\", \"subject\": \"x\", \"cell\": \"3,4\"}",
+                           "{\"action\": \"replay\", \"subject\": \"x\", \"cell\": [1e300]}",
+                           "{\"action\": \"replay\", \"subject\": \"x\", \"cell\": [-1]}",
+                           "{\"action\": \"replay\", \"subject\": \"x\", \"replicate\": 1e300}",
+                           "{\"action\": \"figure\", \"subject\": \"x\", \"coarse\": 99999999999}",
                            "{\"action\": \"run\", \"action\": \"run\", \"subject\": \"x\"}"})
     EXPECT_FALSE(recipe_of({{kRecipe, text}})) << text;
   EXPECT_FALSE(recipe_of({}));

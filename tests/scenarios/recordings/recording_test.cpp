@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/recordings/tum_layout.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::recording_test {
@@ -215,6 +216,10 @@ TEST_F(Recording, RefusesBadTumLists) {
   expect_error("depth.txt:3", "timestamp 'noon': expected a number of seconds");
   folder_.write("depth.txt", "nan depth/a.png\n");
   expect_error("depth.txt:1", "timestamp 'nan'");
+  folder_.write("depth.txt", "1e300 depth/a.png\n");
+  expect_error("depth.txt:1", "timestamp '1e300'");
+  folder_.write("depth.txt", "0 depth/a.png\n1e-9 depth/a.png\n");
+  expect_error("depth.txt", "has timestamps of more than 10000 frames a second");
   folder_.write("depth.txt", "1.0\r\n");
   expect_error("depth.txt:1", "'1.0': expected one timestamp and one file name");
   folder_.write("depth.txt", "1.0 depth/a.png rgb/a.png\n");
@@ -226,6 +231,19 @@ TEST_F(Recording, RefusesBadTumLists) {
   folder_.write("depth.txt", "1.0 depth/a.png\n");
   folder_.write("rgb.txt", "2.0 depth/a.png\n1.5 depth/a.png\n");
   expect_error("rgb.txt:2", "timestamp 1.5: expected above");
+}
+
+// 4e10 pairs of lines: each depth image is compared with the colour images near it only.
+TEST(TumLists, OfManyLinesAreAssociatedAtOnce) {
+  std::vector<StampedFile> depth, colour;
+  for (int i = 0; i < 200'000; ++i) {
+    depth.push_back({0.03 * i, std::to_string(i)});
+    colour.push_back({0.03 * i + (i % 2 == 0 ? 0.005 : 0.024), std::to_string(i)});
+  }
+  const std::vector<RecordedFrame> frames = associate_stamps(depth, colour);
+  ASSERT_EQ(frames.size(), depth.size());
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    ASSERT_EQ(frames[i].colour, i % 2 == 0 ? std::to_string(i) : "") << i;
 }
 
 TEST_F(Recording, StreamsPcdFiles) {

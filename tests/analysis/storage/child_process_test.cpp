@@ -1,5 +1,5 @@
 // Work in a process of its own: its answer, its failure, and its end where it asks for too much.
-#include "runners/tool_files/child_process.h"
+#include "analysis/storage/child_process.h"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,6 @@ TEST(ChildProcess, ThatNeverEndsIsEnded) {
 
 TEST(ChildProcess, ThatCrashesIsTold) {
   EXPECT_EQ(failure_of([]() -> std::string {
-              std::signal(SIGSEGV, SIG_DFL);
               std::raise(SIGSEGV);
               return {};
             }),

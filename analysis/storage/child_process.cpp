@@ -1,4 +1,4 @@
-#include "runners/tool_files/child_process.h"
+#include "analysis/storage/child_process.h"
 
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -53,9 +53,11 @@ void limit(int resource, rlim_t wanted) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
 }
 
-// In the child. Signals end it, also the end of the program that waits for it.
+// In the child. Signals end it, whatever the program does with them; so does the end of the program.
 [[noreturn]] void answer(int to, const ChildLimits& limits, const std::function<std::string()>& work) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) std::signal(signal, SIG_DFL);
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP})
+    std::signal(signal, SIG_DFL);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_s);
@@ -84,6 +86,14 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
 }
 
 }  // namespace
+
+ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory_for_each_byte) {
+  constexpr std::size_t kMinMemory = 512u << 20;
+  std::error_code unreachable;  // the reader says why
+  const std::uintmax_t found = std::filesystem::file_size(file, unreachable);
+  const std::size_t size = unreachable ? 0 : static_cast<std::size_t>(found);
+  return {kMinMemory + memory_for_each_byte * size, 1 + static_cast<unsigned>(size >> 20)};
+}
 
 std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
   int ends[2];

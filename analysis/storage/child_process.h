@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -12,6 +13,9 @@ struct ChildLimits {
   std::size_t memory_bytes;  // in addition to what this process has
   unsigned processor_s;
 };
+
+// What reading a file may take: 512 MiB and so many bytes for each of its own; 1 s and 1 s for each MiB.
+ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory_for_each_byte);
 
 // Returns what work returns; its changes to memory do not reach this process. Throws std::runtime_error with
 // the message of the exception of work, or with how the process ended.

@@ -1,0 +1,76 @@
+#include "analysis/storage/hdf5_source.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_values.h"
+
+namespace remote_touch {
+
+namespace {
+
+herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET)
+    static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
+  return 0;
+}
+
+std::string last_part(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+class LibrarySource final : public Hdf5Source {
+ public:
+  explicit LibrarySource(const std::string& file)
+      : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {}
+
+  TextAttributes attributes() const override {
+    TextAttributes found;
+    H5O_info_t root;
+    check(H5Oget_info2(file_, &root, H5O_INFO_NUM_ATTRS));
+    for (hsize_t i = 0; i < root.num_attrs; ++i) {
+      const Handle attribute(
+          H5Aopen_by_idx(file_, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+      std::array<char, 256> name{};
+      H5Aget_name(attribute, name.size(), name.data());
+      found.emplace_back(name.data(), read_text(attribute));
+    }
+    return found;
+  }
+  std::vector<std::string> datasets() const override {
+    std::vector<std::string> names;
+    check(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names, H5O_INFO_BASIC));
+    return names;
+  }
+  Column column(const std::string& dataset) const override {
+    return read_dataset(opened(dataset), last_part(dataset), nullptr);
+  }
+  Column rows(const std::string& dataset, std::size_t first, std::size_t count) const override {
+    const RowRange some{first, count};
+    return read_dataset(opened(dataset), last_part(dataset), &some);
+  }
+  std::int64_t offset(const std::string& dataset) const override {
+    const haddr_t offset = H5Dget_offset(opened(dataset));
+    if (offset == HADDR_UNDEF) throw std::runtime_error(dataset + " is not stored in one piece");
+    return static_cast<std::int64_t>(offset);
+  }
+
+ private:
+  Handle opened(const std::string& dataset) const {
+    const hid_t found = H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT);
+    if (found < 0) throw std::runtime_error(dataset + " is missing");
+    return Handle(found, H5Dclose);
+  }
+
+  Handle file_;
+};
+
+}  // namespace
+
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  return std::make_unique<LibrarySource>(file.string());
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+// What readers ask of an HDF5 file, and who answers: the HDF5 library in this process, or in a child.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+
+namespace remote_touch {
+
+// Members throw std::exception saying what is wrong with the file, without its name.
+class Hdf5Source {
+ public:
+  virtual ~Hdf5Source() = default;
+  virtual TextAttributes attributes() const = 0;          // text attributes of the root
+  virtual std::vector<std::string> datasets() const = 0;  // paths, sorted
+  virtual Column column(const std::string& dataset) const = 0;
+  // Rows first .. first + count - 1.
+  virtual Column rows(const std::string& dataset, std::size_t first, std::size_t count) const = 0;
+  // Of its values, bytes; throws when they are not stored in one piece.
+  virtual std::int64_t offset(const std::string& dataset) const = 0;
+};
+
+// The library crashes, hangs or takes all memory on some damaged files: only for those that are as they were
+// written.
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file);
+
+// Each answer comes from a child process with limits, which alone calls the library.
+std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file);
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// Where Haply's service listens, from its address.
+#pragma once
+
+#include <string>
+
+#include "runners/live/devices/device_address.h"
+
+namespace remote_touch {
+
+struct HaplyPlace {
+  std::string host = "127.0.0.1", port = "10001", target = "/";
+};
+
+// place of the address: ws://HOST[:PORT][/PATH], or nothing. Throws InputError.
+HaplyPlace haply_place(const DeviceAddress& address);
+
+}  // namespace remote_touch

@@ -1,0 +1,30 @@
+#include "tests/fuzz/cache_target.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "analysis/storage/packed_values.h"
+#include "analysis/storage/sha256.h"
+#include "tests/fuzz/scratch_file.h"
+
+namespace remote_touch::fuzz {
+
+std::filesystem::path cache_folder(const std::string& kind, int version, std::string_view bytes) {
+  const std::string name = "cache/" + std::string(kCacheKey) + "." + kind;
+  const std::string_view rest = bytes.substr(std::min<std::size_t>(1, bytes.size()));
+  if (bytes.starts_with('r')) return scratch_file(name, rest).parent_path();
+  MemoryPacker key;
+  key.text(kCacheKey);
+  std::string file = "remote-touch-" + kind + "/" + std::to_string(version) + "\n" + key.take();
+  file += rest;
+  Sha256 hash;
+  hash.add(file.data(), file.size());
+  return scratch_file(name, file + hash.hex()).parent_path();
+}
+
+std::string cache_bytes(const std::filesystem::path& folder, const std::string& kind) {
+  std::ifstream in(folder / (std::string(kCacheKey) + "." + kind), std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace remote_touch::fuzz

@@ -1,0 +1,29 @@
+// What a child process answers about an HDF5 file: it read bytes of unknown origin, and may send anything.
+#include <stdexcept>
+
+#include "analysis/storage/hdf5_child_source.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::child_answer {
+namespace {
+
+// "half an answer" is what the reader of the file says then, in its own words.
+template <class Unpack>
+void read_as(const std::string& bytes, Unpack unpack) {
+  try {
+    require(packed(unpack(bytes)) == bytes, "an answer is packed as it was");
+  } catch (const std::runtime_error& refusal) {
+    require_one_line(refusal.what());
+  }
+}
+
+void read(std::string_view bytes) {
+  const std::string answer(bytes);
+  read_as(answer, unpacked_summary);
+  read_as(answer, unpacked_column);
+}
+
+const Registered registered("child_answer", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::child_answer

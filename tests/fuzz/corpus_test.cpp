@@ -1,0 +1,39 @@
+// Every seed of the corpus once through its target: what was found once stays mended, in every build.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Corpus : public testing::TestWithParam<Target> {};
+
+TEST_P(Corpus, IsReadOrRefusedInOneLine) {
+  const fs::path folder = fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus" / GetParam().name;
+  const std::vector<std::string> seeds = files_in(folder);
+  EXPECT_FALSE(seeds.empty()) << folder << " has no seeds";
+  for (const std::string& seed : seeds) {
+    SCOPED_TRACE(seed);
+    EXPECT_NO_THROW(GetParam().read(bytes_of(folder / seed)));
+  }
+  EXPECT_NO_THROW(GetParam().read(""));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets()),
+                         [](const auto& target) { return std::string(target.param.name); });
+
+// A folder without a target would never be read.
+TEST(CorpusFolders, EachHasATarget) {
+  for (const std::string& folder : files_in(fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus"))
+    EXPECT_TRUE(std::any_of(targets().begin(), targets().end(), [&](const Target& target) {
+      return target.name == folder;
+    })) << folder;
+}
+
+}  // namespace
+}  // namespace remote_touch::fuzz

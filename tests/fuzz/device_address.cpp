@@ -1,0 +1,27 @@
+// Addresses of devices and sensors: SCHEME:PLACE?KEY=VALUE&..., and where a Haply service is.
+#include "runners/live/devices/device_address.h"
+
+#include "runners/live/devices/haply_place.h"
+#include "runners/live/devices/uri.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::device_address {
+namespace {
+
+void read(std::string_view bytes) {
+  accepts([&] {
+    const Uri uri = parse_uri("--device", std::string(bytes));
+    const DeviceAddress address(uri.scheme, uri.address, {"force", "rate", "device", "handle", "check"});
+    address.word("device", ""), address.choice("force", {"vector", "values"});
+    const double rate_hz = address.number("rate", 1000, 100, 8000);
+    require(rate_hz >= 100 && rate_hz <= 8000, "a number is in its range");
+    const HaplyPlace place = haply_place(address);
+    require(!place.host.empty() && !place.port.empty() && place.target.starts_with('/'),
+            "a place has host, port and path");
+  });
+}
+
+const Registered registered("device_address", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::device_address

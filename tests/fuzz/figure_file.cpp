@@ -1,0 +1,11 @@
+// Figures in result files.
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/result_target.h"
+
+namespace remote_touch::fuzz::figure_file {
+namespace {
+
+const Registered registered("figure_file", compare_as_results);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::figure_file

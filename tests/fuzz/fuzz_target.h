@@ -1,0 +1,43 @@
+// A fuzz target: one reader of the program, fed with bytes that come from anywhere.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch::fuzz {
+
+struct Target {
+  const char* name;  // of its corpus and its program
+  // Reads the bytes as a user's file or message. May return; throws for what is a finding.
+  void (*read)(std::string_view bytes);
+};
+
+// Those of this program: one in a program of libFuzzer, all in the one that replays the corpus.
+std::vector<Target>& targets();
+
+// A global of a target's file puts it on that list.
+struct Registered {
+  Registered(const char* name, void (*read)(std::string_view bytes)) { targets().push_back({name, read}); }
+};
+
+// Throws std::logic_error unless what has to be true of a reader is.
+void require(bool is_true, const char* what);
+void require_one_line(const std::string& message);
+
+// An InputError in one line is what a reader may answer. All other exceptions pass through: a message of a
+// library, or std::bad_alloc, is a finding.
+template <class Read>
+bool accepts(Read&& read) {
+  try {
+    read();
+    return true;
+  } catch (const InputError& refusal) {
+    require_one_line(refusal.what());
+    return false;
+  }
+}
+
+}  // namespace remote_touch::fuzz

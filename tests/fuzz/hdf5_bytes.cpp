@@ -1,0 +1,22 @@
+// Damaged and foreign HDF5 files. All that the HDF5 library may do with them happens in a child process with
+// limits.
+#include "analysis/sweeps/sweep_file.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scratch_file.h"
+
+namespace remote_touch::fuzz::hdf5_bytes {
+namespace {
+
+void read(std::string_view bytes) {
+  const auto file = scratch_file("file.h5", bytes);
+  accepts([&] {
+    const Hdf5Reader reader(file);
+    if (reader.has("/sweep/checksum")) read_sweep(reader);
+    for (const std::string& dataset : reader.datasets()) reader.column(dataset);
+  });
+}
+
+const Registered registered("hdf5_bytes", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::hdf5_bytes

@@ -1,0 +1,20 @@
+// The list of baselines. What is accepted is written, and comes back the same.
+#include "runners/regression/baselines/manifest.h"
+
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scratch_file.h"
+
+namespace remote_touch::fuzz::manifest {
+namespace {
+
+void read(std::string_view bytes) {
+  accepts([&] {
+    const auto folder = scratch_file("baselines/manifest.json", bytes).parent_path();
+    for (const Baseline& baseline : read_manifest(folder).baselines) subject_of(folder, baseline);
+  });
+}
+
+const Registered registered("manifest", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::manifest

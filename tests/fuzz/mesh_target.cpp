@@ -1,0 +1,18 @@
+#include "tests/fuzz/mesh_target.h"
+
+#include "core/tool/mesh/mesh_corners.h"
+#include "runners/tool_files/mesh_file.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scratch_file.h"
+
+namespace remote_touch::fuzz {
+
+void read_as_mesh(const std::string& name, std::string_view bytes) {
+  const auto file = scratch_file(name, bytes);
+  accepts([&] {
+    const TriangleMesh mesh = read_mesh(file);
+    require(has_its_vertices(mesh), "a corner is a vertex");
+  });
+}
+
+}  // namespace remote_touch::fuzz

@@ -1,0 +1,25 @@
+// PCD files: ascii, binary, binary_compressed.
+#include "scenarios/recordings/pcd/pcd_file.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/scratch_file.h"
+
+namespace remote_touch::fuzz::pcd {
+namespace {
+
+void read(std::string_view bytes) {
+  const auto file = scratch_file("cloud.pcd", bytes);
+  accepts([&] {
+    const PcdCloud image = read_pcd(file);
+    const PointCloud& cloud = image.cloud;
+    require(cloud.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+            "a cloud has its width times its height");
+    require(cloud.y.size() == cloud.size() && cloud.z.size() == cloud.size(),
+            "points have three coordinates");
+    require(cloud.colour.empty() || cloud.colour.size() == cloud.size(), "all points have a colour, or none");
+  });
+}
+
+const Registered registered("pcd", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::pcd

@@ -1,0 +1,28 @@
+// What a result says of its origin: recipe, hashes of inputs, configuration. Two texts, parted by a line
+// "---".
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/recipe.h"
+#include "runners/settings/configuration_difference.h"
+#include "tests/fuzz/content_text.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::provenance {
+namespace {
+
+void read(std::string_view bytes) {
+  const auto [first, second] = two_parts(bytes);
+  const std::string a(first), b(second);
+  if (const auto recipe = recipe_of({{kRecipe, a}})) {
+    command_text(*recipe);
+    require(recipe_of({{kRecipe, to_json(*recipe)}}).has_value(), "a recipe survives writing and reading");
+  }
+  require(changed_inputs(a, b).empty() == changed_inputs(b, a).empty(), "a difference is one both ways");
+  require(changed_inputs(a, a).empty(), "a text does not differ from itself");
+  accepts([&] { require(configuration_differences(a, a).empty(), "a configuration is its own"); });
+  accepts([&] { configuration_differences(a, b); });
+}
+
+const Registered registered("provenance", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::provenance

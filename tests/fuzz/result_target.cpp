@@ -1,0 +1,19 @@
+#include "tests/fuzz/result_target.h"
+
+#include "runners/regression/comparison/comparison_report.h"
+#include "tests/fuzz/content_text.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz {
+
+void compare_as_results(std::string_view bytes) {
+  const auto [first, second] = two_parts(bytes);
+  const Content a = content_of(first), b = content_of(second);
+  accepts([&] { comparison_json(compare_results(reader_of(a), reader_of(b), {})); });
+  accepts([&] {
+    require(compare_results(reader_of(a), reader_of(a), {}).outcome != Outcome::regressed,
+            "a result does not differ from itself");
+  });
+}
+
+}  // namespace remote_touch::fuzz

@@ -1,0 +1,26 @@
+// Methods and scenes of the scorecard as JSON; the first byte chooses.
+#include "runners/scorecard/benchmark.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::scorecard_part {
+namespace {
+
+void read(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string text(bytes.substr(1));
+  accepts([&] {
+    if (bytes.front() == 'm') {
+      const Method method = read_method("fuzz", text);
+      configuration({method}, {}, 2);
+    } else {
+      const BenchmarkScene scene = read_benchmark_scene("fuzz", text);
+      configuration({}, {scene}, 2);
+      scene.sweep({"proxy", "proxy", R"({"name": "proxy"})"}, 2);
+    }
+  });
+}
+
+const Registered registered("scorecard_part", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::scorecard_part

@@ -1,0 +1,81 @@
+// Sweeps in result files, finished or not (content_text.h). A digest "right" is replaced by that of the
+// content, so that what comes behind its check is reached.
+#include "analysis/sweeps/sweep_file.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "runners/regression/comparison/comparison_report.h"
+#include "tests/fuzz/content_text.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::sweep_file {
+namespace {
+
+std::vector<Column> listed(const Content& content, const char* list) {
+  std::vector<Column> columns;
+  std::istringstream names(attribute(content.attributes, list));
+  for (std::string name; std::getline(names, name, ',');)
+    if (const auto found = content.datasets.find("/sweep/" + name); found != content.datasets.end())
+      columns.push_back(found->second);
+  return columns;
+}
+
+template <class Value>
+std::vector<Value> values_of(const Content& content, const char* name) {
+  const auto found = content.datasets.find(name);
+  if (found == content.datasets.end()) return {};
+  const auto* values = std::get_if<std::vector<Value>>(&found->second.values);
+  return values ? *values : std::vector<Value>();
+}
+
+// What read_sweep() takes from the content, unchecked.
+SweepResult result_of(const Content& content) {
+  SweepResult result;
+  result.axes = listed(content, "axes"), result.measures = listed(content, "measures");
+  for (Column& measure : result.measures) measure.width = 1;
+  for (const std::int32_t state : values_of<std::int32_t>(content, "/sweep/state"))
+    result.state.push_back(static_cast<RunState>(state));
+  result.error = values_of<std::string>(content, "/sweep/error");
+  result.round = values_of<std::int32_t>(content, "/sweep/round");
+  return result;
+}
+
+Content with_right_digests(Content content) {
+  TextAttributes plan;
+  for (const auto& [name, value] : content.attributes)
+    if (name != "schema" && name != "digest" && name != "plan_digest" && name != "default" &&
+        name != "axes" && name != "measures")
+      plan.emplace_back(name, value);
+  const SweepResult result = result_of(content);
+  for (auto& [name, value] : content.attributes) {
+    if (value != "right") continue;
+    if (name == "digest") value = digest(result);
+    if (name == "plan_digest") value = plan_digest(result, plan);
+  }
+  return content;
+}
+
+void read(std::string_view bytes) {
+  const auto [first, second] = two_parts(bytes);
+  const Content a = with_right_digests(content_of(first)), b = with_right_digests(content_of(second));
+  accepts([&] {
+    const StoredSweep stored = read_sweep(reader_of(a));
+    const std::size_t runs = stored.result.run_count();
+    require(stored.result.state.size() == runs && stored.result.error.size() == runs,
+            "every run has a state");
+    for (const Column& measure : stored.result.measures)
+      require(std::get<std::vector<double>>(measure.values).size() == runs, "every run has its measures");
+    for (std::size_t run = 0; run < runs; ++run) stored.result.place(stored.result.cell_of(run));
+  });
+  ComparisonRules rules;
+  for (const bool paired : {false, true}) {
+    rules.paired = paired;
+    accepts([&] { comparison_json(compare_results(reader_of(a), reader_of(b), rules)); });
+  }
+}
+
+const Registered registered("sweep_file", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::sweep_file
