@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <new>
 #include <stdexcept>
 
@@ -21,10 +22,14 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 
 namespace {
 
-herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+// The library cannot be left by an exception.
+herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) noexcept try {
   if (info->type == H5O_TYPE_DATASET)
     static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
   return 0;
+} catch (const std::bad_alloc&) {
+  errno = ENOMEM;
+  return -1;
 }
 
 TextAttributes root_attributes(hid_t file) {
@@ -35,10 +40,33 @@ TextAttributes root_attributes(hid_t file) {
     const Handle attribute(H5Aopen_by_idx(file, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose);
     std::array<char, 256> name{};
-    H5Aget_name(attribute, name.size(), name.data());
+    check(H5Aget_name(attribute, name.size(), name.data()) < 0 ? -1 : 0);
     found.emplace_back(name.data(), read_text(attribute));
   }
   return found;
+}
+
+[[noreturn]] void refuse_for_memory(const std::string& file) {
+  throw InputError(file, "cannot be read (out of memory): expected a smaller file or more memory");
+}
+
+// Of a call that failed: what is wrong, unless there is no memory.
+[[noreturn]] void refuse_call(const std::string& wrong) {
+  try {
+    throw_refusal();
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error(wrong);
+  }
+}
+
+void require_hdf5(const std::filesystem::path& file) try {
+  const htri_t found = H5Fis_hdf5(file.c_str());
+  if (found < 0) throw_refusal();
+  if (found == 0) throw std::runtime_error("");
+} catch (const std::bad_alloc&) {
+  refuse_for_memory(file.string());
+} catch (const std::runtime_error&) {
+  throw InputError(file.string(), "not a readable HDF5 file: expected a result of this program");
 }
 
 // Throws InputError unless the file exists, is HDF5 and as it was written. True when it is sealed.
@@ -54,14 +82,13 @@ bool require_readable(const std::filesystem::path& file) {
   if (found == FileDigest::broken)
     throw InputError(file.string(),
                      "damaged or modified (its SHA-256 does not match): expected a result of this program");
-  if (H5Fis_hdf5(file.c_str()) <= 0)
-    throw InputError(file.string(), "not a readable HDF5 file: expected a result of this program");
+  require_hdf5(file);
   return found == FileDigest::valid;
 }
 
 Handle open_dataset(const std::shared_ptr<void>& file, const std::string& dataset) {
   const hid_t found = H5Dopen2(*static_cast<Handle*>(file.get()), dataset.c_str(), H5P_DEFAULT);
-  if (found < 0) throw std::runtime_error(dataset + " is missing");
+  if (found < 0) refuse_call(dataset + " is missing");
   return Handle(found, H5Dclose);
 }
 
@@ -77,7 +104,7 @@ auto Hdf5Reader::guarded(Read&& read) const {
   try {
     return read();
   } catch (const std::bad_alloc&) {
-    damaged("it claims more values than fit into memory");
+    refuse_for_memory(file_);
   } catch (const std::exception& error) {
     damaged(error.what());
   }
@@ -112,7 +139,7 @@ void Hdf5Reader::require_file_digest() const {
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string()) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  use_hdf5();
   sealed_ = require_readable(file);
   guarded([&] {
     handle_ = std::make_shared<Handle>(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

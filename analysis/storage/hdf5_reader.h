@@ -47,6 +47,7 @@ class Hdf5Reader {
   void require_file_digest() const;
   template <class Read>
   auto guarded(Read&& read) const;
+  Hdf5Work work_;
   std::string file_;
   bool sealed_ = false;
   std::shared_ptr<void> handle_;
