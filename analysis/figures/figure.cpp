@@ -11,6 +11,7 @@ namespace {
 
 std::string text(double value) {
   std::ostringstream out;
+  out.exceptions(std::ios::badbit);
   out.precision(6);
   out << value;
   return out.str();

@@ -1,11 +1,14 @@
 #include "analysis/storage/atomic_file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/parameters/input_error.h"
 
@@ -53,10 +56,16 @@ void require_different_file(const std::filesystem::path& target, const std::file
 }
 
 std::filesystem::path resolved(const std::filesystem::path& target) {
+  constexpr int kMaxLinks = 40;  // as the system
+  std::filesystem::path place = target;
   std::error_code unreachable;
-  if (!std::filesystem::is_symlink(target, unreachable)) return target;
-  const auto end = std::filesystem::canonical(target, unreachable);
-  return unreachable ? target : end;
+  for (int links = 0; std::filesystem::is_symlink(place, unreachable); ++links) {
+    if (links == kMaxLinks) refuse(target, ELOOP, "a file");
+    const auto next = std::filesystem::read_symlink(place, unreachable);
+    if (unreachable) break;
+    place = place.parent_path() / next;  // which is next where that is absolute
+  }
+  return place;
 }
 
 void require_writable(const std::filesystem::path& target) {
@@ -64,7 +73,7 @@ void require_writable(const std::filesystem::path& target) {
   const auto there = std::filesystem::status(target, unreachable);
   if (std::filesystem::is_directory(there)) refuse(target, EISDIR, "a file");
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return;  // a device or pipe
-  const std::filesystem::path folder = folder_of(target);
+  const std::filesystem::path folder = folder_of(resolved(target));
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
 }
 
@@ -116,11 +125,12 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
 }
 
 void remove_leftovers(const std::filesystem::path& target) {
-  const std::string start = target.filename().string() + kTemporary;
-  std::error_code unreachable;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), unreachable))
-    if (entry.path().filename().string().rfind(start, 0) == 0)
-      std::filesystem::remove(entry.path(), unreachable);
+  const std::filesystem::path place = resolved(target), folder = folder_of(place);
+  const std::string start = place.filename().string() + kTemporary;
+  // Not std::filesystem::directory_iterator: without memory it ends the program.
+  const std::unique_ptr<DIR, int (*)(DIR*)> list(::opendir(folder.c_str()), ::closedir);
+  while (const dirent* const entry = list ? ::readdir(list.get()) : nullptr)
+    if (std::string_view(entry->d_name).starts_with(start)) ::unlink((folder / entry->d_name).c_str());
 }
 
 }  // namespace remote_touch

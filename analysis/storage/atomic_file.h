@@ -23,7 +23,8 @@ std::filesystem::path temporary_of(const std::filesystem::path& target);
 // Flushes the temporary file to the disk and renames it over the target. Fails as write_file_atomically().
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
-// The file that a link points to, if it exists; any other name unchanged.
+// The file that a symbolic link leads to, whether it exists or not; any other name unchanged. Throws
+// InputError for a ring of links.
 std::filesystem::path resolved(const std::filesystem::path& target);
 
 // Removes temporary files of the target that killed programs left. pre: no other process writes it now.

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,9 +19,12 @@ inline constexpr std::size_t kDigestBlockSize = 512;  // the smallest user block
 // finds the start of the HDF5 part and counts offsets from there.
 std::vector<char> with_file_digest(const std::vector<char>& image);
 
-// Seals a finished file in place; it was made with a user block of kDigestBlockSize. Throws InputError when
-// it cannot be read or written.
+// Seals a finished file in place; it was made with a user block of kDigestBlockSize. Throws
+// std::exception saying why when it cannot be read or written.
 void write_file_digest(const std::filesystem::path& file);
+
+// The first bytes of a file, followed by zeros where it has fewer or cannot be read.
+std::string opening_of(const std::filesystem::path& file, std::size_t size);
 
 // Whether a file begins as a finished result does; the rest of it is not read.
 bool has_result_header(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
@@ -30,7 +31,7 @@ bool is_special(const std::filesystem::path& target) {
 
 }  // namespace
 
-FileLock::FileLock(const std::filesystem::path& target) : lock_(target.string() + ".lock") {
+FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target).string() + ".lock") {
   if (is_special(target)) return;
   // Whoever held it may have removed it between our open and our lock: then it is another file's name by now.
   do {
@@ -44,13 +45,25 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(target.string() 
     ::close(descriptor_);
     throw InputError(target.string(), "another process is writing it: expected one at a time");
   } while (!is_same_file(descriptor_, lock_));
-  remove_leftovers(target);
+  try {
+    remove_leftovers(target);
+  } catch (...) {  // the destructor does not run for a constructor that throws
+    release();
+    throw;
+  }
 }
 
-FileLock::~FileLock() {
+FileLock::FileLock(FileLock&& other) noexcept
+    : lock_(std::move(other.lock_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+void FileLock::release() {
   if (descriptor_ < 0) return;
   ::unlink(lock_.c_str());
   ::close(descriptor_);
+}
+
+FileLock::~FileLock() {
+  release();
 }
 
 }  // namespace remote_touch

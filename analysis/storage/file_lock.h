@@ -14,10 +14,12 @@ class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& target);
   ~FileLock();
+  FileLock(FileLock&& other) noexcept;
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
  private:
+  void release();
   std::filesystem::path lock_;
   int descriptor_ = -1;
 };

@@ -1,5 +1,6 @@
 #include "analysis/storage/hdf5_appender.h"
 
+#include <new>
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
@@ -32,13 +33,15 @@ hid_t stored(Hdf5Appender::Number number) {
 
 }  // namespace
 
-// The library does not say what went wrong; mostly it is the disk.
+// The library does not always say what went wrong; mostly it is the disk.
 template <class Call>
 void Hdf5Appender::guarded(const Call& call) {
   try {
     call();
   } catch (const InputError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw InputError(target_.string(), "cannot be written (out of memory): expected more memory");
   } catch (const std::exception& error) {
     throw InputError(target_.string(), std::string("cannot be written (") + error.what() +
                                            "): expected a writable place with room");
@@ -49,8 +52,8 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     : target_(target), temporary_(temporary_of(target)) {
   require_writable(target);
   remove_leftovers(target);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   guarded([&] {
+    use_hdf5();
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     check(H5Pset_userblock(creation, kDigestBlockSize));
     check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
@@ -59,10 +62,13 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
   });
 }
 
-void Hdf5Appender::close() {
-  for (const auto& [path, data] : open_) H5Dclose(data.id);
+// False where something could not be written.
+bool Hdf5Appender::close() {
+  bool good = true;
+  for (const auto& [path, data] : open_) good &= H5Dclose(data.id) >= 0;
   open_.clear();
-  if (file_ >= 0) H5Fclose(std::exchange(file_, -1));
+  if (file_ >= 0) good &= H5Fclose(std::exchange(file_, -1)) >= 0;
+  return good;
 }
 
 Hdf5Appender::~Hdf5Appender() {
@@ -120,9 +126,11 @@ void Hdf5Appender::attributes(const std::string& object, const TextAttributes& l
 }
 
 void Hdf5Appender::finish() {
-  guarded([&] { check(H5Fflush(file_, H5F_SCOPE_GLOBAL)); });
-  close();
-  write_file_digest(temporary_);
+  guarded([&] {
+    check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
+    if (!close()) throw_refusal();
+  });
+  guarded([&] { write_file_digest(temporary_); });
   move_into_place(temporary_, target_);
   finished_ = true;
 }

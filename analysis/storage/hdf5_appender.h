@@ -46,8 +46,9 @@ class Hdf5Appender {
   };
   template <class Call>
   void guarded(const Call& call);
-  void close();
+  bool close();
 
+  const Hdf5Work work_;
   const std::filesystem::path target_, temporary_;
   std::int64_t file_ = -1;
   bool finished_ = false;

@@ -1,6 +1,7 @@
 // HDF5 files, written whole or not at all. Only analysis/storage/hdf5_* call the HDF5 library.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -12,6 +13,25 @@
 namespace remote_touch {
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+// While one exists, the HDF5 library may be at work. It crashes at some calls that find no memory, and at
+// some damaged files.
+class Hdf5Work {
+ public:
+  Hdf5Work() { ++count_; }
+  Hdf5Work(const Hdf5Work&) : Hdf5Work() {}
+  Hdf5Work& operator=(const Hdf5Work&) = default;
+  ~Hdf5Work() { --count_; }
+  // Also for a signal handler: whether there is one, and the file descriptor of the messages to the user.
+  static bool is_on() { return count_ > 0; }
+  static int messages() { return messages_; }
+  // While the library's own messages are sent elsewhere.
+  static void move_messages(int descriptor) { messages_ = descriptor; }
+
+ private:
+  static inline std::atomic<int> messages_ = 2;
+  static inline std::atomic<int> count_ = 0;
+};
+
 // The attribute of that name; empty if there is none.
 std::string attribute(const TextAttributes& attributes, const std::string& name);
 
@@ -51,6 +71,7 @@ class Hdf5Writer {
  private:
   void dataset(const std::string& path, const Column& column, const std::vector<unsigned long long>& extent,
                Storage storage);
+  const Hdf5Work work_;
   bool sealed_;
   std::int64_t file_;
 };

@@ -4,17 +4,23 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace remote_touch {
 
+// Throws what the library says of the call that it refused: std::bad_alloc where it found no memory, else
+// std::runtime_error with the error of the system, if there is one.
+[[noreturn]] void throw_refusal();
+
+// Errors are exceptions, not printed. To be called before the library is used.
+void use_hdf5();
+
 // Closes the object that it holds. A negative identifier means that a call of the library failed.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id < 0) throw std::runtime_error("the HDF5 library refused a call");
+    if (id < 0) throw_refusal();
   }
   ~Handle() {
     if (id_ >= 0) close_(id_);
@@ -30,7 +36,7 @@ class Handle {
 };
 
 inline void check(herr_t result) {
-  if (result < 0) throw std::runtime_error("the HDF5 library refused a call");
+  if (result < 0) throw_refusal();
 }
 
 inline Handle text_type(std::size_t length) {

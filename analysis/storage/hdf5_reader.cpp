@@ -24,6 +24,7 @@ namespace {
 bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   std::ifstream stream(file, std::ios::binary);
+  stream.exceptions(std::ios::badbit);  // no memory is no missing signature
   for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
     std::string found(kSignature.size(), '\0');
     stream.seekg(static_cast<std::streamoff>(at));
@@ -31,6 +32,10 @@ bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) 
     if (found == kSignature) return true;
   }
   return false;
+}
+
+[[noreturn]] void refuse_for_memory(const std::string& file) {
+  throw InputError(file, "cannot be read (out of memory): expected a smaller file or more memory");
 }
 
 // Throws InputError unless the file exists, is HDF5 and as it was written. True when it is sealed.
@@ -59,7 +64,7 @@ auto Hdf5Reader::guarded(Read&& read) const {
   try {
     return read();
   } catch (const std::bad_alloc&) {
-    damaged("it claims more values than fit into memory");
+    refuse_for_memory(file_);
   } catch (const std::exception& error) {
     damaged(error.what());
   }

@@ -1,6 +1,8 @@
 #include "analysis/storage/hdf5_source.h"
 
 #include <array>
+#include <cerrno>
+#include <new>
 #include <stdexcept>
 
 #include "analysis/storage/hdf5_handle.h"
@@ -10,10 +12,23 @@ namespace remote_touch {
 
 namespace {
 
-herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) {
+// The library cannot be left by an exception.
+herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) noexcept try {
   if (info->type == H5O_TYPE_DATASET)
     static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
   return 0;
+} catch (const std::bad_alloc&) {
+  errno = ENOMEM;
+  return -1;
+}
+
+// Of a call that failed: what is wrong, unless there is no memory.
+[[noreturn]] void refuse_call(const std::string& wrong) {
+  try {
+    throw_refusal();
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error(wrong);
+  }
 }
 
 std::string last_part(const std::string& path) {
@@ -33,7 +48,7 @@ class LibrarySource final : public Hdf5Source {
       const Handle attribute(
           H5Aopen_by_idx(file_, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
       std::array<char, 256> name{};
-      H5Aget_name(attribute, name.size(), name.data());
+      check(H5Aget_name(attribute, name.size(), name.data()) < 0 ? -1 : 0);
       found.emplace_back(name.data(), read_text(attribute));
     }
     return found;
@@ -59,17 +74,18 @@ class LibrarySource final : public Hdf5Source {
  private:
   Handle opened(const std::string& dataset) const {
     const hid_t found = H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT);
-    if (found < 0) throw std::runtime_error(dataset + " is missing");
+    if (found < 0) refuse_call(dataset + " is missing");
     return Handle(found, H5Dclose);
   }
 
+  const Hdf5Work work_;
   Handle file_;
 };
 
 }  // namespace
 
 std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  use_hdf5();
   return std::make_unique<LibrarySource>(file.string());
 }
 

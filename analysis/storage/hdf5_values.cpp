@@ -64,7 +64,9 @@ std::string read_text(hid_t attribute) {
 }
 
 std::string text_attribute(hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return {};
+  const htri_t is_there = H5Aexists(object, name);
+  if (is_there < 0) throw_refusal();
+  if (is_there == 0) return {};
   const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   return read_text(attribute);
 }
@@ -95,6 +97,7 @@ std::vector<std::string> names_of(hid_t enumeration) {
   std::vector<std::string> names;
   for (int i = 0; i < H5Tget_nmembers(enumeration); ++i) {
     char* member = H5Tget_member_name(enumeration, static_cast<unsigned>(i));
+    if (!member) throw_refusal();
     names.emplace_back(member);
     H5free_memory(member);
   }

@@ -49,14 +49,14 @@ Handle stored_type(const Column& column) {
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes), file_(-1) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are exceptions, not printed
+  use_hdf5();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   check(H5Pset_fapl_core(access, 1 << 20, false));
   const Handle creation = creation_list(H5P_FILE_CREATE);
   // Brings the root an object header that takes attributes above 64 KiB: a configuration with many waypoints.
   check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));
   file_ = H5Fcreate("remote-touch", H5F_ACC_TRUNC, creation, access);
-  if (file_ < 0) throw std::runtime_error("the HDF5 library refused to start a file");
+  if (file_ < 0) throw_refusal();
 }
 
 Hdf5Writer::~Hdf5Writer() {
@@ -186,14 +186,14 @@ void Hdf5Writer::array(const std::string& group, const Column& column, const std
 std::size_t Hdf5Writer::size() {
   check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
-  if (size < 0) throw std::runtime_error("the HDF5 library gave no file image");
+  if (size < 0) throw_refusal();
   return static_cast<std::size_t>(size);
 }
 
 void Hdf5Writer::save(const std::filesystem::path& target) {
   std::vector<char> image(size());
   if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
-    throw std::runtime_error("the HDF5 library gave no file image");
+    throw_refusal();
   if (sealed_) image = with_file_digest(image);
   write_file_atomically(target, image.data(), image.size());
 }

@@ -1,10 +1,16 @@
+// The functions of OpenSSL that need no memory. Those that replace them load configurations and tables for
+// each program, 5000 allocations, and crash where one of them finds no memory.
+#define OPENSSL_SUPPRESS_DEPRECATED
+
 #include "analysis/storage/sha256.h"
 
-#include <openssl/evp.h>
+#include <fcntl.h>
+#include <openssl/sha.h>
+#include <unistd.h>
 
 #include <array>
-#include <fstream>
-#include <stdexcept>
+#include <cerrno>
+#include <cstring>
 #include <vector>
 
 #include "core/parameters/input_error.h"
@@ -12,37 +18,65 @@
 namespace remote_touch {
 
 namespace {
-EVP_MD_CTX* context(const std::shared_ptr<void>& state) {
-  return static_cast<EVP_MD_CTX*>(state.get());
+
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file) : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  // How many bytes there are from there, at most size; 0 at the end, -1 with errno set when it cannot be
+  // read.
+  ssize_t read(char* to, std::size_t size, off_t at) const {
+    ssize_t found = -1;
+    do {
+      found = file_ < 0 ? -1 : ::pread(file_, to, size, at);
+    } while (file_ >= 0 && found < 0 && errno == EINTR);
+    return found;
+  }
+
+ private:
+  int file_;
+};
+
+SHA256_CTX* context(const std::shared_ptr<void>& state) {
+  return static_cast<SHA256_CTX*>(state.get());
 }
+
 }  // namespace
 
-Sha256::Sha256() : state_(EVP_MD_CTX_new(), [](void* c) { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(c)); }) {
-  if (!state_ || EVP_DigestInit_ex(context(state_), EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("SHA-256 is not available");
+Sha256::Sha256() : state_(std::make_shared<SHA256_CTX>()) {
+  SHA256_Init(context(state_));
 }
 
 void Sha256::add(const void* data, std::size_t size) {
-  EVP_DigestUpdate(context(state_), data, size);
+  SHA256_Update(context(state_), data, size);
 }
 
 std::string Sha256::hex() {
   std::array<unsigned char, 32> bytes{};
-  EVP_DigestFinal_ex(context(state_), bytes.data(), nullptr);
+  SHA256_Final(bytes.data(), context(state_));
   std::string text;
   for (const unsigned char b : bytes) text += "0123456789abcdef"[b >> 4], text += "0123456789abcdef"[b & 15];
   return text;
 }
 
 std::string sha256_of_file(const std::filesystem::path& file, std::size_t from) {
-  std::ifstream in(file, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(from));
   std::vector<char> part(1 << 18);
   Sha256 hash;
-  while (in && in.read(part.data(), static_cast<std::streamsize>(part.size())).gcount() > 0)
-    hash.add(part.data(), static_cast<std::size_t>(in.gcount()));
-  if (!in.eof()) throw InputError(file.string(), "cannot be read: expected a readable file");
-  return hash.hex();
+  const OpenFile open(file);
+  for (auto at = static_cast<off_t>(from);;) {
+    const ssize_t size = open.read(part.data(), part.size(), at);
+    if (size == 0) return hash.hex();
+    if (size < 0)
+      throw InputError(file.string(), std::string("cannot be read (") + std::strerror(errno) +
+                                          "): expected a readable file");
+    hash.add(part.data(), static_cast<std::size_t>(size));
+    at += size;
+  }
 }
 
 }  // namespace remote_touch

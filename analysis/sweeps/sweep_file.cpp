@@ -50,6 +50,7 @@ std::string joined(const std::vector<Column>& columns) {
 std::vector<std::string> split(const std::string& names) {
   std::vector<std::string> list;
   std::istringstream text(names);
+  text.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   for (std::string name; std::getline(text, name, ',');) list.push_back(name);
   return list;
 }

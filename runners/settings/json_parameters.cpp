@@ -16,6 +16,7 @@ namespace {
 
 std::string number_text(double value) {
   std::ostringstream out;
+  out.exceptions(std::ios::badbit);
   out.precision(12);
   out << value;
   return out.str();
@@ -224,6 +225,7 @@ void set_value(Json& configuration, const std::string& path, const Json& value, 
                      "expected at most " + std::to_string(kMaxJsonDepth) + " levels");
   Json* place = &configuration;
   std::stringstream keys(path);
+  keys.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   for (std::string key; std::getline(keys, key, '.');) {
     if (place->is_array() && !place->empty()) {
       place = &element(*place, key, subject);

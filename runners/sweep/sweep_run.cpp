@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <new>
 
 #include "core/parameters/input_error.h"
 #include "runners/simulation/simulation.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxError = 300;  // every run has room for the longest
 
-// One run into its own slots of the result.
+// One run into its own slots of the result. Throws std::bad_alloc: that is no result of the run.
 void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
   try {
     SimulationOptions simulation;
@@ -23,6 +24,8 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     for (std::size_t i = 0; i < result.measures.size(); ++i)
       std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);
     result.state[run] = RunState::done;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     result.error[run] = std::string(error.what()).substr(0, kMaxError);
     std::replace(result.error[run].begin(), result.error[run].end(), '\n', ' ');
@@ -32,11 +35,12 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
 
 }  // namespace
 
-void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
+std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
   const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
   std::exception_ptr failure;
   std::mutex one_at_a_time;
   std::atomic<bool> ends{false};
+  std::atomic<std::size_t> without_memory{0};
   options.runs(runs.size(), [&](std::size_t i) {
     if (ends) return;
     const std::size_t run = runs[i];
@@ -44,12 +48,15 @@ void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOpti
       do_run(sweep, options, run, result);
       const std::lock_guard lock(one_at_a_time);
       if (options.finished) options.finished(run);
+    } catch (const std::bad_alloc&) {
+      ++without_memory;
     } catch (...) {
       const std::lock_guard lock(one_at_a_time);
       if (!ends.exchange(true)) failure = std::current_exception();
     }
   });
   if (failure) std::rethrow_exception(failure);
+  return without_memory;
 }
 
 bool add_round(const Sweep& sweep, SweepResult& result) {
@@ -64,7 +71,7 @@ bool add_round(const Sweep& sweep, SweepResult& result) {
 SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options) {
   SweepResult result = sweep.plan();
   do {
-    do_pending_runs(sweep, result, options);
+    if (do_pending_runs(sweep, result, options) > 0) throw std::bad_alloc();
   } while (add_round(sweep, result));
   return result;
 }

@@ -20,13 +20,13 @@ struct SweepRunOptions {
 
 // Does every pending run, in parallel; bits do not depend on threads or order. A run that fails is marked and
 // its error stored, and the others go on. Throws Interrupted, or the exception of finished, after the runs in
-// progress have ended.
-void do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
+// progress have ended. Returns how many runs found no memory: they are pending still.
+std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
 
 // Adds the next round of refinement: its runs become pending. False if there is none, see next_round().
 bool add_round(const Sweep& sweep, SweepResult& result);
 
-// Does all rounds in memory. Failed runs are in the result, with their errors.
+// Does all rounds in memory. Failed runs are in the result, with their errors. Throws std::bad_alloc.
 SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options);
 
 }  // namespace remote_touch

@@ -131,8 +131,11 @@ void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* sto
     storage.flush();
     flushed = Clock::now();
   };
-  do_pending_runs(sweep_, plan_.result, {&kernels, stop, finished});
+  const std::size_t without_memory = do_pending_runs(sweep_, plan_.result, {&kernels, stop, finished});
   storage.flush();
+  if (without_memory > 0)
+    throw InputError(file_.string(), "out of memory in " + std::to_string(without_memory) +
+                                         " runs: the others are kept in it, and the same command does these");
 }
 
 }  // namespace remote_touch

@@ -37,6 +37,7 @@ std::uint64_t bytes_of(const std::string& type) {
 
 void take(const std::string& line, Header& header) {
   std::istringstream words(line);
+  words.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   std::string word, type;
   words >> word;
   if (word == "format") {

@@ -184,6 +184,7 @@ RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& cam
 // One line for the user: what was found, and how it will be taken.
 std::string describe(const fs::path& path, const RecordingIndex& index) {
   std::ostringstream text;
+  text.exceptions(std::ios::badbit);
   const fs::path clean = (path / "").lexically_normal().parent_path();  // "DIR" and "DIR/" alike
   text << clean.filename().string() << ": " << index.frames.size() << " frame(s) from "
        << (index.kind == RecordingIndex::Kind::pcd ? "PCD" : "depth PNG") << " at " << index.frame_rate_hz

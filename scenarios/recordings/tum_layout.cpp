@@ -27,12 +27,14 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
   std::istringstream stream(read_text_file(list, "expected lines 'timestamp filename'"));
+  stream.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   std::vector<StampedFile> files;
   std::string line;
   // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
     if (line.ends_with('\r')) line.pop_back();
     std::istringstream words(line);
+    words.exceptions(std::ios::badbit);
     std::string stamp, name, surplus;
     if (!(words >> stamp) || stamp.front() == '#') continue;
     const std::string where = list.string() + ":" + std::to_string(line_number);

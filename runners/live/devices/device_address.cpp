@@ -16,6 +16,7 @@ std::string list_of(const std::vector<std::string>& words) {
 
 std::string short_text(double value) {
   std::ostringstream text;
+  text.exceptions(std::ios::badbit);
   text << value;
   return text.str();
 }
@@ -29,6 +30,7 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
   place_ = address.substr(0, mark);
   if (mark == std::string::npos) return;
   std::istringstream settings(address.substr(mark + 1));
+  settings.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   for (std::string setting; std::getline(settings, setting, '&');) {
     const std::size_t equals = setting.find('=');
     const std::string key = setting.substr(0, equals);

@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "analysis/columns/hash64.h"
 #include "analysis/comparison/column_comparison.h"
 #include "analysis/comparison/column_source.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
@@ -139,6 +141,38 @@ void store(const std::filesystem::path& file, const std::string& command, const 
   }
 }
 
+// A file as it was: unless the new one is kept, it is put back. So a result is never without its entry in the
+// manifest.
+class Replaced {
+ public:
+  explicit Replaced(const std::filesystem::path& file) : file_(file) {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(file, absent);
+    if (!absent) before_ = opening_of(file, size);
+  }
+  ~Replaced() {
+    if (is_kept_) return;
+    std::error_code unreachable;
+    if (!before_)
+      std::filesystem::remove(file_, unreachable);
+    else
+      put_back();
+  }
+  Replaced(const Replaced&) = delete;
+  Replaced& operator=(const Replaced&) = delete;
+  void keep_new() { is_kept_ = true; }
+
+ private:
+  void put_back() try {
+    if (opening_of(file_, before_->size() + 1) == *before_ + '\0') return;
+    write_file_atomically(file_, before_->data(), before_->size());
+  } catch (const std::exception&) {  // what led here will be told
+  }
+  const std::filesystem::path file_;
+  std::optional<std::string> before_;
+  bool is_kept_ = false;
+};
+
 std::string attribute_of(const std::filesystem::path& file, const char* name) {
   return attribute(Hdf5Reader(file).attributes(), name);
 }
@@ -248,10 +282,9 @@ std::string bless(const Blessing& blessing) {
       sha256_of_file(file) == baseline.sha256)
     return baseline.name + ": nothing to store, every number is within the spread of the stored one";
   const std::string what_moved = is_new && !old.empty() ? moved(old, now) : "";
-  if (is_new) {
-    make_folder(blessing.folder);
-    store(file, baseline.command, measured.reference, std::move(now));
-  }
+  if (is_new) make_folder(blessing.folder);
+  Replaced replaced(file);
+  if (is_new) store(file, baseline.command, measured.reference, std::move(now));
   const std::string sha256 = sha256_of_file(file);
   // The file that was stored, made once more in the place of a damaged one, keeps its reason.
   if (!stored || sha256 != stored->sha256 || !same_definition(*stored, baseline)) {
@@ -261,6 +294,7 @@ std::string bless(const Blessing& blessing) {
   baseline.sha256 = sha256, baseline.builds = measured.over, baseline.tolerances = measured.spread;
   enter(baseline, manifest);
   write_manifest(blessing.folder, manifest);
+  replaced.keep_new();
   return baseline.name + ": " + (is_new ? "stored" : "the manifest is new, the numbers are kept") + ", " +
          spread_text(baseline.tolerances) + (what_moved.empty() ? "" : "; moved: " + what_moved);
 }
