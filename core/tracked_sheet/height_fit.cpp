@@ -84,7 +84,7 @@ PlaneFit HeightFit::plane(const Sums& s, double u, double v) {
 }
 
 PlaneFit HeightFit::plane_around(double u, double v, double half_side) const {
-  return plane(window(corner(u), corner(v), static_cast<int>(half_side / kCell + 0.5)), u, v);
+  return plane(window(corner(u), corner(v), static_cast<int>(std::lround(half_side / kCell))), u, v);
 }
 
 double HeightFit::noise() const {

@@ -213,8 +213,10 @@ Figure figure_4_13_tracked(const FigureContext& context) {
       map_panel("Tracked sheet", {{"survived", "noise", "acceleration", CurveStyle::squares, words}, bound}),
       slide_panel("Height above the flat cloud", "mean height (r_c)", "height"),
       slide_panel("Force jump at frame updates", "rms (N)", "force_jump")};
-  for (std::size_t i = 0; i < 4; ++i)
-    figure.panels[i].place = {static_cast<double>(i / 2), static_cast<double>(i % 2)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t row = i / 2, column = i % 2;
+    figure.panels[i].place = {static_cast<double>(row), static_cast<double>(column)};
+  }
   figure.claims = claims(context, lifts, ours, paper);
   return figure;
 }

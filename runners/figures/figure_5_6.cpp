@@ -171,8 +171,10 @@ Figure figure_5_6(const FigureContext& context) {
                     "force (N)",
                     false,
                     {{"stiffness_run", "hip_x", "force", CurveStyle::line, ""}}}};
-  for (std::size_t i = 0; i < figure.panels.size(); ++i)
-    figure.panels[i].place = std::pair(static_cast<double>(i % 2), static_cast<double>(i / 2));
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::size_t row = i % 2, column = i / 2;
+    figure.panels[i].place = std::pair(static_cast<double>(row), static_cast<double>(column));
+  }
 
   const std::size_t peak = max_force(at_zero), peak_below = max_force(below);
   const auto on_fixture = [&](std::size_t i) {

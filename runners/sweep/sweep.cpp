@@ -257,7 +257,7 @@ Experiment Sweep::experiment(std::size_t cell, int replicate) const {
   Json json = definition_->cell(cell);
   json["cell"] = cell;
   json["replicate"] = static_cast<std::uint64_t>(replicate);
-  return Experiment::from_json(std::move(json));
+  return Experiment::from_json(json);
 }
 
 const std::vector<RecordingPart>& Sweep::inputs() const {

@@ -79,7 +79,8 @@ NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
   std::vector<double> depth, rows, columns;
   for (const int i : patch) {
     depth.push_back(image.z_m[static_cast<std::size_t>(i)]);
-    rows.push_back(i / image.width), columns.push_back(i % image.width);
+    const int row = i / image.width, column = i % image.width;
+    rows.push_back(row), columns.push_back(column);
   }
   return {quantile_in_place(depth, 0.05), static_cast<int>(median_in_place(rows)),
           static_cast<int>(median_in_place(columns))};
@@ -95,8 +96,8 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
     const double z = image.z_m[static_cast<std::size_t>(i)];
     if (!std::isfinite(z)) continue;
     measured.push_back(i);
-    open[static_cast<std::size_t>(i)] =
-        !plane || !plane->holds(unproject(camera, i % image.width, i / image.width, z));
+    const int row = i / image.width, column = i % image.width;
+    open[static_cast<std::size_t>(i)] = !plane || !plane->holds(unproject(camera, column, row, z));
   }
   if (measured.empty()) return {};
 

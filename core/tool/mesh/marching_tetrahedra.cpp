@@ -39,8 +39,8 @@ class March {
   }
   Vec3 place(std::size_t n) const {
     const std::size_t columns = nodes_[0], rows = nodes_[1];
-    return low_ + cell_m_ * Vec3(static_cast<double>(n % columns), static_cast<double>(n / columns % rows),
-                                 static_cast<double>(n / columns / rows));
+    const std::size_t i = n % columns, j = n / columns % rows, k = n / columns / rows;
+    return low_ + cell_m_ * Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
   }
 
   void cube(int i, int j, int k) {

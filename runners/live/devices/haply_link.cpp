@@ -47,6 +47,7 @@ constexpr int kMaxParts = 64;
 // wait on a socket more than once for one message; here each wait ends by the deadline of the whole call.
 class DeadlineStream {
  public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the name that Beast asks for
   using executor_type = boost::asio::io_context::executor_type;
 
   DeadlineStream(boost::asio::io_context& context, const Clock& clock)

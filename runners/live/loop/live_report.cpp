@@ -88,7 +88,7 @@ Table counts_table(const LiveReport& report) {
 
 double quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
-  return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1) + 0.5)];
+  return sorted[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(sorted.size() - 1)))];
 }
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
