@@ -104,6 +104,15 @@ std::span<const Measure> measures() {
   return kMeasures;
 }
 
+const char* name_of(MeasuredRuns runs) {
+  switch (runs) {
+    case proxy: return "runs without a tool";
+    case tool: return "runs with a tool";
+    case guidance: return "runs with guidance";
+    default: return "all runs";
+  }
+}
+
 bool applies(const Measure& measure, const Trace& trace) {
   switch (measure.runs) {
     case proxy:

@@ -51,6 +51,7 @@ struct Measure {
 };
 std::span<const Measure> measures();
 bool applies(const Measure& measure, const Trace& trace);
+const char* name_of(MeasuredRuns runs);  // "all runs", "runs without a tool", ...
 // NaN where the measure does not apply.
 double value_of(const Measure& measure, const Trace& trace);
 

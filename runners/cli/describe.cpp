@@ -177,7 +177,8 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())
     if (name == measure.name)
-      found = std::printf("%s: a measure: %s; unit: %s\n", measure.name, measure.meaning, measure.unit) > 0;
+      found = std::printf("%s: a measure: %s; unit: %s; %s\n", measure.name, measure.meaning, measure.unit,
+                          name_of(measure.runs)) > 0;
   if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
   return kDone;
 }

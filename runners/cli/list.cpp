@@ -37,7 +37,8 @@ int command_list(const CommandLine&, const ListRequest&) {
   for (const auto& entry : figures()) row(entry.name, entry.summary);
   std::puts("measures");
   for (const auto& measure : measures())
-    row(measure.name, std::string(measure.meaning) + "; unit: " + measure.unit);
+    row(measure.name,
+        std::string(measure.meaning) + "; unit: " + measure.unit + "; " + name_of(measure.runs));
   return kDone;
 }
 

@@ -120,7 +120,7 @@ std::vector<Claim> turning_claims(const std::vector<Turning>& runs) {
 }  // namespace
 
 Figure figure_6_3_angles(const FigureContext& context) {
-  const std::vector<Turning> runs = turnings(context.sweep(Sweep::load("fig6.3")));
+  const std::vector<Turning> runs = turnings(context.sweep(Sweep::load("fig6.3-angles")));
   Figure figure{
       "6.3-angles", "A tool turned in a box, over angle, spacing and rule",
       "The experiment of Fig 6.3 with the device turned by 5 to 50 deg, for points 1 to 3 mm apart and both "

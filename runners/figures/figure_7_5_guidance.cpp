@@ -52,7 +52,7 @@ Panel led_panel(const std::string& title, const std::string& column, const std::
 }  // namespace
 
 Figure figure_7_5_guidance(const FigureContext& context) {
-  const std::vector<Led> list = led(context.sweep(Sweep::load("fig7.5")));
+  const std::vector<Led> list = led(context.sweep(Sweep::load("fig7.5-guidance")));
   const Led &six = list[0], &five = list[1];
   Figure figure{
       "7.5-guidance",
