@@ -47,7 +47,7 @@ std::vector<Machine> machines(const FigureContext& context, const Sweep& sweep, 
     const auto place = plan.place(cell);
     const double rate_hz = std::get<std::vector<double>>(plan.axes[0].values)[place[0]];
     if (place[1] == 0)
-      list.push_back({static_cast<int>(std::lround(steps_per_tick * rate_hz / kFrames_hz)), {}, {}, {}, {}});
+      list.emplace_back().steps = static_cast<int>(std::lround(steps_per_tick * rate_hz / kFrames_hz));
     NoiseMeans sum;
     double count = 0;
     for (int r = 0; r < plan.replicates; ++r) {

@@ -93,10 +93,9 @@ double max_apart(const Table& table) {
   return max;
 }
 
-SharedLifts second_map(const std::string& name) {
-  const auto number = [&](const std::string& what) { return second_number("chapter_4", "/map/" + what); };
-  return {number(name + "/survived"), number(name + "/variance"), number(name + "/nodes"),
-          number("lifts_a_node")};
+SharedLifts second_share(const std::string& place) {
+  const auto number = [&](const char* what) { return second_number("chapter_4", place + "/" + what); };
+  return {number("survived"), number("variance"), number("nodes"), 1};
 }
 
 Table survivors(const std::string& name, const Table& map) {

@@ -45,9 +45,9 @@ Claim claim_agrees(const std::string& figure, const std::string& claim, const st
                    double measured, const SharedLifts& other, double our_lifts_a_node);
 // Of a column apart, in standard errors.
 double max_apart(const Table& table);
-// The share of all lifts of Fig 4.13 by the second implementation, or without the velocity estimate: name
-// "survived" or "without_estimate".
-SharedLifts second_map(const std::string& name);
+// A share of the second implementation, of one lift at each node: "/map/whole", "/map/coarse" (every third
+// noise and second acceleration).
+SharedLifts second_share(const std::string& place);
 
 // Noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);

@@ -195,7 +195,8 @@ def lift(seed, sigma, acceleration, updates=10, steps=1000, velocity_estimate=Tr
 # --- 4.4: what noise does to a lift without acceleration ---
 
 def steady_lifts(seed, sigma, count, steps=1000, updates=40):
-    """h of (4.17) and e_n of (4.22) for each lift: the mean over its updates, from the sixth after the rise on."""
+    """h of (4.17) and e_n of (4.22) for each lift: means over its updates from the sixth after the rise on; e_n just before
+    an update, and as the mean over all steps of a frame."""
     values = {"h": [], "e_n": [], "e_n_mean": []}
 
     def note(frame, height, proxies):
@@ -207,5 +208,6 @@ def steady_lifts(seed, sigma, count, steps=1000, updates=40):
         values["e_n_mean"].append(numpy.where(above, proxies.mean_normal_error(steps), numpy.nan))
 
     lift(seed, [sigma] * count, [0.0] * count, updates, steps, at_frame_end=note)
-    with numpy.errstate(all="ignore"):
-        return {name: numpy.nanmean(numpy.array(rows), axis=0) for name, rows in values.items()}
+    known = numpy.sum(~numpy.isnan(values["h"]), axis=0)
+    with numpy.errstate(invalid="ignore"):  # NaN where a lift popped through before
+        return {name: numpy.nansum(rows, axis=0) / known for name, rows in values.items()}
