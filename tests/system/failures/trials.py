@@ -8,7 +8,7 @@ import struct
 import subprocess
 import tempfile
 
-from commands import KINDS, done_runs, read, restore, state_of
+from commands import EMPTY, KINDS, done_runs, read, restore, state_of
 
 # What only a library or the language would say.
 FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library refused|libgomp|terminate|what\(\)|"
@@ -172,7 +172,8 @@ class Trials:
         again = os.path.join(self.folder, "tmp/again.h5")
         if os.path.exists(again):
             os.remove(again)
-        return "" if done and done.returncode == 0 else f"{self.command.result} cannot be run"
+        good = done is not None and (done.returncode == 0 or EMPTY.search(done.stderr))
+        return "" if good else f"{self.command.result} cannot be run"
 
     def again(self, state):
         """The same command, undisturbed, on what is there now."""
