@@ -112,7 +112,11 @@ void add_merge_and_replay(Subcommands& commands) {
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
   again->add_option("map", replay->map, "the result of a sweep")->required();
-  again->add_option("--cell", replay->cell, "index on each axis, from 0, for example 3,40")->required();
+  again
+      ->add_option(
+          "--cell", replay->cell,
+          "index on each axis, from 0, for example 3,40; or a value of each, for example noise_sigma_m=0.003,rule=none")
+      ->required();
   again->add_option("--replicate", replay->replicate, "number of the replicate, from 0");
   again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
 }
@@ -260,6 +264,16 @@ void add_live(Subcommands& commands) {
       ->capture_default_str();
 }
 
+void add_cache(Subcommands& commands) {
+  auto [command, cache] =
+      commands.add("cache", "show the folder and size of the cache of tools that were computed from meshes",
+                   command_cache);
+  command
+      ->add_option("--max", cache->max_MB,
+                   "remove what was used longest ago until at most so many MB are left; 0: everything")
+      ->check(between(0, 1e9));
+}
+
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -287,7 +301,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   Subcommands commands{app, line, act};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,
-                         add_compare, add_baseline, add_repro_and_verify, add_live})
+                         add_compare, add_baseline, add_repro_and_verify, add_live, add_cache})
     add(commands);
   try {
     app.parse(argc, argv);

@@ -135,6 +135,11 @@ struct LiveRequest {
 };
 int command_live(const CommandLine& line, const LiveRequest& request);
 
+struct CacheRequest {
+  std::optional<double> max_MB;  // none: nothing is removed
+};
+int command_cache(const CommandLine& line, const CacheRequest& request);
+
 struct DevicesRequest {};
 int command_devices(const CommandLine& line, const DevicesRequest& request);
 

@@ -1,6 +1,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "analysis/comparison/column_source.h"
 #include "analysis/comparison/deviation_figure.h"
@@ -68,7 +69,8 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   const std::vector<std::string> inputs{request.baseline, request.candidate};
   if (!request.json.empty()) require_report(line, request.json, inputs, kJsonReport);
   if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
-  if (!request.plot.empty()) require_output(line, request.plot, inputs);
+  std::optional<FileLock> lock;
+  if (!request.plot.empty()) lock.emplace(lock_output(line, request.plot, inputs));
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
   require_plot_of_traces(request, comparison);
   print_comparison(comparison);

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 int command_hashes(const CommandLine& line, const HashesRequest& request) {
   if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
-  require_output(line, request.output, {request.trace});
+  const FileLock lock = lock_output(line, request.output, {request.trace});
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);
   write_hashes(request.output, hashes, provenance_of(trace.attributes()));

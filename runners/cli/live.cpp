@@ -6,6 +6,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/provenance/input_hashes.h"
@@ -44,12 +45,26 @@ void report_now(const LiveReport& report, const std::string& file, const TextAtt
   report_line(error.what());
 }
 
+// Writes it, if it is wanted, and tells its digest, which that of the recording is.
+void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttributes& origin) {
+  const std::string sum = request.output.empty()
+                              ? digest(log.trace.columns())
+                              : write_trace(request.output, log.trace, origin, log.row_step_s);
+  if (log.is_whole())
+    std::printf("  digest of the trace: %s\n", sum.c_str());
+  else
+    std::printf("  only the first %zu of %lld ticks were kept as a trace; --record keeps all of them\n",
+                log.trace.length(), static_cast<long long>(log.ticks));
+}
+
 }  // namespace
 
 int command_live(const CommandLine& line, const LiveRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
+  std::vector<FileLock> locks;
   for (const std::string& file : {request.record, request.output, request.report})
-    if (!file.empty()) require_output(line, file, with_parts(request.experiment, experiment.inputs()));
+    if (!file.empty())
+      locks.push_back(lock_output(line, file, with_parts(request.experiment, experiment.inputs())));
   LiveOptions options;
   options.device = request.device, options.depth = request.depth;
   options.duration_s = request.duration_s.value_or(0);
@@ -74,10 +89,8 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
         result.force_scale);
   std::fputs(text(report).c_str(), stdout);
   if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
-  const std::string sum = request.output.empty() ? digest(result.log.trace.columns())
-                                                 : write_trace(request.output, result.log.trace,
-                                                               options.provenance, result.log.step_s);
-  std::printf("  digest of the trace: %s\n", sum.c_str());
+  print_trace(request, result.log, options.provenance);
+  if (!result.lost.empty()) throw InputError(result.lost);
   return result.failed ? kCheckFailed : kDone;
 }
 

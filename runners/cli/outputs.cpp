@@ -1,7 +1,6 @@
 #include "runners/cli/outputs.h"
 
 #include <filesystem>
-#include <fstream>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_digest.h"
@@ -18,9 +17,7 @@ bool holds_something(const std::string& file) {
 }
 
 bool begins_with(const std::string& file, const std::string& opening) {
-  std::string found(opening.size(), '\0');
-  std::ifstream(file, std::ios::binary).read(found.data(), static_cast<std::streamsize>(found.size()));
-  return found == opening;
+  return opening_of(file, opening.size()) == opening;
 }
 
 void require(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
@@ -34,9 +31,10 @@ void require(const CommandLine& line, const std::string& output, const std::vect
 
 }  // namespace
 
-void require_output(const CommandLine& line, const std::string& output,
-                    const std::vector<std::string>& inputs) {
+FileLock lock_output(const CommandLine& line, const std::string& output,
+                     const std::vector<std::string>& inputs) {
   require(line, output, inputs, has_result_header(output), "result");
+  return FileLock(output);
 }
 
 void require_report(const CommandLine& line, const std::string& output,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/file_lock.h"
 #include "runners/cli/commands.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -12,10 +13,11 @@ namespace remote_touch {
 
 // Throws InputError, before any work is done for it, unless the result can be written there: in a writable
 // folder, over none of the inputs, and over nothing but a result of this program, an empty file or a device,
-// or with --force.
-void require_output(const CommandLine& line, const std::string& output,
-                    const std::vector<std::string>& inputs);
-// The same for a text report: an existing file may be replaced if it begins with that opening.
+// or with --force; and while no other process writes it. That is so until the lock is destroyed.
+[[nodiscard]] FileLock lock_output(const CommandLine& line, const std::string& output,
+                                   const std::vector<std::string>& inputs);
+// The same for a text report, without a lock: an existing file may be replaced if it begins with that
+// opening.
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 

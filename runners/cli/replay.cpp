@@ -1,5 +1,4 @@
 #include <bit>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 
@@ -9,31 +8,12 @@
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
 
 namespace {
-
-// "3,4": the place on each axis, counted from 0.
-std::size_t cell_of(const std::string& text, const SweepResult& result) {
-  std::string allowed;
-  for (const Column& axis : result.axes)
-    allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
-  std::vector<std::size_t> place;
-  const char *next = text.data(), *end = text.data() + text.size();
-  while (next <= end && place.size() <= result.axes.size()) {
-    std::size_t number = 0;
-    const auto [stop, error] = std::from_chars(next, end, number);
-    if (error != std::errc() || (stop != end && *stop != ',')) break;
-    place.push_back(number);
-    next = stop + 1;
-  }
-  bool fits = next == end + 1 && place.size() == result.axes.size();
-  for (std::size_t i = 0; fits && i < place.size(); ++i) fits = place[i] < result.axes[i].length();
-  if (!fits) throw InputError("--cell " + text, "expected " + allowed);
-  return result.cell_at(place);
-}
 
 // Prints each measure beside the stored one. True when they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
@@ -66,7 +46,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
-  require_output(line, request.output, {request.map});
+  const FileLock lock = lock_output(line, request.output, {request.map});
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
   const SweepResult& result = stored.result;

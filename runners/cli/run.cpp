@@ -45,7 +45,8 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
 
 int command_run(const CommandLine& line, const RunRequest& request) {
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
-  require_output(line, request.output, with_parts(request.experiment, experiment.inputs()));
+  const FileLock lock =
+      lock_output(line, request.output, with_parts(request.experiment, experiment.inputs()));
   Progress progress(request.experiment, line.quiet);
   std::vector<double> durations;
   SimulationOptions options;

@@ -7,6 +7,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/cli/commands.h"
+#include "runners/sweep/cell_text.h"
 
 namespace remote_touch {
 
@@ -23,6 +24,18 @@ void print_measure(const Column& measure) {
   if (count > 0)
     std::printf("  %-20s mean %-10.6g %.6g .. %.6g %s\n", measure.name.c_str(),
                 sum / static_cast<double>(count), low, high, measure.units.c_str());
+}
+
+// Which runs failed, as `replay` takes them, and why.
+void print_failures(const SweepResult& result, const std::vector<std::size_t>& failed) {
+  constexpr std::size_t kMax = 20;
+  for (std::size_t i = 0; i < std::min(kMax, failed.size()); ++i) {
+    const std::size_t run = failed[i];
+    std::printf("  failed: --cell %s --replicate %d: %s\n", cell_text(result, result.cell_of(run)).c_str(),
+                result.replicate_of(run), result.error[run].c_str());
+  }
+  if (failed.size() > kMax)
+    std::printf("  and %zu more, in the dataset /sweep/error\n", failed.size() - kMax);
 }
 
 }  // namespace
@@ -44,7 +57,7 @@ int print_summary(const std::string& file, const SweepResult& result) {
   std::printf(", digest %s\n", digest(result).c_str());
   for (const Column& measure : result.measures) print_measure(measure);
   if (failed.empty()) return kDone;
-  std::printf("  the first failure: %s\n", result.error[failed.front()].c_str());
+  print_failures(result, failed);
   return kCheckFailed;
 }
 

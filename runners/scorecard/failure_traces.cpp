@@ -2,6 +2,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
+#include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {

@@ -4,15 +4,9 @@
 #include "core/kernels/isa.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
+#include "runners/sweep/cell_text.h"
 
 namespace remote_touch {
-
-std::string cell_text(const SweepResult& result, std::size_t cell) {
-  std::string text;
-  for (const std::size_t place : result.place(cell))
-    text.append(text.empty() ? "" : ",").append(std::to_string(place));
-  return text;
-}
 
 namespace {
 

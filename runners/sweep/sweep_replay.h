@@ -22,7 +22,4 @@ struct Replay {
 Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
                   const std::filesystem::path& output);
 
-// "3,4": the index of a cell on each axis.
-std::string cell_text(const SweepResult& result, std::size_t cell);
-
 }  // namespace remote_touch

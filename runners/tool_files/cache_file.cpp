@@ -9,6 +9,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "runners/tool_files/cache_size.h"
+#include "runners/tool_files/tool_cache.h"
+
 namespace remote_touch {
 
 namespace fs = std::filesystem;
@@ -72,7 +75,8 @@ void CacheWriter::write(const char* data, std::size_t size) {
 bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
                      const std::function<void(Unpacker&)>& take) {
   if (folder.empty()) return false;
-  const MappedFile file(folder / (key + "." + kind.name));
+  const fs::path path = folder / (key + "." + kind.name);
+  const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   const std::string line = first_line(kind);
   if (bytes.size() < line.size() + kHash || !bytes.starts_with(line)) return false;
@@ -84,7 +88,10 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
   std::string stored_key;
   unpack.text(stored_key);
   take(unpack);
-  return unpack.done() && stored_key == key;
+  const bool good = unpack.done() && stored_key == key;
+  const timespec used_now[] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};  // not the next one to go
+  if (good) ::utimensat(AT_FDCWD, path.c_str(), used_now, 0);
+  return good;
 }
 
 bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,
@@ -106,6 +113,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   bool good = ::close(file) == 0 && pack.good();
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;
   if (!good) ::unlink(temporary.c_str());
+  if (good) shrink_cache(folder, max_cache_bytes());
   return good;
 }
 

@@ -40,7 +40,8 @@ bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind,
                      const std::function<void(Unpacker&)>& take);
 
 // Writes to a temporary name and renames, so that other processes see the whole file or none; creates the
-// folder. Returns false if it cannot be written, which is not an error.
+// folder, and removes from it what makes it too large. Returns false if it cannot be written, which is not an
+// error. Throws InputError as max_cache_bytes().
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

@@ -1,8 +1,10 @@
 #include "runners/tool_files/tool_cache.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
+#include "core/parameters/input_error.h"
 #include "core/tool/mesh/mesh_corners.h"
 #include "runners/tool_files/cache_file.h"
 
@@ -56,6 +58,18 @@ fs::path tool_cache_folder() {
   if (const fs::path caches = from("XDG_CACHE_HOME"); !caches.empty()) return caches / "remote-touch";
   if (const fs::path home = from("HOME"); !home.empty()) return home / ".cache" / "remote-touch";
   return {};
+}
+
+std::uintmax_t max_cache_bytes() {
+  constexpr double kDefault_MB = 512, kBytes_per_MB = 1e6, kMax_MB = 1e9;
+  const char* const set = std::getenv("REMOTE_TOUCH_CACHE_MB");
+  if (set == nullptr || *set == '\0') return static_cast<std::uintmax_t>(kDefault_MB * kBytes_per_MB);
+  const std::string text = set;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kMax_MB))
+    throw InputError("REMOTE_TOUCH_CACHE_MB = " + text, "expected a number of megabytes");
+  return static_cast<std::uintmax_t>(value * kBytes_per_MB);
 }
 
 std::string sha256_of_mesh(const TriangleMesh& mesh) {

@@ -54,11 +54,13 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
   require_points();
 }
 
-// What shows nothing from the beginning on is a mistake: another unit, another limit, a file of nothing.
+// What shows nothing from the beginning on is a mistake: another unit, another limit, a file of nothing, a
+// camera whose centre is far from its image.
 void RecordedScene::require_points() const {
+  constexpr double kReach_m = 1e4;  // a hundred times the greatest depth
   const PointCloud first = cloud(0);
   for (std::size_t i = 0; i < first.size(); ++i)
-    if (first.point(i).allFinite()) return;
+    if (first.point(i).norm() <= kReach_m) return;  // not where it is not finite
   throw InputError(settings_.path, "its first frame has no point within scenario.max_depth_m = " +
                                        std::to_string(settings_.max_depth_m) +
                                        ": expected a frame of measured points, in metres");

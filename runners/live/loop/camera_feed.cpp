@@ -63,6 +63,8 @@ bool CameraFeed::step(double patience_s) noexcept try {
       return end(source_->failure());
   }
   return true;
+} catch (const std::bad_alloc&) {
+  return end(kNoMemory);
 } catch (const std::exception& error) {
   return end(error.what());
 } catch (...) {

@@ -33,6 +33,7 @@ struct CameraCounts {
 class CameraFeed {
  public:
   static constexpr const char* kEnd = "the recording has ended";
+  static constexpr const char* kNoMemory = "out of memory";
 
   CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,

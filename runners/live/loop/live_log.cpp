@@ -5,13 +5,20 @@
 
 namespace remote_touch {
 
-void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
+void LiveLog::add_row(const LiveTick& tick, double time_s) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  trace.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
-               {kUnknown, kUnknown, tick.hash});
+  if (trace.length() >= max_rows) return;
+  trace.append(time_s, tick.device, tick.out, {kUnknown, kUnknown, tick.hash});
+  row_step_s.push_back(tick.step_s);
+}
+
+void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
+  add_row(tick, static_cast<double>(tick.number) / haptic_rate_hz);
+  ++ticks;
   step_s.push_back(tick.step_s);
   if (last_number_ >= 0) {
     interval_s.push_back(tick.since_last_tick_s);
+    pieces.push_back(static_cast<double>(last_number_) / haptic_rate_hz, tick.since_last_tick_s);
     missed_ticks += tick.number - last_number_ - 1;
   }
   last_number_ = tick.number;

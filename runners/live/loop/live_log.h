@@ -6,16 +6,26 @@
 
 #include "analysis/trace/trace.h"
 #include "runners/live/loop/camera_feed.h"
+#include "runners/live/loop/samples.h"
 #include "runners/live/loop/servo.h"
 
 namespace remote_touch {
 
+// Its memory has a bound: after hours of running, too, some hundred MB.
 struct LiveLog {
-  Trace trace;
-  std::vector<double> step_s;      // of every tick: taking the frame and rendering
-  std::vector<double> interval_s;  // between the starts of ticks
-  std::vector<double> latency_s;  // of every frame taken: sensor's time stamp to the first write it counts in
-  std::vector<double> waited_s;   // of every frame taken: ready to taken
+  static constexpr std::size_t kMaxRows = 1'800'000;  // half an hour at 1 kHz: 0.4 GB, more with a tool
+
+  Trace trace;                     // of the first max_rows ticks
+  std::vector<double> row_step_s;  // of its ticks: taking the frame and rendering
+  std::size_t max_rows = kMaxRows;
+  std::int64_t ticks = 0;
+  bool is_whole() const { return trace.length() == static_cast<std::size_t>(ticks); }
+
+  Samples step_s;                 // of every tick: taking the frame and rendering
+  Samples interval_s;             // between the starts of ticks
+  GreatestOfPieces pieces;        // of those, over the run
+  Samples latency_s;              // of every frame taken: sensor's time stamp to the first write it counts in
+  Samples waited_s;               // of every frame taken: ready to taken
   std::int64_t missed_ticks = 0;  // tick numbers that were skipped
   std::int64_t exhausted_ticks = 0;   // that ended before the tool came to rest
   std::int64_t zero_force_ticks = 0;  // in which the gate was waiting or latched
@@ -28,6 +38,7 @@ struct LiveLog {
   void append(const LiveTick& tick, double haptic_rate_hz);
 
  private:
+  void add_row(const LiveTick& tick, double time_s);
   std::int64_t last_number_ = -1, taken_at_ = 0;
   int last_taken_ = -1;
 };

@@ -1,6 +1,7 @@
 #include "runners/live/loop/live_logger.h"
 
 #include <exception>
+#include <new>
 #include <utility>
 
 namespace remote_touch {
@@ -73,7 +74,8 @@ void LiveLogger::fail(const std::exception& error) {
     log_ = LiveLog();  // its columns may differ in length
     why_ = "the log failed: no memory for more ticks";
   } else {
-    why_ = std::string("the recording failed: ") + error.what();
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    why_ = std::string("the recording failed: ") + (no_memory ? "out of memory" : error.what());
   }
   failed_.store(true, std::memory_order_release);
 }

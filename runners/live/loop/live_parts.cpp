@@ -83,11 +83,17 @@ LiveResult LiveParts::finish() {
   result.force_scale = force_scale_;
   is_over();  // a loop that has ended by itself may be ahead of the last look
   result.ended = logger_->failure().empty() ? ended_ : logger_->failure();
-  result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() ||
-                  !logger_->failure().empty() || loop_failed_;
+  result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() || loop_failed_;
+  result.lost = why_lost();
   result.log = logger_->take();
   result.counts = counts();
   return result;
+}
+
+std::string LiveParts::why_lost() const {
+  if (const std::string why = logger_->failure(); !why.empty()) return why;
+  if (servo_->trouble() == Servo::kNoMemory) return Servo::kNoMemory;
+  return camera_->ended() == CameraFeed::kNoMemory ? "out of memory for frames" : std::string();
 }
 
 LiveCounts LiveParts::counts() const {

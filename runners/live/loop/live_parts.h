@@ -44,6 +44,7 @@ class LiveParts {
   LiveCounts counts() const;
   std::string camera_failure() const;
   std::string why_over() const;
+  std::string why_lost() const;
   void report_line(const std::string& line) const;
   void report_force_scale() const;
 

@@ -10,26 +10,20 @@ namespace remote_touch {
 
 namespace {
 
-std::vector<double> sorted(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values;
+LiveReport::Times times_of(const char* name, const char* word, const Samples& samples) {
+  LiveReport::Times times{name, word, samples.kept(), samples.size(), samples.least(), samples.greatest()};
+  std::sort(times.sorted.begin(), times.sorted.end());
+  return times;
+}
+
+// The least and the greatest are of all samples.
+double quantile_of(const LiveReport::Times& times, double fraction) {
+  return fraction <= 0 ? times.least : fraction >= 1 ? times.greatest : quantile(times.sorted, fraction);
 }
 
 double missed_percent(const LiveLog& log, double ticks) {
   const auto missed = static_cast<double>(log.missed_ticks);
   return ticks > 0 ? 100 * missed / (ticks + missed) : 0;
-}
-
-// An interval ends with the tick that follows it.
-void add_pieces(LiveReport& report, const LiveLog& log) {
-  const std::size_t ticks = log.interval_s.size();
-  const std::size_t length = ticks / LiveReport::kMaxPieces + 1;
-  for (std::size_t first = 0; first < ticks; first += length) {
-    const auto begin = log.interval_s.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(length, ticks - first));
-    report.piece_s.push_back(log.trace.time_s[first]);
-    report.max_interval_s.push_back(*std::max_element(begin, end));
-  }
 }
 
 // At most that many samples of "this share took longer", closer where few did.
@@ -60,7 +54,7 @@ Table times_table(const LiveReport& report) {
   std::vector<std::string> names;
   std::vector<double> count;
   for (const auto& times : report.times)
-    names.emplace_back(times.name), count.push_back(static_cast<double>(times.sorted.size()));
+    names.emplace_back(times.name), count.push_back(static_cast<double>(times.count));
   Table table{"times", "Times of the run"};
   table.columns.push_back(texts("what", "what was measured", std::move(names)));
   table.add("count", "1", "how many there were", std::move(count));
@@ -68,7 +62,7 @@ Table times_table(const LiveReport& report) {
       {"least", 0}, {"p50", 0.5}, {"p99", 0.99}, {"p99_9", 0.999}, {"largest", 1}};
   for (const auto& [name, fraction] : fractions) {
     std::vector<double> values;
-    for (const auto& times : report.times) values.push_back(quantile(times.sorted, fraction));
+    for (const auto& times : report.times) values.push_back(quantile_of(times, fraction));
     table.add(name, "s", std::string(name) + " of the times", std::move(values));
   }
   return table;
@@ -94,14 +88,14 @@ double quantile(const std::vector<double>& sorted, double fraction) {
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
   const CameraCounts& camera = counts.camera;
   const auto number = [](auto count) { return static_cast<double>(count); };
-  const double ticks = number(log.trace.length());
+  const double ticks = number(log.ticks);
   const double handled =
       std::max(1, camera.received - camera.reversed - camera.incomplete - camera.unrecorded);
   LiveReport report;
-  report.times = {{"step, the frame taken included", "step", sorted(log.step_s)},
-                  {"from tick to tick", "interval", sorted(log.interval_s)},
-                  {"frame: sensor's stamp to force", "latency", sorted(log.latency_s)},
-                  {"frame: ready to taken", "waited", sorted(log.waited_s)}};
+  report.times = {times_of("step, the frame taken included", "step", log.step_s),
+                  times_of("from tick to tick", "interval", log.interval_s),
+                  times_of("frame: sensor's stamp to force", "latency", log.latency_s),
+                  times_of("frame: ready to taken", "waited", log.waited_s)};
   report.counts = {{"ticks", ticks},
                    {"missed deadlines", number(log.missed_ticks)},
                    {"missed deadlines, percent", missed_percent(log, ticks)},
@@ -120,7 +114,7 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"frames dropped for the recorder", number(camera.unrecorded)},
                    {"frames taken in the wrong order", number(log.reversed_frames)},
                    {"largest force written, N", log.max_force_N}};
-  add_pieces(report, log);
+  report.piece_s = log.pieces.begin_s(), report.max_interval_s = log.pieces.greatest();
   return report;
 }
 
@@ -129,9 +123,9 @@ std::string text(const LiveReport& report) {
   std::string all =
       "  times in us                            count     least       p50       p99     p99.9   largest\n";
   for (const auto& times : report.times) {
-    const auto us = [&](double fraction) { return 1e6 * quantile(times.sorted, fraction); };
-    std::snprintf(row, sizeof row, "  %-34s %9zu %9.1f %9.1f %9.1f %9.1f %9.1f\n", times.name,
-                  times.sorted.size(), us(0), us(0.5), us(0.99), us(0.999), us(1));
+    const auto us = [&](double fraction) { return 1e6 * quantile_of(times, fraction); };
+    std::snprintf(row, sizeof row, "  %-34s %9zu %9.1f %9.1f %9.1f %9.1f %9.1f\n", times.name, times.count,
+                  us(0), us(0.5), us(0.99), us(0.999), us(1));
     all += row;
   }
   for (const auto& count : report.counts) {

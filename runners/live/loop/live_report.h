@@ -13,7 +13,9 @@ struct LiveReport {
   struct Times {
     const char* name;
     const char* word;            // file-safe
-    std::vector<double> sorted;  // seconds
+    std::vector<double> sorted;  // seconds; of a long run a part of them, see Samples
+    std::size_t count;           // of all
+    double least, greatest;      // of all
   };
   struct Count {
     const char* name;
@@ -21,11 +23,8 @@ struct LiveReport {
   };
   std::vector<Times> times;
   std::vector<Count> counts;
-  // max_interval_s: longest time from tick to tick in each of up to kMaxPieces pieces of the run; piece_s:
-  // start of the piece.
+  // max_interval_s: longest time from tick to tick in each piece of the run; piece_s: start of the piece.
   std::vector<double> piece_s, max_interval_s;
-
-  static constexpr std::size_t kMaxPieces = 2000;
 };
 
 LiveReport live_report(const LiveLog& log, const LiveCounts& counts);

@@ -37,7 +37,8 @@ struct LiveResult {
   std::string device;      // its name
   double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness
   std::string ended;       // why it ended
-  bool failed = false;     // device, sensor, disk or renderer failed, or the gate was latched at the end
+  bool failed = false;     // device, sensor or renderer failed, or the gate was latched at the end
+  std::string lost;  // why the recording or the log is not whole, or there was no memory; empty: neither
 };
 
 // Throws InputError when something cannot be opened; then no force was exerted.

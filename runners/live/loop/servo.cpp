@@ -76,10 +76,16 @@ bool Servo::tick() noexcept try {
   heartbeat_.rest();
   links_.device.release();
   return false;
-} catch (...) {  // a renderer breaks its contract, or a frame that was not prepared found no memory
+} catch (const std::bad_alloc&) {  // a frame that was not prepared
+  return end_for({kNoMemory});
+} catch (...) {  // a renderer breaks its contract
+  return end_for({"an exception in the haptic loop"});
+}
+
+bool Servo::end_for(const DeviceFault& trouble) noexcept {
   heartbeat_.rest();
   links_.device.release();
-  note({"an exception in the haptic loop"}, true);
+  note(trouble, true);
   return false;
 }
 

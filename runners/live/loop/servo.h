@@ -61,6 +61,7 @@ class Servo final : public DeviceCycle {
         std::int64_t start_ns, double stall_s);
 
   bool tick() noexcept override;
+  static constexpr const char* kNoMemory = "out of memory in the haptic loop";
 
   // For other threads.
   void rearm() noexcept { gate_.rearm(); }
@@ -75,6 +76,7 @@ class Servo final : public DeviceCycle {
 
  private:
   void one_tick();
+  bool end_for(const DeviceFault& trouble) noexcept;  // false
   bool is_over() const noexcept;
   std::int64_t next_number(std::int64_t now_ns);
   void move_on_to(double time_s, LiveTick& row);

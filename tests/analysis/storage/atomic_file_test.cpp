@@ -96,6 +96,38 @@ TEST(WriteWholeFile, ReplacesAndKeepsNothingElse) {
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"file"});
 }
 
+TEST(WriteWholeFile, LinksAreFollowedAlsoToWhatIsNotThereYet) {
+  const TestFolder folder("atomic_file_test");
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/new", folder / "link");
+  fs::create_symlink("link", folder / "second");
+  const std::string first = "first", second = "second";
+  write_file_atomically(folder / "second", first.data(), first.size());
+  EXPECT_EQ(bytes_of(folder / "there/new"), "first");
+  write_file_atomically(folder / "link", second.data(), second.size());
+  EXPECT_EQ(bytes_of(folder / "there/new"), "second");
+  EXPECT_EQ(fs::read_symlink(folder / "second"), "link");
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"link", "second", "there"}));
+  EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"new"});
+}
+
+TEST(WriteWholeFile, ALinkInARingIsRefused) {
+  const TestFolder folder("atomic_file_test");
+  fs::create_symlink("a", folder / "b");
+  fs::create_symlink("b", folder / "a");
+  EXPECT_HAS(refusal([&] { write_file_atomically(folder / "a", "x", 1); }), "a: cannot be written (");
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+}
+
+TEST(RemoveLeftovers, BesideTheFileThatALinkLeadsTo) {
+  const TestFolder folder("atomic_file_test");
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/x.h5", folder / "link.h5");
+  folder.write("there/x.h5.partial-123", "half"), folder.write("there/y.h5.partial-123", "of another");
+  remove_leftovers(folder / "link.h5");
+  EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"y.h5.partial-123"});
+}
+
 TEST(WriteWholeFile, DevicesAreWrittenThrough) {
   if (!fs::exists("/dev/null")) GTEST_SKIP() << "no /dev/null";
   const std::string text = "anything";

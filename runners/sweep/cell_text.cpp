@@ -1,0 +1,113 @@
+#include "runners/sweep/cell_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+[[noreturn]] void refuse_cell(const std::string& text, const std::string& expected) {
+  throw InputError("--cell " + text, "expected " + expected);
+}
+
+std::vector<std::string> items_of(const std::string& text) {
+  std::vector<std::string> items;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    items.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return items;
+}
+
+std::string six_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+// As the user writes the value of a row.
+std::string value_text(const Column& axis, std::size_t row) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&axis.values))
+    return six_digits((*numbers)[row]);
+  const auto number = std::get<std::vector<std::int32_t>>(axis.values)[row];
+  return axis.value_names.empty() ? std::to_string(number)
+                                  : axis.value_names[static_cast<std::size_t>(number)];
+}
+
+std::string values_text(const Column& axis) {
+  constexpr std::size_t kMax = 12;
+  std::string text;
+  for (std::size_t row = 0; row < std::min(kMax, axis.length()); ++row)
+    text.append(row == 0 ? "" : ", ").append(value_text(axis, row));
+  if (axis.length() > kMax) text += " ... " + value_text(axis, axis.length() - 1);
+  return text;
+}
+
+std::optional<std::size_t> row_of(const Column& axis, const std::string& value) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  const bool is_number = error == std::errc() && end == value.data() + value.size();
+  const std::string sought = is_number ? six_digits(number) : value;
+  for (std::size_t row = 0; row < axis.length(); ++row)
+    if (value_text(axis, row) == sought) return row;
+  return {};
+}
+
+// NAME=VALUE of each axis, in any order.
+std::size_t cell_by_values(const std::string& text, const SweepResult& result) {
+  std::vector<std::optional<std::size_t>> place(result.axes.size());
+  for (const std::string& item : items_of(text)) {
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
+    const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
+                                   [&](const Column& each) { return each.name == name; });
+    const auto i = static_cast<std::size_t>(axis - result.axes.begin());
+    if (axis == result.axes.end() || place[i]) break;
+    place[i] = row_of(*axis, value);
+    if (!place[i]) refuse_cell(text, "for " + name + " one of " + values_text(*axis));
+  }
+  std::string names;
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
+    if (place[i]) found.push_back(*place[i]);
+  }
+  if (found.size() != place.size()) refuse_cell(text, names);
+  return result.cell_at(found);
+}
+
+}  // namespace
+
+std::string cell_text(const SweepResult& result, std::size_t cell) {
+  std::string text;
+  for (const std::size_t at : result.place(cell))
+    text.append(text.empty() ? "" : ",").append(std::to_string(at));
+  return text;
+}
+
+std::size_t cell_of(const std::string& text, const SweepResult& result) {
+  if (text.find('=') != std::string::npos) return cell_by_values(text, result);
+  std::string allowed;
+  for (const Column& axis : result.axes)
+    allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
+  std::vector<std::size_t> place;
+  for (const std::string& item : items_of(text)) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), number);
+    if (error != std::errc() || end != item.data() + item.size() || place.size() == result.axes.size() ||
+        number >= result.axes[place.size()].length())
+      refuse_cell(text, allowed);
+    place.push_back(number);
+  }
+  if (place.size() != result.axes.size()) refuse_cell(text, allowed);
+  return result.cell_at(place);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,17 @@
+// Cells of a sweep as the user writes them.
+#pragma once
+
+#include <string>
+
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+// "3,4": the place on each axis, counted from 0.
+std::string cell_text(const SweepResult& result, std::size_t cell);
+
+// text: a place as cell_text() writes it, or a value of each axis, "noise_sigma_m=0.003,rule=none". A number
+// stands for the value that prints alike with six digits. Throws InputError.
+std::size_t cell_of(const std::string& text, const SweepResult& result);
+
+}  // namespace remote_touch

@@ -1,0 +1,77 @@
+#include "runners/tool_files/cache_size.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <ctime>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::int64_t kNs_per_s = 1'000'000'000;
+
+struct CachedFile {
+  fs::path path;
+  std::uintmax_t bytes = 0;
+  std::int64_t used_ns = 0;  // since 1970: the time of access, which the reader sets
+};
+
+bool is_ours(const fs::path& file) {
+  return file.extension() == ".tool" || file.extension() == ".spheres";
+}
+
+bool is_abandoned(const CachedFile& file) {
+  return file.path.filename().string().find(".partial-") != std::string::npos &&
+         std::time(nullptr) - file.used_ns / kNs_per_s > 3600;
+}
+
+// Other processes may remove files at the same time: what is gone counts nothing.
+std::vector<CachedFile> files_in(const fs::path& folder) {
+  std::vector<CachedFile> files;
+  std::error_code unreachable;
+  for (const auto& entry : fs::directory_iterator(folder, unreachable)) {
+    struct stat about {};
+    if (::stat(entry.path().c_str(), &about) == 0 && S_ISREG(about.st_mode))
+      files.push_back({entry.path(), static_cast<std::uintmax_t>(about.st_size),
+                       kNs_per_s * about.st_atim.tv_sec + about.st_atim.tv_nsec});
+  }
+  return files;
+}
+
+bool removed(const CachedFile& file) {
+  std::error_code refused;
+  return fs::remove(file.path, refused);
+}
+
+}  // namespace
+
+CacheSize cache_size(const fs::path& folder) {
+  CacheSize size;
+  for (const CachedFile& file : files_in(folder))
+    if (is_ours(file.path)) ++size.files, size.bytes += file.bytes;
+  return size;
+}
+
+CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
+  std::vector<CachedFile> files = files_in(folder);
+  for (const CachedFile& file : files)
+    if (is_abandoned(file)) removed(file);
+  std::erase_if(files, [](const CachedFile& file) { return !is_ours(file.path); });
+  std::sort(files.begin(), files.end(),
+            [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });
+  CacheSize left{files.size(), 0};
+  for (const CachedFile& file : files) left.bytes += file.bytes;
+  for (const CachedFile& file : files) {
+    if (left.bytes <= max_bytes) break;
+    if (removed(file)) --left.files, left.bytes -= file.bytes;
+  }
+  return left;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,67 @@
+// The memory of a live run has a bound, however long it runs.
+#include "runners/live/loop/live_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "runners/live/loop/live_report.h"
+
+namespace remote_touch::live_log_test {
+namespace {
+
+TEST(Samples, AllUpToTheirMaximum) {
+  Samples samples;
+  EXPECT_TRUE(std::isnan(samples.least()));
+  for (int i = 0; i < 1000; ++i) samples.push_back(i % 100);
+  EXPECT_EQ(samples.size(), 1000u);
+  EXPECT_EQ(samples.kept().size(), 1000u);
+  EXPECT_EQ(samples.least(), 0);
+  EXPECT_EQ(samples.greatest(), 99);
+}
+
+TEST(Samples, OfMoreAnEvenPart) {
+  Samples samples;
+  const std::size_t all = 5 * Samples::kMax / 2 + 3;
+  for (std::size_t i = 0; i < all; ++i) samples.push_back(static_cast<double>(i));
+  EXPECT_EQ(samples.size(), all);
+  EXPECT_EQ(samples.greatest(), static_cast<double>(all - 1));
+  ASSERT_LE(samples.kept().size(), Samples::kMax);
+  ASSERT_GE(samples.kept().size(), Samples::kMax / 2);
+  for (std::size_t i = 0; i < samples.kept().size(); ++i)
+    ASSERT_EQ(samples.kept()[i], 4 * static_cast<double>(i));
+}
+
+TEST(GreatestOfPieces, EveryPieceHasItsGreatest) {
+  GreatestOfPieces pieces;
+  const int all = 10 * static_cast<int>(GreatestOfPieces::kPieces);
+  for (int i = 0; i < all; ++i) pieces.push_back(i, i == 1234 ? 7 : 1);
+  ASSERT_LE(pieces.greatest().size(), 2 * GreatestOfPieces::kPieces);
+  ASSERT_GE(pieces.greatest().size(), GreatestOfPieces::kPieces);
+  const double length = pieces.begin_s()[1] - pieces.begin_s()[0];
+  for (std::size_t i = 0; i < pieces.greatest().size(); ++i) {
+    const double begin = length * static_cast<double>(i);
+    EXPECT_EQ(pieces.begin_s()[i], begin);
+    EXPECT_EQ(pieces.greatest()[i], begin <= 1234 && 1234 < begin + length ? 7 : 1) << i;
+  }
+}
+
+TEST(LiveLog, TheTraceEndsWhereItsRowsEndAndTheCountsGoOn) {
+  LiveLog log;
+  log.max_rows = 100;
+  LiveTick tick;
+  for (int i = 0; i < 1000; ++i) {
+    tick.number = i, tick.step_s = 1e-6f * static_cast<float>(i);
+    log.append(tick, 1000);
+    EXPECT_EQ(log.is_whole(), i < 100);
+  }
+  EXPECT_EQ(log.trace.length(), 100u);
+  EXPECT_EQ(log.row_step_s.size(), 100u);
+  const LiveReport report = live_report(log, {});
+  EXPECT_EQ(report.counts.front().value, 1000);
+  EXPECT_EQ(report.times.front().count, 1000u);
+  EXPECT_FLOAT_EQ(static_cast<float>(report.times.front().greatest), 999e-6f);
+}
+
+}  // namespace
+}  // namespace remote_touch::live_log_test
