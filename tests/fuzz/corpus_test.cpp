@@ -1,6 +1,7 @@
 // Every seed of the corpus once through its target: what was found once stays mended, in every build.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/fuzz/fuzz_target.h"

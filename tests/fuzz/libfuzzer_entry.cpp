@@ -1,25 +1,50 @@
 // What libFuzzer calls: the one target that is linked.
 #include <pthread.h>
 #include <sanitizer/common_interface_defs.h>
+#include <sys/time.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 
-#include "core/parameters/input_error.h"
 #include "tests/fuzz/fuzz_target.h"
 
 using remote_touch::fuzz::targets;
 
+namespace {
+
+constexpr time_t kMaxTime_s = 1;
+
 // A child process may crash, hang and run out of memory: its parent has to answer then. So what a child does
 // is no finding, and it does not write one.
-static void be_quiet_in_children() {
+void be_quiet_in_children() {
   __sanitizer_set_death_callback(nullptr);
 }
 
+void on_too_long(int) {
+  constexpr char kMessage[] = "not true: an input is read within 1 s of processor time\n";
+  if (::write(STDERR_FILENO, kMessage, sizeof kMessage - 1) < 0) std::abort();
+  std::abort();
+}
+
+// Processor time, which other programs on the machine do not change; libFuzzer's own limit is by the clock.
+// 0: no limit.
+void limit_time(time_t seconds) {
+  const itimerval limit{{0, 0}, {seconds, 0}};
+  ::setitimer(ITIMER_PROF, &limit, nullptr);
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  std::signal(SIGPROF, on_too_long);
   return pthread_atfork(nullptr, nullptr, be_quiet_in_children);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  limit_time(kMaxTime_s);
   targets().front().read({reinterpret_cast<const char*>(data), size});
+  limit_time(0);
   return 0;
 }
