@@ -60,7 +60,7 @@ TEST_F(CacheSizeTest, NoFolderHoldsNothing) {
 TEST_F(CacheSizeTest, ItStaysBelowItsMaximum) {
   ::setenv("REMOTE_TOUCH_CACHE_MB", "0.0025", 1);  // 2500 bytes: two files
   const auto put = [](CacheWriter& pack) { pack.text(std::string(1000, 'x')); };
-  const auto take = [](CacheReader& unpack) {
+  const auto take = [](Unpacker& unpack) {
     std::string text;
     unpack.text(text);
   };
