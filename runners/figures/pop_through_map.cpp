@@ -88,8 +88,12 @@ Claim claim_agrees(const std::string& figure, const std::string& claim, const st
 }
 
 double max_apart(const Table& table) {
-  double max = 0;
-  for (const double apart : numbers(table, "apart")) max = std::max(max, std::abs(apart));
+  const std::vector<double>& values = numbers(table, "apart");
+  double max = values.empty() ? std::nan("") : 0;  // nothing that was compared is no agreement
+  for (const double apart : values) {
+    if (std::isnan(apart)) return apart;
+    max = std::max(max, std::abs(apart));
+  }
   return max;
 }
 

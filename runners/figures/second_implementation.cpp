@@ -21,8 +21,9 @@ double second_number(const std::string& table, const std::string& place) {
 
 std::vector<double> second_column(const std::string& table, const std::string& list,
                                   const std::string& column) {
+  const nlohmann::json all = table_named(table);  // outlives the loop over its rows
   std::vector<double> values;
-  for (const auto& row : table_named(table).at(nlohmann::json::json_pointer(list)))
+  for (const auto& row : all.at(nlohmann::json::json_pointer(list)))
     values.push_back(row.at(column).get<double>());
   return values;
 }
