@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -241,12 +242,23 @@ TEST_F(ServoTest, TheEndOfItsTimeEndsIt) {
 
 TEST_F(ServoTest, AnExceptionLetsTheDeviceGo) {
   renderer_.on_step = [&](int before) {
-    if (before == 50) throw std::bad_alloc();
+    if (before == 50) throw std::runtime_error("a renderer breaks its contract");
   };
   run();
   EXPECT_EQ(renderer_.steps, 50);
   EXPECT_TRUE(servo_->has_failed());
   EXPECT_STREQ(servo_->trouble(), "an exception in the haptic loop");
+  EXPECT_EQ(device_.released_ms, (Numbers{50}));
+}
+
+TEST_F(ServoTest, AStepWithoutMemoryLetsTheDeviceGo) {
+  renderer_.on_step = [&](int before) {
+    if (before == 50) throw std::bad_alloc();
+  };
+  run();
+  EXPECT_EQ(renderer_.steps, 50);
+  EXPECT_TRUE(servo_->has_failed());
+  EXPECT_STREQ(servo_->trouble(), "out of memory in the haptic loop");
   EXPECT_EQ(device_.released_ms, (Numbers{50}));
 }
 
