@@ -85,7 +85,10 @@ namespace {
 TriangleMesh mesh_by_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(file.string(), 0);
-  if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
+  if (scene == nullptr) {
+    const std::string error = importer.GetErrorString();
+    throw std::runtime_error(error == "std::bad_alloc" ? "it claims more than fits into memory" : error);
+  }
   TriangleMesh mesh;
   Welded welded(mesh);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
