@@ -10,13 +10,14 @@ namespace remote_touch {
 
 namespace {
 
-// NOLINTNEXTLINE(bugprone-macro-parentheses): level is a namespace
+// NOLINTBEGIN(bugprone-macro-parentheses): level is a namespace
 #define REMOTE_TOUCH_KERNELS(name, level)                                                         \
   {                                                                                               \
     .isa = name, .gather = level::kGatherKernels, .proxy = level::kProxyKernels,                  \
     .noise = level::kNoiseKernels, .tool = level::kToolKernels, .regions = level::kRegionKernels, \
     .patch = level::kPatchKernels, .depth = level::kDepthKernels                                  \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 
 constexpr Kernels kX86_64 = REMOTE_TOUCH_KERNELS("x86-64", x86_64);
 constexpr Kernels kX86_64v3 = REMOTE_TOUCH_KERNELS("x86-64-v3", x86_64_v3);
