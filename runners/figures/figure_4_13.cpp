@@ -48,7 +48,7 @@ Figure figure_4_13(const FigureContext& context) {
   figure.panels[0].place = {0, 0}, figure.panels[1].place = {0, 1};
   figure.claims = {
       of_map(claim_agrees("4.13", "success over the whole map, 5396 lifts, 1000 steps per frame", "-",
-                          mean(numbers(map, "survived")), second_share("/map/whole"), 1)),
+                          mean(numbers(map, "survived")), second_fraction("/map/whole"), 1)),
       of_map(claim_at_most("4.13",
                            "largest difference from the second implementation in 25 regions of the map, in "
                            "standard errors",

@@ -93,7 +93,7 @@ Figure figure_4_13_replicated(const FigureContext& context) {
   constexpr double kLiftsANode = 20;
   figure.claims = {
       of_map(claim_agrees("4.13-replicated", "success over the map", "-", mean(numbers(map, "survived")),
-                          second_share("/map/coarse"), kLiftsANode)),
+                          second_fraction("/map/coarse"), kLiftsANode)),
       of_map(claim_between("4.13-replicated", "success over the map without the velocity estimate", "-",
                            mean(numbers(without, "survived")), 0.03, 0.09, "fraction")),
       of_map(claim_at_most("4.13-replicated",

@@ -110,7 +110,7 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
   const auto &survives = numbers(phases.table, "survives"), &pops = numbers(phases.table, "pops");
   // The proxy sinks up to 0.113 mm in the middle of four points, and rests within 0.01 mm of r_c; r_1 is 0.01
   // mm less. The bisection ends 0.0001 wide.
-  constexpr double kLeast = 1 - (0.113 + 0.01) / 4.99, kMost = 1 + (0.01 + 0.01) / 4.99;
+  constexpr double kMinRatio = 1 - (0.113 + 0.01) / 4.99, kMaxRatio = 1 + (0.01 + 0.01) / 4.99;
   return {
       claim_at_least("bounds", "noise-free lifts at 4.3 m/s^2 that survived, 64 grid phases",
                      "a < 4.491 (4.14)", phases.survived_low, 1, "fraction"),
@@ -119,10 +119,10 @@ std::vector<Claim> claims(const Phases& phases, const Table& thickness, const Ta
       claim_between("bounds", "smallest critical acceleration over the phases, in units of (4.14)",
                     "1 (4.14)",
                     *std::min_element(survives.begin(), survives.end()) / critical_acceleration(kLift),
-                    kLeast, kMost, "1"),
+                    kMinRatio, kMaxRatio, "1"),
       claim_between("bounds", "largest critical acceleration over the phases, in units of (4.14)", "1 (4.14)",
-                    *std::max_element(pops.begin(), pops.end()) / critical_acceleration(kLift), kLeast, kMost,
-                    "1"),
+                    *std::max_element(pops.begin(), pops.end()) / critical_acceleration(kLift), kMinRatio,
+                    kMaxRatio, "1"),
       claim_at_most("bounds", "refitted thickness against (4.23), rms up to 2 r_c", "(4.23)",
                     rms_from_print(thickness), 3e-4, "m"),
       claim_between("bounds", "refitted normal error at 2 r_c, in what the printed digits of (4.24) allow",

@@ -97,7 +97,7 @@ double max_apart(const Table& table) {
   return max;
 }
 
-SharedLifts second_share(const std::string& place) {
+SharedLifts second_fraction(const std::string& place) {
   const auto number = [&](const char* what) { return second_number("chapter_4", place + "/" + what); };
   return {number("survived"), number("variance"), number("nodes"), 1};
 }

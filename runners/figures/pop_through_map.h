@@ -47,7 +47,7 @@ Claim claim_agrees(const std::string& figure, const std::string& claim, const st
 double max_apart(const Table& table);
 // A share of the second implementation, of one lift at each node: "/map/whole", "/map/coarse" (every third
 // noise and second acceleration).
-SharedLifts second_share(const std::string& place);
+SharedLifts second_fraction(const std::string& place);
 
 // Noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);
