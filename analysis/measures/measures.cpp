@@ -106,10 +106,14 @@ std::span<const Measure> measures() {
 
 const char* name_of(MeasuredRuns runs) {
   switch (runs) {
-    case proxy: return "runs without a tool";
-    case tool: return "runs with a tool";
-    case guidance: return "runs with guidance";
-    default: return "all runs";
+    case proxy:
+      return "runs without a tool";
+    case tool:
+      return "runs with a tool";
+    case guidance:
+      return "runs with guidance";
+    default:
+      return "all runs";
   }
 }
 

@@ -166,8 +166,8 @@ TEST_F(SessionSceneTest, AnExperimentOfNoSessionIsRefused) {
   EXPECT_EQ(refusal([this] { session_experiment(session_.write(file_)); }),
             file_.string() + ": damaged (its attributes view and config): expected a result of this program");
   // It would be printed by a function that calls itself for every level.
-  session_.config = R"({"haptic_rate_hz": 1000, "title": )" + std::string(100'000, '[') +
-                    std::string(100'000, ']') + "}";
+  session_.config =
+      R"({"haptic_rate_hz": 1000, "title": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}";
   EXPECT_HAS(refusal([this] { session_experiment(session_.write(file_)); }), "nested too deep");
 }
 
