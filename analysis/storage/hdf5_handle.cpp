@@ -46,6 +46,7 @@ herr_t take_error(unsigned, const H5E_error2_t* error, void* refusal) {
 
 // Of its first call the library prints the errors, and nothing else can prevent that.
 void begin() {
+  const Hdf5Work work;
   // What it does at the end of the program is needless where every file is closed, and may not end or crash
   // where a call found no memory.
   H5dont_atexit();

@@ -1,6 +1,5 @@
 // remote-touch: signals, the choice of kernels, errors.
 #include <malloc.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -9,12 +8,12 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
-#include <string_view>
+#include <string>
 
-#include "analysis/storage/hdf5_file.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/command_line.h"
+#include "runners/cli/last_resorts.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -56,53 +55,9 @@ void complain(const std::string& problem) {
   std::fprintf(stderr, "remote-touch: %s\n", printable(problem).c_str());
 }
 
-// The last resorts, without memory. Results are written whole or not at all, so none is lost.
-[[noreturn]] void end_at_once(std::string_view why) {
-  static_cast<void>(!::write(Hdf5Work::messages(), why.data(), why.size()));
-  ::_exit(kBadInput);
-}
-// Where no exception can leave: in a thread, or before main() begins.
-[[noreturn]] void on_terminate() {
-  try {
-    if (std::current_exception()) throw;
-  } catch (const std::bad_alloc&) {
-    end_at_once("remote-touch: out of memory\n");
-  } catch (...) {
-  }
-  std::signal(SIGABRT, SIG_DFL);
-  std::abort();
-}
-constexpr std::string_view kHdf5Failed =
-    "remote-touch: the HDF5 library failed: out of memory, or a damaged file\n";
-void on_crash(int signal) {
-  if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-void on_exit_by_a_library() {
-  if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
-}
-// Not where a sanitizer or a debugger takes the signal.
-void take_if_free(int signal) {
-  struct sigaction now {};
-  if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;
-  now.sa_handler = on_crash;
-  now.sa_flags = SA_ONSTACK;
-  ::sigaction(signal, &now, nullptr);
-}
-// The library may use up the stack: it calls itself without end where its first call finds no memory.
-void use_own_stack() {
-  static char room[1 << 16];
-  stack_t own{};
-  own.ss_sp = room, own.ss_size = sizeof room;
-  ::sigaltstack(&own, nullptr);
-}
 // Before the constants of all files are made, which may find no memory.
-[[gnu::constructor(101)]] void prepare_for_the_worst() {
-  std::set_terminate(on_terminate);
-  std::atexit(on_exit_by_a_library);
-  use_own_stack();
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT}) take_if_free(signal);
+[[gnu::constructor(101)]] void take_last_resorts() {
+  install_last_resorts(kBadInput);
 }
 
 int interrupted() {

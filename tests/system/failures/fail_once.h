@@ -1,0 +1,45 @@
+// What the files of the preloaded library share; fail_once.cpp says what it is for.
+#pragma once
+
+#include <dlfcn.h>
+#include <sys/types.h>
+
+#include <cstdint>
+
+enum Kind { kAllocation, kOpen, kWrite, kFlush, kRename, kTruncate, kRemove, kClose, kKindCount };
+
+struct Counts {
+  std::uint64_t of[kKindCount];
+  std::uint64_t failed;
+  std::uint64_t processes;
+};
+
+// The process that this library is in.
+struct Process {
+  Counts private_counts = {};
+  Counts* counts = &private_counts;
+  bool is_running = false;  // the program's own code
+  bool is_chosen = true;
+};
+extern Process this_process;
+
+// Which call fails: KIND:N:HOW.
+void read_wish(const char* text);
+// Files count below PLACE + below.
+void count_below(const char* place, const char* below);
+
+// Counts a call. True if it is the one that fails; errno is then set.
+bool fails(Kind kind);
+// The same where a path or an open file is below the folder; the errno of before stays if it does not fail.
+bool fails_below(Kind kind, const char* path);
+bool fails_below(Kind kind, int file);
+
+// The function of this name behind this library.
+template <class Function>
+Function* next(const char* name) {
+  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+using Main = int(int, char**, char**);
+// With FAIL_ONCE_SERVER: answers requests with copies of the program, see fail_once.cpp.
+int serve(Main* own_main, int argc, char** argv, char** environment);
