@@ -35,7 +35,8 @@ TEST(SensorFaults, NoneAreTheBareScenarioBitForBit) {
     EXPECT_TRUE(same_bits(seen.cloud(frame), scene->cloud(frame)));
     EXPECT_EQ(same.captured_s(frame), plane->captured_s(frame));
     EXPECT_FALSE(same.arrives_s(frame));
-    EXPECT_EQ(typeid(*same.points(frame)), typeid(*plane->points(frame)));
+    const auto same_points = same.points(frame), plane_points = plane->points(frame);
+    EXPECT_TRUE(typeid(*same_points) == typeid(*plane_points));
   }
 }
 
