@@ -137,6 +137,9 @@ const RendererEntry kRenderers[] = {
         "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
     renderer<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
+    renderer<LoadedToolPenalty, LoadedToolPenalty::Settings>(
+        "tool-penalty", DegreesOfFreedom::six, ContactModel::nothing,
+        "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(
         "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
         "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7"),

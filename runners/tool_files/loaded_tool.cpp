@@ -1,23 +1,61 @@
 #include "runners/tool_files/loaded_tool.h"
 
+#include <utility>
+
 namespace remote_touch {
 
-Parameters parameters(LoadedTool::Settings& s) {
+namespace {
+
+template <class Settings>
+Parameters parameters_of(Settings& s) {
   Parameters all = parameters(s.tool);
   for (Parameter& p : parameters(s.motion)) all.push_back(std::move(p));
   return all;
 }
 
-std::string validate(const LoadedTool::Settings& s) {
+template <class Settings>
+std::string problem_of(const Settings& s) {
   const std::string tool = validate(s.tool);
   return tool.empty() ? validate(s.motion) : tool;
+}
+
+ToolRenderer renderer_of(const ToolParameters& motion, std::shared_ptr<const VoxelTool> tool,
+                         const Kernels& kernels) {
+  return {motion, std::move(tool), kernels};
+}
+ToolRenderer renderer_of(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
+                         const Kernels& kernels) {
+  return {tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)};
+}
+
+}  // namespace
+
+Parameters parameters(LoadedTool::Settings& s) {
+  return parameters_of(s);
+}
+Parameters parameters(LoadedToolPenalty::Settings& s) {
+  return parameters_of(s);
+}
+
+std::string validate(const LoadedTool::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedToolPenalty::Settings& s) {
+  return problem_of(s);
 }
 
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {
   return input_files(s.tool);
 }
+std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
+  return input_files(s.tool);
+}
 
-LoadedTool::LoadedTool(const Settings& settings, double, const Kernels& kernels)
-    : renderer_(settings.motion, load_tool(settings.tool), kernels) {}
+template <class MotionSettings>
+ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
+    : renderer_(renderer_of(settings.motion, load_tool(settings.tool), kernels)) {}
+
+template class ToolFromMesh<ToolParameters>;
+template class ToolFromMesh<ToolPenaltyParameters>;
 
 }  // namespace remote_touch

@@ -1,22 +1,26 @@
-// The 6-DOF renderer for experiments, chapter 6: a tool made from a mesh, and its motion.
+// 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6 or by
+// the penalty rule to compare with.
 #pragma once
 
 #include <string>
 
+#include "core/tool/motion/penalty_motion.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
-class LoadedTool final : public Renderer {
+// MotionSettings: ToolParameters or ToolPenaltyParameters.
+template <class MotionSettings>
+class ToolFromMesh final : public Renderer {
  public:
   struct Settings {
     ToolSettings tool;
-    ToolParameters motion;
+    MotionSettings motion;
   };
 
   // Throws InputError when the tool cannot be made.
-  LoadedTool(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
+  ToolFromMesh(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
   void prepare(Frame& frame) const override { renderer_.prepare(frame); }
   void reserve(std::size_t points) override { renderer_.reserve(points); }
   void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
@@ -28,10 +32,19 @@ class LoadedTool final : public Renderer {
   ToolRenderer renderer_;
 };
 
+using LoadedTool = ToolFromMesh<ToolParameters>;
+using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
+
 Parameters parameters(LoadedTool::Settings& s);
+Parameters parameters(LoadedToolPenalty::Settings& s);
 std::string validate(const LoadedTool::Settings& s);
+std::string validate(const LoadedToolPenalty::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
+inline double max_stiffness_N_per_m(const LoadedToolPenalty::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 

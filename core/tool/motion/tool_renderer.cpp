@@ -17,11 +17,15 @@ constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each othe
 
 ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                            const Kernels& kernels)
+    : ToolRenderer(parameters, tool, kernels, make_tool_motion(parameters, *tool)) {}
+
+ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+                           const Kernels& kernels, std::unique_ptr<ToolMotion> rule)
     : p_(parameters),
       tool_(std::move(tool)),
       kernels_(kernels),
       contacts_(tool_, parameters, kernels),
-      motion_(make_tool_motion(parameters, *tool_)),
+      motion_(std::move(rule)),
       velocity_(parameters.max_prediction_s) {}
 
 void ToolRenderer::prepare(Frame& frame) const {

@@ -19,6 +19,9 @@ class ToolRenderer final : public Renderer {
   // pre: validate(parameters) is empty.
   ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                const Kernels& kernels);
+  // With a rule of its own instead of parameters.contact_rule, which then says how contacts are counted.
+  ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+               const Kernels& kernels, std::unique_ptr<ToolMotion> rule);
 
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;

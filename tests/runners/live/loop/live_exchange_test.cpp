@@ -26,7 +26,7 @@ TEST(TripleBuffer, GivesTheNewestWholeAndInOrder) {
     }
   });
   int last = 0;
-  for (int taken = 0; taken < kValues / 10;) {
+  for (int taken = 0; taken < kValues / 100;) {
     if (!buffer.take()) {
       std::this_thread::yield();
       continue;

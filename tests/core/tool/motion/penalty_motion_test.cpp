@@ -1,0 +1,97 @@
+// The penalty rule against the balance of its springs, in closed form.
+#include "core/tool/motion/penalty_motion.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/rotation.h"
+#include "core/tool/motion/tool_renderer.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::penalty_motion_test {
+namespace {
+
+const Vec3 kHalf_m(0.02, 0.005, 0.01);
+
+ToolRenderer renderer(const ToolPenaltyParameters& p = {}) {
+  const auto tool = scenes::box_tool(kHalf_m);
+  return {tool_parameters(p), tool, scenes::kernels(), std::make_unique<PenaltyMotion>(p, *tool)};
+}
+
+// columns x rows points at y = 0, 2 mm apart; the edges of the tool are 1 mm from any.
+PointCloud sheet(int columns, int rows, double x_m = 0) {
+  PointCloud cloud;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i)
+      cloud.append({x_m + (i - 0.5 * (columns - 1)) * 0.002, 0, (j - 0.5 * (rows - 1)) * 0.002},
+                   Vec3::UnitY());
+  return cloud;
+}
+
+// After some ticks with the device at this height of its lower side.
+RenderOutput pressed(const PointCloud& cloud, double lower_side_m, const ToolPenaltyParameters& p = {}) {
+  ToolRenderer r = renderer(p);
+  r.on_frame(scenes::frame(cloud));
+  const auto at = [](double y) {
+    return DeviceState{{0, kHalf_m.y() + y, 0}, Eigen::Quaterniond::Identity()};
+  };
+  r.step(at(0.001), 0);
+  RenderOutput out;
+  for (int i = 1; i < 50; ++i) out = r.step(at(lower_side_m), 0.001 * i);
+  return out;
+}
+
+TEST(PenaltyMotion, InFreeSpaceTheToolIsTheDevice) {
+  ToolRenderer r = renderer();
+  r.on_frame(scenes::frame(sheet(40, 40)));
+  for (int i = 0; i < 100; ++i) {
+    const DeviceState d{{0.001 * i, 0.05, 0}, rotation({0.01 * i, 0.3, -0.2})};
+    const RenderOutput out = r.step(d, 0.001 * i);
+    EXPECT_EQ(out.proxy_W, d.position_W);
+    EXPECT_EQ(out.force_N, Vec3::Zero());
+    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
+  }
+}
+
+// k (D - s) = min(N, 10) k_p s
+TEST(PenaltyMotion, SinksUntilTheSpringsBalance) {
+  constexpr double k = 600, k_p = 1200, pressed_m = 0.004;
+  for (const auto& [columns, rows, pushing] : {std::tuple{20, 10, 10}, {5, 2, 10}, {3, 2, 6}}) {
+    const RenderOutput out = pressed(sheet(columns, rows), -pressed_m);
+    const double sinks_m = k * pressed_m / (k + pushing * k_p);
+    EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y() - sinks_m, 1e-6) << columns;
+    EXPECT_NEAR(out.force_N.y(), k * (pressed_m - sinks_m), 1e-3) << columns;
+    EXPECT_EQ(out.tool->active_constraints, columns * rows);
+    EXPECT_TRUE(out.converged);
+  }
+}
+
+// What the hand feels is the push of the point: its force, and its torque about the centre of mass.
+TEST(PenaltyMotion, APointBesideTheMiddleTurnsTheTool) {
+  const RenderOutput out = pressed(sheet(1, 1, 0.009), -0.001);
+  const Vec3 r = Vec3(0.009, 0, 0) - out.proxy_W;
+  EXPECT_GT(out.force_N.norm(), 0.1);
+  EXPECT_NEAR((out.tool->torque_Nm - r.cross(out.force_N)).norm(), 0, 1e-5);
+  EXPECT_GT(out.tool->torque_Nm.z(), 1e-3);
+}
+
+// Nothing constrains the tool: points beyond its middle push it through.
+TEST(PenaltyMotion, PressedHardItPassesTheSurface) {
+  EXPECT_LT(pressed(sheet(20, 10), -0.3).proxy_W.y(), -0.1);
+}
+
+// Half a voxel a step, so a tick moves the tool no farther than its steps do.
+TEST(PenaltyMotion, SaysWhenItsStepsDoNotSuffice) {
+  ToolPenaltyParameters p;
+  p.steps_per_tick = 4;
+  ToolRenderer r = renderer(p);
+  r.on_frame(scenes::frame(sheet(40, 40)));
+  r.step({{0, 0.1, 0}, Eigen::Quaterniond::Identity()}, 0);
+  const RenderOutput out = r.step({{0, 0.08, 0}, Eigen::Quaterniond::Identity()}, 0.001);
+  EXPECT_NEAR(out.proxy_W.y(), 0.099, 1e-12);
+  EXPECT_TRUE(out.tool->budget_exhausted);
+  EXPECT_FALSE(out.converged);
+}
+
+}  // namespace
+}  // namespace remote_touch::penalty_motion_test
