@@ -31,7 +31,8 @@ double first_hit_columns(const PointsView& points, const double p[3], const doub
     const bool met = (along > 0.0) & (rest >= 0.0) & (root > 0.0);  // ahead, a real root, not behind P
     first = smaller(met ? root : __builtin_inf(), first);
   }
-  return first;
+  // OpenMP begins the lanes of a minimum with the largest number, which is infinity for some compilers only.
+  return first < __DBL_MAX__ ? first : __builtin_inf();
 }
 
 template <bool kRadius>
