@@ -10,6 +10,7 @@ FOLDERS = ("core", "scenarios", "analysis", "runners", "data", "tests", "scripts
 FILES = ("CMakeLists.txt", "README.md")
 OPTIONS = ("-GNinja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_UNITY_BUILD=ON",
            "-DCMAKE_UNITY_BUILD_BATCH_SIZE=10", "-DREMOTE_TOUCH_BENCHMARKS=OFF", "-DCMAKE_CXX_FLAGS=-w")
+NOT_CONSTEXPR = re.compile(r"call to non-.constexpr. function '[^']*?(\w+)\(")
 AT = re.compile(r"^(?:In file included from |\s+from )?(/[^:\s]+):(\d+)[:,]", re.MULTILINE)
 
 
@@ -29,6 +30,9 @@ def refused(log, tree, mutations):
             if hits:
                 found |= hits[0]
                 break
+        # A mutated function is not constexpr, and one that is calls it.
+        found |= {number for name in NOT_CONSTEXPR.findall(block) for number, mutation in mutations.items()
+                  if mutation.function == name and mutation.constexpr}
     return found
 
 
