@@ -30,6 +30,7 @@
 #include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/open_box.h"
+#include "scenarios/synthetic/plates.h"
 #include "scenarios/synthetic/sheet.h"
 #include "scenarios/synthetic/slot.h"
 #include "scenarios/synthetic/triangle_wave.h"
@@ -74,6 +75,7 @@ const ScenarioEntry kScenarios[] = {
     scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
     scenario<MovingShape>("moving-shape",
                           "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
+    scenario<Plates>("plates", "flat plates seen from above that hide each other, pass or move apart"),
     scenario<TriangleWave>("triangle-wave",
                            "a triangle wave of growing height at rest, with sharp edges, 4.3.3"),
     scenario<CameraScene>("camera-scene",
