@@ -1,9 +1,13 @@
 #include "runners/experiment/catalog.h"
 
 #include "core/proxy/proxy_renderer.h"
+#include "core/rivals/averaged_proxy_renderer.h"
+#include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
+#include "core/rivals/surfel_renderer.h"
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "core/virtual_fixtures/everywhere.h"
 #include "core/virtual_fixtures/half_space.h"
@@ -134,6 +138,18 @@ const RendererEntry kRenderers[] = {
     renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
         "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
         "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+    renderer<SurfelRenderer, SurfelParameters>(
+        "surfels", DegreesOfFreedom::three, ContactModel::oriented,
+        "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]"),
+    renderer<AveragedProxyRenderer, AveragedProxyParameters>(
+        "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
+        "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames"),
+    renderer<DensityProxyRenderer, DensityProxyParameters>(
+        "density-proxy", DegreesOfFreedom::three, ContactModel::points,
+        "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
+    renderer<OracleProxyRenderer, OracleProxyParameters>(
+        "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
+        "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
     renderer<GodObjectRenderer, GodObjectParameters>(
         "god-object", DegreesOfFreedom::three, ContactModel::mesh,
         "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),

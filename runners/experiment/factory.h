@@ -87,8 +87,9 @@ enum class DegreesOfFreedom { three, six };
 // of points with r_f above 0. mesh: the triangles between neighbours in an organised frame, so the order of
 // the points matters. sheet: a sheet fitted to points in cells along the world's axes, so a rotated scene, or
 // one sent more often, gives similar outputs but not the same bits. nothing: points only push, and a HIP
-// pressed deeper passes them.
-enum class ContactModel { points, regions, mesh, sheet, nothing };
+// pressed deeper passes them. oriented: points, but the direction to the sensor matters; the layout of an
+// image gives it, else a setting in the world's axes; forbidden regions do not count.
+enum class ContactModel { points, regions, mesh, sheet, nothing, oriented };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;
