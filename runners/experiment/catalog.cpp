@@ -13,6 +13,7 @@
 #include "core/virtual_fixtures/half_space.h"
 #include "core/virtual_fixtures/hue_range.h"
 #include "core/virtual_fixtures/near_point.h"
+#include "runners/experiment/renderer_contacts.h"
 #include "runners/sessions/session_scene.h"
 #include "runners/tool_files/loaded_spheres.h"
 #include "runners/tool_files/loaded_tool.h"
