@@ -4,9 +4,13 @@
 #pragma once
 
 #include "core/proxy/proxy_parameters.h"
+#include "core/rivals/averaged_proxy_renderer.h"
+#include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
+#include "core/rivals/surfel_renderer.h"
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "runners/experiment/rendered_contact.h"
 #include "runners/tool_files/loaded_spheres.h"
@@ -24,6 +28,19 @@ inline RenderedContact rendered_contact(const ProxyParameters& p) {
 }
 inline RenderedContact rendered_contact(const TrackedSheetParameters& p) {
   return rendered_contact(p.proxy);
+}
+inline RenderedContact rendered_contact(const OracleProxyParameters& p) {
+  return rendered_contact(p.proxy);
+}
+inline RenderedContact rendered_contact(const AveragedProxyParameters& p) {
+  return rendered_contact(p.proxy);
+}
+// Whatever its radius is, it reports where a ball of the nominal one would be.
+inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
+  return rendered_contact(p.proxy);
+}
+inline RenderedContact rendered_contact(const SurfelParameters&) {
+  return {};
 }
 inline RenderedContact rendered_contact(const PenaltyParameters& p) {
   return {p.contact_radius_m, p.stiffness_N_per_m};

@@ -44,6 +44,11 @@ const Pressed kHeld[] = {
     {R"({"name": "tracked-sheet"})", kDense_m, 0.01},
     {R"({"name": "god-object"})", kDense_m, 0.01},
     {R"({"name": "god-object", "surface_offset_m": 0.001})", kDense_m, 0.01},
+    {R"({"name": "surfels"})", kDense_m, 0.01},
+    {R"({"name": "averaged-proxy"})", kDense_m, 0.01},
+    {R"({"name": "averaged-proxy", "average": "mean"})", kDense_m, 0.01},
+    {R"({"name": "density-proxy"})", kDense_m, 0.01},
+    {R"({"name": "oracle-proxy"})", kDense_m, 0.01},
     {R"({"name": "penalty"})", kDense_m, -0.002},  // a HIP below the points pops through
     {R"({"name": "penalty", "contact_radius_m": 0.003, "stiffness_N_per_m": 100})", kDense_m, -0.001},
     {R"({"name": "implicit-surface", "surface": "surfels"})", kDense_m, 0.01},
