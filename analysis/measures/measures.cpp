@@ -9,6 +9,8 @@
 #include "analysis/measures/force_change_measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/measures/passivity_measures.h"
+#include "analysis/measures/perceived_force_measures.h"
+#include "analysis/measures/settled_contact_measures.h"
 #include "analysis/measures/tool_measures.h"
 
 namespace remote_touch {
@@ -65,6 +67,32 @@ constexpr Measure kMeasures[] = {
     {"max_energy_per_update", "J", "maximum work on the hand from one frame update to the next, with force",
      all, max_energy_per_update_J},
 
+    {"max_contact_error", "m",
+     "maximum distance of the contact point from the true surface, above or below it, in settled ticks",
+     contact, max_contact_error_m},
+    {"max_sink", "m", "maximum depth of the contact point below the true surface, in settled ticks", contact,
+     max_sink_m},
+    {"max_float", "m", "maximum height of the contact point above the true surface, in settled ticks",
+     contact, max_float_m},
+    {"rms_contact_error", "m", "rms distance of the contact point from the true surface, in settled ticks",
+     contact, rms_contact_error_m},
+    {"contact_force_fraction", "1", "fraction of the settled ticks with a force", contact,
+     contact_force_fraction},
+    {"contact_known_fraction", "1", "fraction of the settled ticks with a known truth", contact,
+     contact_known_fraction},
+    {"jump_fraction_5", "1", "fraction of the frame updates at which the force changes by more than 5 %", all,
+     [](const Trace& trace) { return felt_jump_fraction(trace, 0.05); }},
+    {"jump_fraction_10", "1", "fraction of the frame updates at which the force changes by more than 10 %",
+     all, [](const Trace& trace) { return felt_jump_fraction(trace, 0.1); }},
+    {"jump_fraction_20", "1", "fraction of the frame updates at which the force changes by more than 20 %",
+     all, [](const Trace& trace) { return felt_jump_fraction(trace, 0.2); }},
+    {"packet_rate_5", "1/s", "packets per second of the force with a dead-band of 5 %, IEEE 1918.1.1", all,
+     [](const Trace& trace) { return deadband_packets_per_s(trace, 0.05); }},
+    {"packet_rate_10", "1/s", "packets per second of the force with a dead-band of 10 %, IEEE 1918.1.1", all,
+     [](const Trace& trace) { return deadband_packets_per_s(trace, 0.1); }},
+    {"packet_rate_20", "1/s", "packets per second of the force with a dead-band of 20 %, IEEE 1918.1.1", all,
+     [](const Trace& trace) { return deadband_packets_per_s(trace, 0.2); }},
+
     {"max_torque", "N m", "maximum torque about the HIP", tool, max_torque_Nm},
     {"max_torque_jump", "N m", "maximum change of the torque at a frame update", tool, max_torque_jump_Nm},
     {"rms_torque_jump", "N m", "rms change of the torque at a frame update", tool, rms_torque_jump_Nm},
@@ -107,6 +135,7 @@ std::span<const Measure> measures() {
 const char* name_of(MeasuredRuns runs) {
   switch (runs) {
     case proxy:
+    case contact:
       return "runs without a tool";
     case tool:
       return "runs with a tool";
@@ -121,6 +150,8 @@ bool applies(const Measure& measure, const Trace& trace) {
   switch (measure.runs) {
     case proxy:
       return !trace.has_tool();
+    case contact:
+      return !trace.has_tool() && trace.has_contact();
     case tool:
       return trace.has_tool();
     case guidance:

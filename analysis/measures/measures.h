@@ -37,9 +37,9 @@ double unconverged_fraction(const Trace& trace);
 double non_finite_fraction(const Trace& trace);
 double max_force_N(const Trace& trace);
 
-// The runs in which a measure means something: all, those of a point proxy, those with a tool, those with
-// guidance.
-enum class MeasuredRuns { all, proxy, tool, guidance };
+// The runs in which a measure means something: all, those of a point proxy, those of them for which
+// Trace::contact was computed, those with a tool, those with guidance.
+enum class MeasuredRuns { all, proxy, contact, tool, guidance };
 
 // The measures that need only a trace, by name: for summaries and for sweeps.
 struct Measure {

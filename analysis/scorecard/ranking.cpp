@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "analysis/statistics/paired_bootstrap.h"
+#include "analysis/statistics/student.h"
 
 namespace remote_touch {
 
@@ -17,44 +17,28 @@ double badness(double value, Better better) {
 }
 
 // Of two methods, above 0 where a is worse; repeats: of both.
-PairedValues differences(const PairedValues& a, const PairedValues& b, Better better,
-                         const Repeats& repeats) {
-  PairedValues d(a.size());
+std::vector<double> differences(const PairedValues& a, const PairedValues& b, Better better,
+                                const Repeats& repeats) {
+  PairedValues by_level(a.size());
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t k = 0; k < a[i].size(); ++k)
-      d[i].push_back(badness(a[i][k], better) - badness(b[i][k], better));
-  return distinct(d, repeats);
+      by_level[i].push_back(badness(a[i][k], better) - badness(b[i][k], better));
+  std::vector<double> known;
+  for (const auto& level : distinct(by_level, repeats))
+    std::copy_if(level.begin(), level.end(), std::back_inserter(known),
+                 [](double d) { return !std::isnan(d); });
+  return known;
 }
 
-// A single number that is left of a level shows no spread: drawn from within its level it would be certain.
-// All those are drawn from together. A level that is one run is certain.
-PairedValues with_lone_pairs_together(const PairedValues& d, const Repeats& repeats) {
-  PairedValues groups(1);
-  for (std::size_t i = 0; i < d.size(); ++i) {
-    std::vector<double> known;
-    for (const double one : d[i])
-      if (!std::isnan(one)) known.push_back(one);
-    if (known.size() == 1 && !(i < repeats.size() && repeats[i]))
-      groups.front().push_back(known.front());
-    else
-      groups.push_back(known);
-  }
-  return groups;
-}
-
-// Do the pairs show that a is better than b?
-bool is_better(const PairedValues& a, const PairedValues& b, Better better, bool event, std::uint64_t key,
-               const Repeats& repeats) {
-  const PairedValues d = differences(a, b, better, repeats);
-  if (!event) {
-    const MeanDifference mean = bootstrap_mean(with_lone_pairs_together(d, repeats), key);
-    return mean.pairs >= kMinPairs && mean.high < 0;
-  }
-  std::int64_t plus = 0, minus = 0, pairs = 0;
-  for (const auto& group : d)
-    for (const double one : group)
-      if (!std::isnan(one)) plus += one > 0, minus += one < 0, ++pairs;
-  return paired_difference_interval(plus, minus, pairs).second < 0;
+MethodComparison comparison(const std::vector<double>& worse_by, bool event) {
+  MethodComparison result;
+  if (static_cast<std::int64_t>(worse_by.size()) < kMinPairs) return result;
+  double sum = 0;
+  std::int64_t plus = 0, minus = 0;
+  for (const double d : worse_by) sum += d, plus += d > 0, minus += d < 0;
+  result.p = event ? sign_test(plus, minus) : mean_test(worse_by);
+  result.is_better = sum < 0;
+  return result;
 }
 
 double mean_badness(const PairedValues& values, Better better) {
@@ -71,6 +55,19 @@ Repeats of_both(const Repeats& a, const Repeats& b) {
   return both;
 }
 
+void decide(Ranking& r) {
+  if (r.against.empty() || r.ranked == 0) return;
+  const auto is_above = [&](std::size_t i, std::size_t k) {
+    return r.against[r.order[i]][r.order[k]].shows_better();
+  };
+  r.top_group = {r.order[0]};
+  for (std::size_t i = 1; i < r.ranked; ++i)
+    if (!is_above(0, i)) r.top_group.push_back(r.order[i]);
+  r.has_best = r.ranked > 1 && r.top_group.size() == 1;
+  r.has_worst = r.ranked > 1;
+  for (std::size_t i = 0; i + 1 < r.ranked; ++i) r.has_worst = r.has_worst && is_above(i, r.ranked - 1);
+}
+
 }  // namespace
 
 PairedValues distinct(const PairedValues& values, const Repeats& repeats) {
@@ -80,14 +77,14 @@ PairedValues distinct(const PairedValues& values, const Repeats& repeats) {
   return once;
 }
 
-Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event, std::uint64_t key,
+Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event,
                 const std::vector<Repeats>& repeats) {
   Ranking result;
   std::vector<double> bad;
   const auto repeats_of = [&](std::size_t c) { return c < repeats.size() ? repeats[c] : Repeats{}; };
   for (std::size_t c = 0; c < methods.size(); ++c) {
     const PairedValues values = distinct(methods[c], repeats_of(c));
-    result.mean.push_back(bootstrap_mean(with_lone_pairs_together(values, repeats_of(c)), key));
+    result.mean.push_back(student_mean(values, repeats_of(c)));
     bad.push_back(result.mean.back().pairs >= (event ? 1 : kMinPairs)
                       ? mean_badness(values, better)
                       : std::numeric_limits<double>::infinity());
@@ -97,20 +94,33 @@ Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool ev
   std::stable_sort(result.order.begin(), result.order.end(),
                    [&](std::size_t a, std::size_t b) { return bad[a] < bad[b]; });
   for (const double each : bad) result.ranked += each < std::numeric_limits<double>::infinity() ? 1 : 0;
-  const std::size_t ranked = result.ranked;
-  if (better == Better::reported || ranked == 0) return result;
-  const auto is_above = [&](std::size_t i, std::size_t k) {
-    const std::size_t a = result.order[i], b = result.order[k];
-    return is_better(methods[a], methods[b], better, event, key, of_both(repeats_of(a), repeats_of(b)));
-  };
-  result.top_group = {result.order[0]};
-  for (std::size_t i = 1; i < ranked; ++i)
-    if (!is_above(0, i)) result.top_group.push_back(result.order[i]);
-  if (ranked < 2) return result;
-  result.has_best = result.top_group.size() == 1;
-  result.has_worst = true;
-  for (std::size_t i = 0; i + 1 < ranked; ++i) result.has_worst = result.has_worst && is_above(i, ranked - 1);
+  if (better == Better::reported) return result;
+  result.against.assign(methods.size(), std::vector<MethodComparison>(methods.size()));
+  for (std::size_t i = 0; i < result.ranked; ++i)
+    for (std::size_t k = 0; k < result.ranked; ++k) {
+      const std::size_t a = result.order[i], b = result.order[k];
+      if (a == b) continue;
+      result.against[a][b] = comparison(
+          differences(methods[a], methods[b], better, of_both(repeats_of(a), repeats_of(b))), event);
+    }
+  decide(result);
   return result;
+}
+
+// Each pair of methods is one test, though it stands in both directions.
+void correct_together(const std::vector<Ranking*>& rankings) {
+  std::vector<MethodComparison*> there, back;
+  std::vector<double> p;
+  for (Ranking* r : rankings)
+    for (std::size_t a = 0; a < r->against.size(); ++a)
+      for (std::size_t b = a + 1; b < r->against.size(); ++b) {
+        if (std::isnan(r->against[a][b].p)) continue;
+        there.push_back(&r->against[a][b]), back.push_back(&r->against[b][a]);
+        p.push_back(r->against[a][b].p);
+      }
+  const std::vector<double> adjusted = holm_adjusted(p);
+  for (std::size_t i = 0; i < p.size(); ++i) there[i]->p = back[i]->p = adjusted[i];
+  for (Ranking* r : rankings) decide(*r);
 }
 
 }  // namespace remote_touch

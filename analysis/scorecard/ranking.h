@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,28 +21,43 @@ using PairedValues = std::vector<std::vector<double>>;
 using Repeats = std::vector<bool>;
 PairedValues distinct(const PairedValues& values, const Repeats& repeats);
 
-// With fewer pairs there is no verdict on a measure that is not an event: even without a true difference, six
-// pairs all differ in the same direction once in 32 times, and no bootstrap draw shows that. The intervals of
-// fractions widen by themselves.
-inline constexpr std::int64_t kMinPairs = 6;
+// With fewer pairs there is no verdict, and with fewer values of a measure no rank by it.
+inline constexpr std::int64_t kMinPairs = 12;
+// A difference is more than chance where the p value, corrected for all comparisons of the card, is below
+// this.
+inline constexpr double kSignificance = 0.05;
+
+// Of one method with another, over the pairs in which both have a number.
+struct MethodComparison {
+  double p = std::numeric_limits<double>::quiet_NaN();  // two-sided; NaN: fewer than kMinPairs
+  bool is_better = false;                               // the first one, in the mean of the pairs
+
+  bool shows_better() const { return is_better && p < kSignificance; }
+};
 
 struct Ranking {
   std::vector<std::size_t> order;    // methods, the best first by their own means; unranked ones last
   std::size_t ranked = 0;            // number of ranked methods: with kMinPairs values; of an event, any
   std::vector<MeanDifference> mean;  // of each method, with its interval
-  // Whether the intervals of the paired differences to all other ranked methods exclude 0 in the order's
-  // direction: for the first, and for the last ranked method.
+  // [a][b]: of method a with b. Empty for a measure that is only reported.
+  std::vector<std::vector<MethodComparison>> against = {};
+  // Whether the first is better than all other ranked methods, and all of them better than the last, each by
+  // more than chance.
   bool has_best = false, has_worst = false;
-  // The first, and those that it is not significantly better than.
-  std::vector<std::size_t> top_group;
+  // The first, and those that it is not shown to be better than.
+  std::vector<std::size_t> top_group = {};
 };
 
-// event: values are 0 and 1, and the difference of two fractions has Agresti and Min's interval, because the
-// bootstrap of a few equal pairs gives none. Other measures are compared over the pairs in which both have a
-// number, and only with kMinPairs or more: use NaN if a run did not do what is measured. A level at which
-// both methods repeat one run is one pair. near_zero compares magnitudes. repeats: of each method; empty: of
-// none.
-Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event, std::uint64_t key,
+// event: values are 0 and 1, and two methods are compared by the exact sign test of the pairs that differ;
+// other measures by mean_test() of the differences. Pairs are those in which both have a number: use NaN if a
+// run did not do what is measured. A level at which both methods repeat one run is one pair. near_zero
+// compares magnitudes. repeats: of each method; empty: of none.
+Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool event,
                 const std::vector<Repeats>& repeats = {});
+
+// Corrects the p values of all these rankings together by Holm's method, and decides anew: then the
+// probability that any "better" among them is chance is at most kSignificance, whichever of them are looked
+// at.
+void correct_together(const std::vector<Ranking*>& rankings);
 
 }  // namespace remote_touch

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/paired_bootstrap.h"
 #include "analysis/statistics/proportion.h"
+#include "analysis/statistics/student.h"
 
 namespace remote_touch {
 
@@ -46,19 +46,32 @@ Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m)
   return repeats;
 }
 
-std::vector<Proportion> fractions(const PairedValues& success) {
-  std::vector<Proportion> list;
-  for (const auto& level : success) {
-    const auto events = std::count(level.begin(), level.end(), 1.0);
-    list.push_back(fraction_of(static_cast<int>(events), static_cast<int>(level.size())));
-  }
+bool has_noise(double noise_m) {
+  return noise_m != 0;  // NaN: the scene's own
+}
+
+// The levels with noise.
+template <class Level>
+std::vector<Level> noisy(const std::vector<Level>& levels, const std::vector<double>& noise_m) {
+  std::vector<Level> list;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    if (has_noise(noise_m[i])) list.push_back(levels[i]);
   return list;
 }
 
-Proportion sum_of(const std::vector<Proportion>& levels) {
+Successes counted(const PairedValues& success, const std::vector<double>& noise_m) {
+  Successes result;
   int events = 0, runs = 0;
-  for (const Proportion& level : levels) events += level.events, runs += level.runs;
-  return fraction_of(events, runs);
+  for (std::size_t i = 0; i < success.size(); ++i) {
+    const auto won = static_cast<int>(std::count(success[i].begin(), success[i].end(), 1.0));
+    result.at_level.push_back(fraction_of(won, static_cast<int>(success[i].size())));
+    if (!has_noise(noise_m[i]))
+      result.noise_free = result.at_level.back();
+    else
+      events += won, runs += static_cast<int>(success[i].size());
+  }
+  result.noisy = fraction_of(events, runs);
+  return result;
 }
 
 std::string units_of(const SweepResult& sweep, const std::string& measure) {
@@ -67,46 +80,82 @@ std::string units_of(const SweepResult& sweep, const std::string& measure) {
   return "1";
 }
 
+// What the parts of a score have in common.
+struct Runs {
+  const std::vector<SweepResult>& sweeps;
+  std::vector<double> noise_m;
+  std::vector<Repeats> repeats = {};  // of each method, by level
+
+  std::vector<Repeats> noisy_repeats() const {
+    std::vector<Repeats> list;
+    for (const Repeats& one : repeats) list.push_back(noisy(one, noise_m));
+    return list;
+  }
+  std::vector<PairedValues> noisy_levels(const std::vector<PairedValues>& values) const {
+    std::vector<PairedValues> list;
+    for (const PairedValues& one : values) list.push_back(noisy(one, noise_m));
+    return list;
+  }
+};
+
+std::vector<PairedValues> won_by(const Runs& runs, const std::vector<Bound>& bounds) {
+  std::vector<PairedValues> won;
+  for (const SweepResult& sweep : runs.sweeps) {
+    const std::vector<bool> success = successes(sweep, bounds);
+    won.push_back(by_level(sweep, [&](std::size_t run) { return success[run] ? 1.0 : 0.0; }));
+  }
+  return won;
+}
+
+std::vector<Successes> counts_of(const Runs& runs, const std::vector<PairedValues>& won) {
+  std::vector<Successes> list;
+  for (std::size_t c = 0; c < won.size(); ++c)
+    list.push_back(counted(distinct(won[c], runs.repeats[c]), runs.noise_m));
+  return list;
+}
+
 // Who loses the surface early has a short and quiet run: where a measure is judged, only successes count.
-JudgedMeasure judged(const std::string& name, Better better, const std::vector<SweepResult>& sweeps,
-                     const std::vector<PairedValues>& won, const std::vector<Repeats>& repeats,
-                     std::uint64_t key) {
-  JudgedMeasure measure{name, units_of(sweeps.front(), name), better};
+JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
+                     const std::vector<PairedValues>& won) {
+  JudgedMeasure measure{name, units_of(runs.sweeps.front(), name), better};
   std::vector<PairedValues> values;
-  for (std::size_t c = 0; c < sweeps.size(); ++c) {
-    const std::vector<double>& all = sweeps[c].measure(name);
-    values.push_back(by_level(sweeps[c], [&](std::size_t run) { return all[run]; }));
+  for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
+    const std::vector<double>& all = runs.sweeps[c].measure(name);
+    values.push_back(by_level(runs.sweeps[c], [&](std::size_t run) { return all[run]; }));
     if (better != Better::reported)
       for (std::size_t i = 0; i < won[c].size(); ++i)
         for (std::size_t k = 0; k < won[c][i].size(); ++k)
           if (won[c][i][k] == 0) values.back()[i][k] = kNone;
     measure.at_level.emplace_back();
-    for (const auto& level : distinct(values.back(), repeats[c]))
-      measure.at_level.back().push_back(bootstrap_mean({level}, key));
+    for (const auto& level : distinct(values.back(), runs.repeats[c]))
+      measure.at_level.back().push_back(student_mean({level}, {level.size() == 1}));
   }
-  measure.ranking = ranking(values, better, false, key, repeats);
+  measure.ranking = ranking(runs.noisy_levels(values), better, false, runs.noisy_repeats());
   return measure;
 }
 
 }  // namespace
 
-SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
-                 std::uint64_t key) {
+SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise) {
   SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
   if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
-  std::vector<PairedValues> won;
-  std::vector<Repeats> repeats;
-  for (const SweepResult& sweep : sweeps) {
-    const std::vector<bool> success = successes(sweep, rules.success);
-    won.push_back(by_level(sweep, [&](std::size_t run) { return success[run] ? 1.0 : 0.0; }));
-    repeats.push_back(repeats_of(sweep, scene.noise_m));
-    scene.success.push_back(fractions(distinct(won.back(), repeats.back())));
-    scene.success_overall.push_back(sum_of(scene.success.back()));
-  }
-  scene.ranking = ranking(won, Better::larger, true, key, repeats);
-  for (const auto& [name, better] : rules.measures)
-    scene.measures.push_back(judged(name, better, sweeps, won, repeats, key));
+  Runs runs{sweeps, scene.noise_m};
+  for (const SweepResult& sweep : sweeps) runs.repeats.push_back(repeats_of(sweep, scene.noise_m));
+  const std::vector<PairedValues> won = won_by(runs, rules.success);
+  scene.success = counts_of(runs, won);
+  if (!rules.old_success.empty()) scene.old_success = counts_of(runs, won_by(runs, rules.old_success));
+  scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.noisy_repeats());
+  for (const auto& [name, better] : rules.measures) scene.measures.push_back(judged(name, better, runs, won));
   return scene;
+}
+
+void correct(Scorecard& card) {
+  std::vector<Ranking*> rankings;
+  for (SceneScore& scene : card.scenes) {
+    rankings.push_back(&scene.ranking);
+    for (JudgedMeasure& measure : scene.measures) rankings.push_back(&measure.ranking);
+  }
+  correct_together(rankings);
 }
 
 namespace {
@@ -121,11 +170,12 @@ Column counts(const char* name, const char* meaning, std::vector<std::int32_t> v
 Table success_table(const Scorecard& card) {
   std::vector<std::string> scene, method;
   std::vector<double> noise, low, high, fraction;
-  std::vector<std::int32_t> events, runs;
+  std::vector<std::int32_t> events, runs, old_events;
   for (const SceneScore& s : card.scenes)
     for (std::size_t c = 0; c < card.methods.size(); ++c)
       for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
-        const Proportion& one = s.success[c][i];
+        old_events.push_back(s.old_success.empty() ? -1 : s.old_success[c].at_level[i].events);
+        const Proportion& one = s.success[c].at_level[i];
         scene.push_back(s.name), method.push_back(card.methods[c]), noise.push_back(s.noise_m[i]);
         events.push_back(one.events), runs.push_back(one.runs);
         fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
@@ -139,6 +189,8 @@ Table success_table(const Scorecard& card) {
   table.add("fraction", "1", "share of successful runs", fraction);
   table.add("low", "1", "lower end of the interval", low);
   table.add("high", "1", "upper end of the interval", high);
+  table.columns.push_back(
+      counts("old_successes", "successes by the rule before; -1: there was none", old_events));
   return table;
 }
 
@@ -156,10 +208,9 @@ Table measure_table(const Scorecard& card) {
           runs.push_back(static_cast<std::int32_t>(one.pairs));
           mean.push_back(one.mean), low.push_back(one.low), high.push_back(one.high);
         }
-  Table table{
-      "measures",
-      "means with 95 % intervals of the bootstrap: of a measure that is judged over the successful runs, "
-      "of one that is reported over all"};
+  Table table{"measures",
+              "means with Student's 95 % intervals: of a measure that is judged over the successful runs, "
+              "of one that is reported over all"};
   table.columns = {texts("scene", "scene", scene), texts("method", "method", method),
                    texts("measure", "measure", measure), texts("units", "unit of the measure", units)};
   table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
@@ -188,7 +239,7 @@ Table ranking_table(const Scorecard& card) {
     for (const JudgedMeasure& m : s.measures)
       if (m.better != Better::reported) add(s, m.name, m.ranking);
   }
-  Table table{"standings", "methods in order over all noise levels"};
+  Table table{"standings", "methods in order over all levels with noise"};
   table.columns = {texts("scene", "scene", scene),
                    texts("measure", "success or measure", measure),
                    counts("place", "place in the order, 1 the best", place),
@@ -213,7 +264,7 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
   for (std::size_t c = 0; c < card.methods.size(); ++c) {
     const std::string& name = card.methods[c];
     std::vector<double> fraction, low, high;
-    for (const Proportion& one : s.success[c])
+    for (const Proportion& one : s.success[c].at_level)
       fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
     table.add(name, "1", "share of successful runs", fraction);
     table.add(name + "_low", "1", "lower end of its interval", low);

@@ -2,6 +2,7 @@
 // methods are significantly best or worst.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,19 +23,27 @@ struct Proportion {
 struct JudgedMeasure {
   std::string name, units;
   Better better = Better::reported;
-  // Over all noise levels; the means have their bootstrap intervals. Judged measures are those of successful
+  // Over all levels with noise; the means have Student's intervals. Judged measures are those of successful
   // runs, and two methods are compared where both succeeded. Reported ones are those of all runs.
   Ranking ranking = {};
   // Of each method at each noise level.
   std::vector<std::vector<MeanDifference>> at_level = {};
 };
 
+// How often a method succeeded, by one rule. Runs without noise are not mixed with the others: most of them
+// are one run, which says nothing about chance.
+struct Successes {
+  std::vector<Proportion> at_level;
+  Proportion noisy;                      // over all levels with noise, a scene's own included
+  std::optional<Proportion> noise_free;  // none in a scene with its own noise
+};
+
 struct SceneScore {
-  std::string name, title, meaning;              // of success
-  std::vector<double> noise_m;                   // one per level; a single NaN: the scene's own
-  std::vector<std::vector<Proportion>> success;  // of each method at each level
-  std::vector<Proportion> success_overall;       // of each method
-  Ranking ranking;                               // by success, over all levels
+  std::string name, title, meaning;    // of success
+  std::vector<double> noise_m;         // one per level; a single NaN: the scene's own
+  std::vector<Successes> success;      // of each method
+  std::vector<Successes> old_success;  // by the rule before; empty where there is none
+  Ranking ranking;                     // by success, over all levels with noise
   std::vector<JudgedMeasure> measures;
 };
 
@@ -47,12 +56,15 @@ struct SceneRules {
   std::string name, title, meaning;
   std::vector<Bound> success;
   std::vector<std::pair<std::string, Better>> measures;
+  std::vector<Bound> old_success = {};  // the rule before; empty: there was none
 };
 
-// Scores the finished sweeps of all methods in a scene; their one axis is the noise. key: of the bootstrap;
-// it depends on the scene only, not on the other scenes. Throws std::out_of_range for an unknown measure.
-SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise,
-                 std::uint64_t key);
+// Scores the finished sweeps of all methods in a scene; their one axis is the noise. Comparisons are not yet
+// corrected for the others of a card. Throws std::out_of_range for an unknown measure.
+SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise);
+
+// Corrects all comparisons of the card together, see correct_together().
+void correct(Scorecard& card);
 
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 

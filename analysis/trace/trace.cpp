@@ -101,6 +101,7 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   if (has(t, TracePart::part)) member.push_back(static_cast<Row>(value));
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
+  if (truth.contact) contact.push_back(*truth.contact);
 }
 
 std::vector<Column> Trace::columns() const {

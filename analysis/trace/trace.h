@@ -22,11 +22,18 @@ struct HandState {
 struct Trace {
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);
+  // Where the renderer touches and where the hand is, against the true surface: positive above it, NaN where
+  // the truth is not known.
+  struct TrueContact {
+    double height_m = 0;        // of the point that touches
+    double hip_distance_m = 0;  // of the HIP
+  };
   // Ground truth of a tick, which the renderer does not know.
   struct Truth {
-    double proxy_distance_m = 0;   // to the true surface, of the proxy
-    double slave_distance_m = 0;   // and of the slave's command
-    std::uint64_t frame_hash = 0;  // of the newest frame delivered; 0 if it was not computed
+    double proxy_distance_m = 0;              // to the true surface, of the proxy
+    double slave_distance_m = 0;              // and of the slave's command
+    std::uint64_t frame_hash = 0;             // of the newest frame delivered; 0 if it was not computed
+    std::optional<TrueContact> contact = {};  // computed only where a measure asks for it
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});
@@ -34,6 +41,7 @@ struct Trace {
   bool has_tool() const { return !tool_orientation.empty(); }
   bool has_guidance() const { return !guidance_goal_m.empty(); }
   bool has_hand() const { return !intended_position_m.empty(); }
+  bool has_contact() const { return !contact.empty(); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
@@ -45,6 +53,9 @@ struct Trace {
 #define TRACE_COLUMN(member, Row, ...) std::vector<Row> member;
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
+
+  // Rows for measures alone: no column, because stored traces have none. Empty unless it was computed.
+  std::vector<TrueContact> contact;
 };
 
 // Which runs have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a

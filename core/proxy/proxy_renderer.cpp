@@ -52,6 +52,13 @@ void ProxyRenderer::displace(const Vec3& displacement_m) {
   contact_proxy_W_ += displacement_m;
 }
 
+void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
+  p_.r1_m = r1_m, p_.r2_m = r2_m, p_.r3_m = r3_m;
+  near_.set_reach(r3_m);
+  coupling_.set_radii(r1_m, r2_m);
+  has_local_query_ = false;
+}
+
 RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   const Vec3& hip_W = device.position_W;
   RenderOutput out;

@@ -36,6 +36,8 @@ class ProxyRenderer final : public Renderer {
   // stop: a tick also ends when the proxy in contact has converged (4.8). It always ends when a step changes
   // nothing or steps_per_tick are made.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
+  // r1, r2 and r3 of Table 4.2 from now on, as the constructor's: for methods that adapt them to the points.
+  void set_radii(double r1_m, double r2_m, double r3_m);
   bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
   const Vec3& proxy_W() const { return proxy_W_; }
   bool in_contact() const { return in_contact_; }
@@ -58,7 +60,7 @@ class ProxyRenderer final : public Renderer {
   ContactQuery query(const PointsView& points, const Vec3& p_W) const;
   Vec3 slave_command(const Vec3& hip_W, double time_s);
 
-  const ProxyParameters p_;
+  ProxyParameters p_;
   const Kernels& kernels_;
   Neighbourhood near_;
   SurfaceVelocity velocity_;

@@ -17,9 +17,11 @@ class VirtualCoupling {
   Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m);
   // No contact: the next force starts without a finite difference.
   void release() { has_previous_ = false; }
+  // r1 and r2 of Table 4.2, whose mean is r_c.
+  void set_radii(double r1_m, double r2_m) { p_.r1_m = r1_m, p_.r2_m = r2_m; }
 
  private:
-  const ProxyParameters p_;
+  ProxyParameters p_;
   double haptic_rate_hz_;
   double previous_length_ = 0;
   bool has_previous_ = false;

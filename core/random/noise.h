@@ -28,6 +28,7 @@ enum class NoiseUse : std::uint32_t {
   dropout = 5,
   sensor_point = 6,
   sensor_frame = 7,
+  sensor_ray = 8,
 };
 
 // No standard normal made here is larger in magnitude: sqrt(64 ln 2), rounded up.

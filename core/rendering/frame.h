@@ -17,6 +17,16 @@ class FramePreparation {
   virtual ~FramePreparation() = default;
 };
 
+// The surface that a frame shows, as a simulation knows it. For oracles alone: renderers that show what a
+// better estimate could reach. A sensor has none.
+class TrueSurface {
+ public:
+  virtual ~TrueSurface() = default;
+  // Distance to the surface at a time, m, positive on the side that the sensor sees; NaN where it is not
+  // known.
+  virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
+};
+
 // One point cloud of the stream. Latency is part of the data: the renderer gets the frame at arrives_s.
 struct Frame {
   int index = 0;
@@ -25,6 +35,7 @@ struct Frame {
   std::shared_ptr<const NeighbourSearch> points;
   std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
   std::shared_ptr<const FramePreparation> prepared = nullptr;
+  std::shared_ptr<const TrueSurface> truth = nullptr;  // simulations only
 };
 
 // The haptic interface point (HIP), world frame, the orientation that takes the handle's axes to the world,

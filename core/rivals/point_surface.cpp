@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/rivals/exact_sum.h"
 #include "core/rivals/thinnest_axis.h"
 
 namespace remote_touch {
@@ -33,25 +34,7 @@ Bell wendland(double squared) {
   return {cubed * rest * (4 * q + 1), 20 * cubed};
 }
 
-// Sums up to as many terms of magnitude 1 as the grid is for: exact, so in any order the same.
-class ExactSum {
- public:
-  explicit ExactSum(double grid) : grid_(grid) {}
-  void add(double term) { sum_ += (term + grid_) - grid_; }
-  double value() const { return sum_; }
-
- private:
-  double grid_, sum_ = 0;
-};
-
-struct ExactVector {
-  explicit ExactVector(double grid) : x(grid), y(grid), z(grid) {}
-  void add(const Vec3& v) { x.add(v.x()), y.add(v.y()), z.add(v.z()); }
-  Vec3 value() const { return {x.value(), y.value(), z.value()}; }
-  ExactSum x, y, z;
-};
-
-// Calls act(bell, e) for every point within R, e = (x - p) / R.
+// Calls act(bell, e, i) for every point i within R, e = (x - p) / R.
 template <class Act>
 void for_each_near(const PointsView& points, const Vec3& p_W, double radius_m, SurfaceWeight weight,
                    const Act& act) {
@@ -59,7 +42,7 @@ void for_each_near(const PointsView& points, const Vec3& p_W, double radius_m, S
     const Vec3 e = (Vec3(points.x[i], points.y[i], points.z[i]) - p_W) / radius_m;
     const double squared = e.squaredNorm();
     if (!(squared < 1)) continue;
-    act(weight == SurfaceWeight::wyvill ? wyvill(squared) : wendland(squared), e);
+    act(weight == SurfaceWeight::wyvill ? wyvill(squared) : wendland(squared), e, i);
   }
 }
 
@@ -84,7 +67,7 @@ SurfaceSample PointSurface::at(const PointsView& points, double sum_grid, const 
 SurfaceSample PointSurface::metaballs(const PointsView& points, double sum_grid, const Vec3& p_W) const {
   ExactSum weights(sum_grid);
   ExactVector slopes(sum_grid);
-  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e) {
+  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e, std::size_t) {
     weights.add(bell.weight);
     slopes.add((bell.slope / kMaxTerm) * e);
   });
@@ -94,28 +77,35 @@ SurfaceSample PointSurface::metaballs(const PointsView& points, double sum_grid,
 
 SurfaceSample PointSurface::surfels(const PointsView& points, double sum_grid, const Vec3& p_W,
                                     const Vec3& side) const {
-  ExactSum weights(sum_grid);
-  ExactVector first(sum_grid), squares(sum_grid), products(sum_grid);  // xx, yy, zz and yz, zx, xy
-  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e) {
-    weights.add(bell.weight);
-    first.add(bell.weight * e);
-    squares.add(bell.weight * e.cwiseProduct(e));
-    products.add(bell.weight * Vec3(e.y() * e.z(), e.z() * e.x(), e.x() * e.y()));
-  });
-  if (!(weights.value() > kMinWeight)) return {};
-  const Vec3 mean = first.value() / weights.value();  // a - p
-  const Vec3 xx = squares.value() / weights.value(), yz = products.value() / weights.value();
-  Eigen::Matrix3d covariance;
-  covariance << xx.x(), yz.z(), yz.y(), yz.z(), xx.y(), yz.x(), yz.y(), yz.x(), xx.z();
-  covariance -= mean * mean.transpose();
-
-  const ThinnestAxis thin = thinnest_axis(covariance);
+  ExactMoments moments(sum_grid);
+  for_each_near(points, p_W, radius_m_, weight_,
+                [&](const Bell& bell, const Vec3& e, std::size_t) { moments.add(bell.weight, e); });
+  if (!(moments.weight() > kMinWeight)) return {};
+  const Vec3 mean = moments.mean();  // a - p
+  const ThinnestAxis thin = thinnest_axis(moments.covariance());
   if (thin.middle < kMinWidth) {
     const double length = mean.norm();
     return {true, length, length > kNoDirection ? Vec3(-mean / length) : Vec3::Zero()};
   }
   const double ahead = side.isZero(0) ? -thin.axis.dot(mean) : thin.axis.dot(side);
   const Vec3 n = ahead < 0 ? Vec3(-thin.axis) : thin.axis;
+  return {true, -n.dot(mean), n};
+}
+
+SurfaceSample PointSurface::oriented(const PointsView& points, const Vec3* normals, double sum_grid,
+                                     const Vec3& p_W) const {
+  ExactSum weights(sum_grid);
+  ExactVector first(sum_grid), directions(sum_grid);
+  for_each_near(points, p_W, radius_m_, weight_, [&](const Bell& bell, const Vec3& e, std::size_t i) {
+    weights.add(bell.weight);
+    first.add(bell.weight * e);
+    directions.add(bell.weight * normals[i]);
+  });
+  if (!(weights.value() > kMinWeight)) return {};
+  const Vec3 mean = first.value() / weights.value(), sum = directions.value();  // a - p
+  const double length = sum.norm();
+  if (!(length > kMinWeight)) return {};
+  const Vec3 n = sum / length;
   return {true, -n.dot(mean), n};
 }
 

@@ -47,6 +47,11 @@ class PointSurface {
   // zero, towards the side that p is on. One point, or points on a line, have no plane: p is then outside.
   SurfaceSample at(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;
 
+  // Surfels that have a side: n is the weighted mean of the points' own unit normals, one for each point of
+  // the list; zero where a point has none.
+  SurfaceSample oriented(const PointsView& points, const Vec3* normals, double sum_grid,
+                         const Vec3& p_W) const;
+
  private:
   SurfaceSample metaballs(const PointsView& points, double sum_grid, const Vec3& p_W) const;
   SurfaceSample surfels(const PointsView& points, double sum_grid, const Vec3& p_W, const Vec3& side) const;

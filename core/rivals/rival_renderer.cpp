@@ -11,8 +11,9 @@ constexpr double kMaxHipDistance_m = 1e6;
 
 void RivalRenderer::on_frame(const Frame& frame) {
   if (!order_.take(frame)) return;
-  near_.set_points(frame.points);
-  usable_ = take(*frame.points);
+  const std::shared_ptr<const NeighbourSearch> points = shown(frame);
+  near_.set_points(points);
+  usable_ = take(*points);
 }
 
 RenderOutput RivalRenderer::step(const DeviceState& device, double) {

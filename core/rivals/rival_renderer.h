@@ -3,6 +3,8 @@
 // order of frames, a device that is lost, and the output before the first frame.
 #pragma once
 
+#include <memory>
+
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/rendering/frame_order.h"
@@ -22,7 +24,9 @@ class RivalRenderer : public Renderer {
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
       : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 
-  // Takes the newest frame. Returns false if the method cannot use it: until the next one the outputs are
+  // The points that the method renders in place of the newest frame's alone.
+  virtual std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) { return frame.points; }
+  // Takes these points. Returns false if the method cannot use it: until the next one the outputs are
   // those without a frame.
   virtual bool take(const NeighbourSearch& /*points*/) { return true; }
   // One tick for a HIP that is finite and a frame that was taken. The proxy starts at the first HIP. Fills in

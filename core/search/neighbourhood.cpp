@@ -16,12 +16,16 @@ constexpr double kPitch = 0.125;
 constexpr double kMaxHops = 64;
 }  // namespace
 
-Neighbourhood::Neighbourhood(double reach, const Kernels& kernels)
-    : reach_(reach),
-      pitch_(kPitch * reach),
-      // 0.8661 > sqrt(3)/2: from a cube's centre to its corner, with room for rounding.
-      list_radius_(reach_ + 0.8661 * pitch_),
-      kernels_(kernels) {}
+Neighbourhood::Neighbourhood(double reach, const Kernels& kernels) : kernels_(kernels) {
+  set_reach(reach);
+}
+
+void Neighbourhood::set_reach(double reach) {
+  reach_ = reach;
+  pitch_ = kPitch * reach;
+  list_radius_ = reach_ + 0.8661 * pitch_;  // > sqrt(3)/2: from a cube's centre to its corner, and rounding
+  for (CachedList& kept : cache_) kept.valid = false;
+}
 
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);

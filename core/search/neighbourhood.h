@@ -17,6 +17,8 @@ class Neighbourhood {
   // reach: every point with r_n <= reach, m, of the queried position is in the list (and some beyond).
   Neighbourhood(double reach, const Kernels& kernels);
 
+  // Another reach from now on.
+  void set_reach(double reach);
   // Allocates for clouds of so many points.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
   // A new cloud. Allocates when it is the largest so far.

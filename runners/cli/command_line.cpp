@@ -24,7 +24,8 @@ struct Subcommands {
                                      int (*run)(const CommandLine&, const Request&)) {
     auto request = std::make_shared<Request>();
     CLI::App* command = app.add_subcommand(name, meaning);
-    command->callback([&act = act, &line = line, request, run] {
+    command->callback([&act = act, &line = line, request, run, command] {
+      if (!command->get_subcommands().empty()) return;  // that one was asked for
       act = [&line, request, run] { return run(line, *request); };
     });
     return {command, request.get()};
@@ -134,23 +135,43 @@ void add_figure(Subcommands& commands) {
                     "--coarse only for the two maps that take minutes, 4.13-replicated and 4.13-tracked");
 }
 
+// Options of every command that runs a scorecard.
+template <class Request>
+void add_scorecard_options(CLI::App* command, Request& request, const char* all) {
+  const std::string unless = std::string(" (default: ") + all + ")";
+  command->add_option("methods", request.methods, "names from `remote-touch list`, or JSON files" + unless);
+  command->add_option("--scene", request.scenes, "a name from `remote-touch list`, or a JSON file" + unless);
+  command->add_option("-o,--output", request.folder, "the folder to write to, or to resume; required");
+  command->add_option("--threads", request.threads, "number of threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, 4096));
+}
+
+void add_seeds(CLI::App* command, ScorecardRequest& request) {
+  command
+      ->add_option("--seeds", request.seeds,
+                   "number of runs of each scene and noise level, each with its own noise")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+}
+
 void add_scorecard(Subcommands& commands) {
   auto [command, scorecard] = commands.add(
       "scorecard",
       "compare renderers over many scenes and noise levels; writes HDF5 files, and JSON for scripts/plot",
       command_scorecard);
-  command->add_option("methods", scorecard->methods,
-                      "names from `remote-touch list`, or JSON files (default: all)");
-  command->add_option("--scene", scorecard->scenes,
-                      "a name from `remote-touch list`, or a JSON file (default: all)");
-  command->add_option("-o,--output", scorecard->folder, "the folder to write to, or to resume")->required();
-  command
-      ->add_option("--seeds", scorecard->seeds,
-                   "number of runs of each scene and noise level, each with its own noise")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
-  command->add_option("--threads", scorecard->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
-      ->check(CLI::Range(1, 4096));
+  add_scorecard_options(command, *scorecard, "all");
+  add_seeds(command, *scorecard);
+  Subcommands below{*command, commands.line, commands.act};
+  auto [check_command, check] = below.add(
+      "check", "compare with the stored scorecard; exit code 0: agrees, 1: differs, 2: not comparable",
+      command_scorecard_check);
+  add_scorecard_options(check_command, *check, "all that are stored");
+  check_command->add_option("--stored", check->file, "the stored scorecard")->capture_default_str();
+  auto [store_command, store] =
+      below.add("store", "store the numbers of a scorecard for check", command_scorecard_store);
+  add_scorecard_options(store_command, *store, "all");
+  add_seeds(store_command, *store);
+  store_command->add_option("--stored", store->file, "the file to write")->capture_default_str();
 }
 
 void add_compare(Subcommands& commands) {

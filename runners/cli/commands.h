@@ -65,6 +65,21 @@ struct ScorecardRequest {
 };
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request);
 
+inline constexpr const char* kStoredCard = "data/scorecard.h5";
+
+struct ScorecardStoreRequest : ScorecardRequest {
+  std::string file = kStoredCard;
+};
+int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest& request);
+
+struct ScorecardCheckRequest {
+  std::vector<std::string> methods, scenes;  // empty: all that are stored
+  std::string folder;
+  std::string file = kStoredCard;
+  int threads = 0;
+};
+int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest& request);
+
 struct MergeRequest {
   std::vector<std::string> shards;
   std::string output;

@@ -53,6 +53,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.kernels = line.kernels;
   options.stop = line.stop;
   options.hash_frames = true;
+  options.find_true_contact = true;
   options.progress = [&](double fraction) { progress.update(fraction); };
   if (request.timing) options.step_duration_s = &durations;
   const TextAttributes origin =

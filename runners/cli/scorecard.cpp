@@ -10,9 +10,11 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
+#include "runners/cli/scorecard_runs.h"
 #include "runners/provenance/provenance.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/report_json.h"
+#include "runners/scorecard/stored_card.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 
@@ -21,23 +23,6 @@ namespace remote_touch {
 namespace {
 
 constexpr const char* kScorecardFile = "scorecard.h5";
-
-void make_folders(const std::filesystem::path& folder) {
-  for (const char* part : {"runs", "traces"}) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder / part, failure);
-    if (failure)
-      throw InputError((folder / part).string(),
-                       "cannot be made (" + failure.message() + "): expected a writable folder");
-  }
-}
-
-// Without the scenes whose recording is not here.
-std::string configuration_of(const BenchmarkPlan& plan) {
-  std::vector<BenchmarkScene> scenes;
-  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
-  return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
-}
 
 // What a folder's scorecard has, this one must have too: its results are replaced.
 void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
@@ -55,21 +40,6 @@ void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan
                                             ", and would be replaced: expected those and others too, or "
                                             "another folder");
   }
-}
-
-// Runs that ended with an error; they count as no success.
-int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
-  std::size_t failed = 0;
-  std::string first;
-  for (const BenchmarkSweep& sweep : sweeps) {
-    const StoredSweep stored = read_sweep(sweep.file);
-    const auto runs = stored.result.runs_in(RunState::failed);
-    if (!runs.empty() && first.empty()) first = sweep.name + ": " + stored.result.error[runs.front()];
-    failed += runs.size();
-  }
-  if (failed == 0) return kDone;
-  std::printf("%zu runs failed; the first: %s\n", failed, first.c_str());
-  return kCheckFailed;
 }
 
 std::string normalised(const ScorecardRequest& request) {
@@ -97,7 +67,7 @@ void print(const ScorecardReport& report) {
     std::printf("%s\n", scene.name.c_str());
     for (std::size_t c = 0; c < card.methods.size(); ++c) {
       std::printf("  %-18s", card.methods[c].c_str());
-      for (const Proportion& fraction : scene.success[c])
+      for (const Proportion& fraction : scene.success[c].at_level)
         std::printf(" %3d/%d", fraction.events, fraction.runs);
       std::printf("\n");
     }
@@ -109,18 +79,16 @@ void print(const ScorecardReport& report) {
 }  // namespace
 
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
+  if (request.folder.empty()) throw InputError("--output", "is missing: expected a folder to write to");
   if (request.threads > 0) omp_set_num_threads(request.threads);
   const BenchmarkPlan plan = plan_of(
       {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
   const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
   require_same_benchmark(sweeps);
   require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);
-  make_folders(request.folder);
+  make_scorecard_folder(request.folder);
   try {
-    Progress progress("scorecard", line.quiet);
-    do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {
-      progress.update((static_cast<double>(done) + fraction) / static_cast<double>(all));
-    });
+    do_scorecard_runs(line, sweeps);
     Progress after("traces and results", line.quiet);
     const ScorecardReport report =
         evaluate(plan, *line.kernels, line.stop,
@@ -134,10 +102,7 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
     std::printf("make the page: scripts/plot %s\n", request.folder.c_str());
     return code;
   } catch (const Interrupted&) {
-    std::fprintf(stderr,
-                 "remote-touch: interrupted; finished runs are kept in %s, and the same command goes on\n",
-                 request.folder.c_str());
-    return kInterrupted;
+    return report_interrupted(request.folder);
   }
 }
 

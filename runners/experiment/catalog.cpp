@@ -1,14 +1,19 @@
 #include "runners/experiment/catalog.h"
 
 #include "core/proxy/proxy_renderer.h"
+#include "core/rivals/averaged_proxy_renderer.h"
+#include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
+#include "core/rivals/surfel_renderer.h"
 #include "core/tracked_sheet/tracked_sheet_renderer.h"
 #include "core/virtual_fixtures/everywhere.h"
 #include "core/virtual_fixtures/half_space.h"
 #include "core/virtual_fixtures/hue_range.h"
 #include "core/virtual_fixtures/near_point.h"
+#include "runners/experiment/renderer_contacts.h"
 #include "runners/sessions/session_scene.h"
 #include "runners/tool_files/loaded_spheres.h"
 #include "runners/tool_files/loaded_tool.h"
@@ -30,6 +35,7 @@
 #include "scenarios/synthetic/moving_plane.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/open_box.h"
+#include "scenarios/synthetic/plates.h"
 #include "scenarios/synthetic/sheet.h"
 #include "scenarios/synthetic/slot.h"
 #include "scenarios/synthetic/triangle_wave.h"
@@ -74,6 +80,7 @@ const ScenarioEntry kScenarios[] = {
     scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
     scenario<MovingShape>("moving-shape",
                           "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
+    scenario<Plates>("plates", "flat plates seen from above that hide each other, pass or move apart"),
     scenario<TriangleWave>("triangle-wave",
                            "a triangle wave of growing height at rest, with sharp edges, 4.3.3"),
     scenario<CameraScene>("camera-scene",
@@ -132,6 +139,18 @@ const RendererEntry kRenderers[] = {
     renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
         "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
         "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+    renderer<SurfelRenderer, SurfelParameters>(
+        "surfels", DegreesOfFreedom::three, ContactModel::oriented,
+        "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]"),
+    renderer<AveragedProxyRenderer, AveragedProxyParameters>(
+        "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
+        "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames"),
+    renderer<DensityProxyRenderer, DensityProxyParameters>(
+        "density-proxy", DegreesOfFreedom::three, ContactModel::points,
+        "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
+    renderer<OracleProxyRenderer, OracleProxyParameters>(
+        "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
+        "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
     renderer<GodObjectRenderer, GodObjectParameters>(
         "god-object", DegreesOfFreedom::three, ContactModel::mesh,
         "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),

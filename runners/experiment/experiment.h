@@ -43,6 +43,8 @@ class Experiment {
   // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
   // renderer or of a forbidden region, plus those of all guidance.
   double max_stiffness_N_per_m() const;
+  // Where the point of the renderer lies that touches.
+  RenderedContact rendered_contact() const { return configuration_.renderer.factory->contact(); }
   // For the live loop; offline runs ignore them.
   LiveSettings live() const { return configuration_.live.value_or(LiveSettings{}); }
   SafetyLimits safety() const { return configuration_.safety.value_or(SafetyLimits{}); }

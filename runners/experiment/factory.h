@@ -12,6 +12,7 @@
 #include "core/random/noise.h"
 #include "core/rendering/renderer.h"
 #include "core/virtual_fixtures/fixture_rule.h"
+#include "runners/experiment/rendered_contact.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording_part.h"
@@ -32,12 +33,13 @@ class Factory : public Configurable {
   virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
   // Of a renderer: max_stiffness_N_per_m() of its settings. 0 for all others.
   virtual double stiffness_N_per_m() const = 0;
+  virtual RenderedContact contact() const = 0;  // of a renderer, too
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
 // For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
-// validate(Settings); max_stiffness_N_per_m(Settings) for every renderer; and input_files(Settings) if the
-// settings name files.
+// validate(Settings); max_stiffness_N_per_m(Settings) and rendered_contact(Settings) for every renderer; and
+// input_files(Settings) if the settings name files.
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -57,6 +59,12 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
       return max_stiffness_N_per_m(values_);
     else
       return 0;
+  }
+  RenderedContact contact() const override {
+    if constexpr (std::is_base_of_v<Renderer, Product>)
+      return rendered_contact(values_);
+    else
+      return {};
   }
   std::unique_ptr<Seam> build(Arguments... arguments) const override {
     return std::make_unique<Product>(values_, arguments...);
@@ -87,8 +95,9 @@ enum class DegreesOfFreedom { three, six };
 // of points with r_f above 0. mesh: the triangles between neighbours in an organised frame, so the order of
 // the points matters. sheet: a sheet fitted to points in cells along the world's axes, so a rotated scene, or
 // one sent more often, gives similar outputs but not the same bits. nothing: points only push, and a HIP
-// pressed deeper passes them.
-enum class ContactModel { points, regions, mesh, sheet, nothing };
+// pressed deeper passes them. oriented: points, but the direction to the sensor matters; the layout of an
+// image gives it, else a setting in the world's axes; forbidden regions do not count.
+enum class ContactModel { points, regions, mesh, sheet, nothing, oriented };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;

@@ -9,6 +9,21 @@
 
 namespace remote_touch {
 
+namespace {
+
+class ScenarioTruth final : public TrueSurface {
+ public:
+  explicit ScenarioTruth(const Scenario& scenario) : scenario_(scenario) {}
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return scenario_.signed_distance(p_W, time_s);
+  }
+
+ private:
+  const Scenario& scenario_;
+};
+
+}  // namespace
+
 // Points that come with another time stamp are another frame.
 std::uint64_t frame_hash(const PointCloud& cloud, double captured_s) {
   return mixed(points_hash(cloud), std::bit_cast<std::uint64_t>(captured_s));
@@ -28,6 +43,7 @@ void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) co
 FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
                          const NoiseKey& key, bool hash_frames, bool generate_all_points)
     : scenario_(scenario),
+      truth_(std::make_shared<ScenarioTruth>(scenario)),
       processing_(std::move(processing)),
       transport_(transport),
       key_(key),
@@ -70,6 +86,7 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
     const FrameInTransit arrived = in_transit_.front();
     in_transit_.erase(in_transit_.begin());
     Frame frame{arrived.frame, captured_s(arrived.frame), arrived.arrives_s, nullptr};
+    frame.truth = truth_;
     fill(frame);
     if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
     renderer.on_frame(frame);

@@ -44,7 +44,8 @@ class FrameStream {
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
-  // Passes the frames that have arrived by time_s to the renderer, in order of arrival. pre: times never
+  // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the truth for
+  // oracles. pre: times never
   // decrease. Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture
   // rule cannot be applied to it.
   void deliver_until(double time_s, Renderer& renderer);
@@ -64,6 +65,7 @@ class FrameStream {
   std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
 
   const Scenario& scenario_;
+  std::shared_ptr<const TrueSurface> truth_;
   FrameProcessing processing_;
   Transport transport_;
   NoiseKey key_;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 
+#include "analysis/measures/settled_contact_measures.h"
 #include "core/parameters/input_error.h"
 #include "runners/settings/embedded_data.h"
 #include "runners/settings/json_parameters.h"
@@ -61,6 +63,52 @@ Bound bound_of(const Json& json, const std::string& label) {
   return bound;
 }
 
+std::vector<Bound> bounds_of(const Json& success, const char* part, const std::string& rule) {
+  const auto found = success.find(part);
+  if (found == success.end()) return {};
+  if (!found->is_array() || found->empty())
+    throw InputError(rule + "." + part, "no list: expected a list of {\"measure\", \"min\", \"max\"}");
+  std::vector<Bound> bounds;
+  for (const Json& bound : *found) bounds.push_back(bound_of(bound, rule + "." + part));
+  return bounds;
+}
+
+void add_measure(BenchmarkScene& scene, const std::string& name, Better better) {
+  for (const BenchmarkScene::Judged& judged : scene.measures)
+    if (judged.measure == name) return;
+  scene.measures.push_back({name, better});
+}
+
+// {"rule": "held", "tolerance_m", "bounds" and their "meaning"}: the bounds come in addition.
+void read_held_rule(const Json& success, const std::string& rule, BenchmarkScene& scene) {
+  if (success["rule"] != "held")
+    throw InputError(rule + ".rule = " + shown(success["rule"]), "expected held");
+  double tolerance_m = kScorecardRadius_m;
+  Json own = success;
+  for (const char* part : {"rule", "meaning", "bounds", "old_bounds"}) own.erase(part);
+  read_parameters(own, {{"tolerance_m", &tolerance_m, 1e-6, 1, "how far off the surface the contact may be"}},
+                  rule);
+  scene.meaning = held_meaning(tolerance_m);
+  scene.success = held_bounds(tolerance_m);
+  if (!success.contains("bounds")) return;
+  scene.meaning += "; " + text_of(success, "meaning", rule);
+  for (const Bound& bound : bounds_of(success, "bounds", rule)) scene.success.push_back(bound);
+}
+
+void read_success(const Json& success, const std::string& rule, BenchmarkScene& scene) {
+  scene.old_success = bounds_of(success, "old_bounds", rule);
+  if (success.contains("rule")) {
+    read_held_rule(success, rule, scene);
+    add_measure(scene, "rms_contact_error", Better::smaller);
+    for (const char* name : {"max_sink", "max_float"}) add_measure(scene, name, Better::reported);
+    return;
+  }
+  scene.meaning = text_of(success, "meaning", rule);
+  scene.success = bounds_of(success, "bounds", rule);
+  if (scene.success.empty())
+    throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
+}
+
 // What a file is called in a scorecard, whose results are files of that name.
 std::string name_in(const std::string& file, const char* kind) {
   const std::string name = std::filesystem::path(file).stem().string();
@@ -109,6 +157,7 @@ std::vector<std::string> measured(const BenchmarkScene& scene) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
   for (const Bound& bound : scene.success) add(bound.measure);
+  for (const Bound& bound : scene.old_success) add(bound.measure);
   for (const BenchmarkScene::Judged& judged : scene.measures) add(judged.measure);
   add("mean_steps"), add("non_finite_fraction");
   return names;
@@ -119,6 +168,22 @@ std::vector<std::string> measured(const BenchmarkScene& scene) {
 const std::vector<double>& scorecard_noise_m() {
   static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
   return levels;
+}
+
+std::vector<Bound> held_bounds(double tolerance_m) {
+  Bound error{"max_contact_error"}, force{"contact_force_fraction"}, known{"contact_known_fraction"};
+  error.max = tolerance_m, force.min = 0.9, known.min = 0.9;
+  return {error, force, known};
+}
+
+std::string held_meaning(double tolerance_m) {
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "held: from %g s after the HIP got below the true surface on, the contact point is never more "
+      "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
+      kSettling_s, 1e3 * tolerance_m);
+  return text;
 }
 
 Method read_method(const std::string& name, const std::string& json) {
@@ -137,12 +202,12 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
   for (const auto& item : measures.items())
     scene.measures.push_back({item.key(), better_of(item.value(), label + ": measures." + item.key())});
   const std::string rule = label + ": success";
-  const Json success = read_object(object_of(object, "success", label), rule, {"meaning", "bounds"});
-  scene.meaning = text_of(success, "meaning", rule);
-  const auto bounds = success.find("bounds");
-  if (bounds == success.end() || !bounds->is_array() || bounds->empty())
-    throw InputError(rule + ".bounds", "missing: expected a list of {\"measure\", \"min\", \"max\"}");
-  for (const Json& bound : *bounds) scene.success.push_back(bound_of(bound, rule + ".bounds"));
+  read_success(read_object(object_of(object, "success", label), rule,
+                           {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
+               rule, scene);
+  for (const char* name : {"jump_fraction_5", "jump_fraction_10", "jump_fraction_20", "packet_rate_5",
+                           "packet_rate_10", "packet_rate_20"})
+    add_measure(scene, name, Better::reported);
   return scene;
 }
 

@@ -37,17 +37,24 @@ struct BenchmarkScene {
   std::vector<Judged> measures;  // in addition to those of the bounds
   std::string meaning;           // of success, in words
   std::vector<Bound> success;
+  std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
 
   // The runs of a method: noise levels by replicates, and nothing else, so that cell and replicate, the
   // keys of all noise, are the same for every method. Throws InputError when it cannot be run.
   Sweep sweep(const Method& method, int replicates) const;
 };
 
+// The symmetric rule of a scene in which the surface has to be held, {"rule": "held"}: one for balls, points
+// and springs, see settled_contact_measures.h.
+std::vector<Bound> held_bounds(double tolerance_m);
+std::string held_meaning(double tolerance_m);
+
 // Methods and scenes as JSON, stored with results.
 std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
                           int replicates);
 
-// From JSON text; label names the source in InputErrors.
+// From JSON text; label names the source in InputErrors. Every scene gets the measures in perception's units,
+// one with the rule "held" also those of its contact.
 Method read_method(const std::string& name, const std::string& json);
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json);
 

@@ -16,13 +16,12 @@ std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
 }
 
 SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>& stored) {
-  SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}};
+  SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}, scene.old_success};
   for (const BenchmarkScene::Judged& judged : scene.measures)
     rules.measures.emplace_back(judged.measure, judged.better);
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
-  constexpr std::uint64_t kBootstrapKey = 1;
-  return score(rules, results, scene.noise.empty(), kBootstrapKey);
+  return score(rules, results, scene.noise.empty());
 }
 
 // The audit is about all runs, those that are not passive first of all.
@@ -60,6 +59,13 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
 
 }  // namespace
 
+Scorecard scores_of(const BenchmarkPlan& plan) {
+  Scorecard card = empty_card(plan.benchmark.methods);
+  for (const ScenePlan& one : plan.scenes) card.scenes.push_back(score_of(one.scene, read_all(one.sweeps)));
+  correct(card);
+  return card;
+}
+
 ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, const std::atomic<bool>* stop,
                          const std::function<void(std::size_t, std::size_t)>& progress) {
   const std::filesystem::path& folder = plan.benchmark.folder;
@@ -77,6 +83,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
     report.audit = empty_card(plan.laws);
     report.audit->scenes.push_back(score_of(reported(one.scene), read_all(plan.audit)));
   }
+  correct(report.card);
   report.costs = costs_of(plan, kernels, stop, folder / "costs.json");
   report.cpu = cpu_name();
   report.origin = "remote-touch " + version();

@@ -1,5 +1,6 @@
 #include "runners/scorecard/report_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "runners/scorecard/json_number.h"
@@ -58,17 +59,25 @@ Json failure_json(const std::optional<FailureTrace>& failure) {
   return json;
 }
 
-// Of each method: successes at each level and over all, the mark, and a typical failure.
+// By one rule: at each level, over those with noise, and without noise.
+Json counts_json(const Successes& success) {
+  Json levels = Json::array();
+  for (const Proportion& level : success.at_level) levels.push_back(proportion_json(level));
+  return {{"levels", levels},
+          {"overall", proportion_json(success.noisy)},
+          {"noise_free", success.noise_free ? proportion_json(*success.noise_free) : Json()}};
+}
+
+// Of each method: successes by the rule and by the rule before, the mark, and a typical failure.
 Json successes_json(const ScorecardReport& report, std::size_t number) {
   const SceneScore& scene = report.card.scenes[number];
   Json methods = Json::array();
   for (std::size_t c = 0; c < report.card.methods.size(); ++c) {
-    Json levels = Json::array();
-    for (const Proportion& level : scene.success[c]) levels.push_back(proportion_json(level));
-    methods.push_back({{"levels", levels},
-                       {"overall", proportion_json(scene.success_overall[c])},
-                       {"mark", mark_word(mark_of(scene.ranking, c))},
-                       {"failure", failure_json(report.failures[number][c])}});
+    Json method = counts_json(scene.success[c]);
+    method["old"] = scene.old_success.empty() ? Json() : counts_json(scene.old_success[c]);
+    method["mark"] = mark_word(mark_of(scene.ranking, c));
+    method["failure"] = failure_json(report.failures[number][c]);
+    methods.push_back(method);
   }
   return methods;
 }
@@ -111,8 +120,27 @@ Json methods_json(const Scorecard& card) {
                        {"scenes_held", summaries[c].held},
                        {"scenes_best", summaries[c].best},
                        {"scenes_worst", summaries[c].worst},
-                       {"mean_success", number_or_null(summaries[c].mean_success)}});
+                       {"success", mean_json(summaries[c].success)},
+                       {"noise_free", mean_json(summaries[c].noise_free)},
+                       {"old_success", mean_json(summaries[c].old_success)}});
   return methods;
+}
+
+// What the project's own method is behind in; null where the card does not have it.
+Json behind_json(const Scorecard& card) {
+  if (std::find(card.methods.begin(), card.methods.end(), kOwnMethod) == card.methods.end()) return {};
+  Json list = Json::array();
+  for (const Weakness& one : weaknesses(card, kOwnMethod))
+    list.push_back({{"scene", one.scene},
+                    {"what", one.what},
+                    {"units", one.units},
+                    {"other", one.other},
+                    {"ahead", one.ahead},
+                    {"own_mean", number_or_null(one.own_mean)},
+                    {"other_mean", number_or_null(one.other_mean)},
+                    {"p", number_or_null(one.p)},
+                    {"shown", one.is_shown}});
+  return {{"method", kOwnMethod}, {"list", list}};
 }
 
 // The interval excludes zero: energy for certain, or none for certain.
@@ -134,7 +162,9 @@ Json audit_json(const std::optional<Scorecard>& audit) {
     laws.push_back({{"name", audit->methods[c]},
                     {"title", audit->method_titles[c]},
                     {"levels", levels},
-                    {"overall", proportion_json(scene.success_overall[c])}});
+                    {"overall", proportion_json(scene.success[c].noisy)},
+                    {"noise_free",
+                     scene.success[c].noise_free ? proportion_json(*scene.success[c].noise_free) : Json()}});
   }
   return {{"noise_sigma_m", levels_json(scene.noise_m)}, {"laws", laws}};
 }
@@ -172,7 +202,9 @@ std::string to_json(const ScorecardReport& report) {
                     {"min_pairs", kMinPairs},
                     {"held_fraction", kHeldFraction},
                     {"contact_radius_m", kScorecardRadius_m},
+                    {"significance", kSignificance},
                     {"methods", methods_json(report.card)},
+                    {"behind", behind_json(report.card)},
                     {"skipped", skipped_json(report)},
                     {"scenes", scenes},
                     {"audit", audit_json(report.audit)},

@@ -31,13 +31,6 @@ const JudgedMeasure* find_measure(const SceneScore& scene, const std::string& na
 
 }  // namespace
 
-Mark mark_of(const Ranking& ranking, std::size_t method) {
-  if (ranking.order.empty()) return Mark::none;
-  if (ranking.has_best && ranking.order.front() == method) return Mark::best;
-  if (ranking.has_worst && ranking.order[ranking.ranked - 1] == method) return Mark::worst;
-  return Mark::none;
-}
-
 std::string verdict(const Scorecard& card, const SceneScore& scene) {
   const Ranking& ranking = scene.ranking;
   if (ranking.ranked < 2) return "";
@@ -54,21 +47,6 @@ std::string verdict(const Scorecard& card, const SceneScore& scene) {
   }
   if (ranking.has_worst) text += " Worst: " + card.methods[ranking.order[ranking.ranked - 1]] + ".";
   return text;
-}
-
-std::vector<MethodSummary> overview(const Scorecard& card) {
-  std::vector<MethodSummary> methods(card.methods.size());
-  for (std::size_t c = 0; c < methods.size(); ++c) {
-    MethodSummary& method = methods[c];
-    for (const SceneScore& scene : card.scenes) {
-      const Mark mark = mark_of(scene.ranking, c);
-      method.held += scene.success_overall[c].fraction > kHeldFraction;
-      method.best += mark == Mark::best, method.worst += mark == Mark::worst;
-      method.mean_success += scene.success_overall[c].fraction;
-    }
-    method.mean_success /= static_cast<double>(std::max<std::size_t>(1, card.scenes.size()));
-  }
-  return methods;
 }
 
 std::string cost_reference(const Scorecard& card) {

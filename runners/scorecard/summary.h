@@ -5,25 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "analysis/scorecard/overview.h"
 #include "runners/scorecard/report.h"
 
 namespace remote_touch {
 
-enum class Mark { none, best, worst };
-Mark mark_of(const Ranking& ranking, std::size_t method);
-
 // A sentence: who is best and worst by successes, or that nobody is told apart.
 std::string verdict(const Scorecard& card, const SceneScore& scene);
-
-// A scene counts as held where more than this share of the runs are successes.
-inline constexpr double kHeldFraction = 0.9;
-
-// Of one method over all scenes.
-struct MethodSummary {
-  int held = 0, best = 0, worst = 0;  // scenes
-  double mean_success = 0;
-};
-std::vector<MethodSummary> overview(const Scorecard& card);
 
 // Medians over the scenes in which both the method and the reference were measured; NaN where there are none.
 struct CostSummary {

@@ -36,6 +36,17 @@ Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double tim
   return {proxy_position_m, slave_command_m, frame_hash};
 }
 
+// See RenderedContact.
+Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact& contact, const Vec3& hip_W,
+                                const RenderOutput& out, double proxy_distance_m, double time_s) {
+  const double hip_distance_m = scenario.signed_distance(hip_W, time_s);
+  const double distance_m =
+      contact.spring_N_per_m > 0
+          ? scenario.signed_distance(hip_W + out.force_N / contact.spring_N_per_m, time_s)
+          : proxy_distance_m;
+  return {distance_m - contact.rest_distance_m, hip_distance_m};
+}
+
 class StopWatch {
  public:
   double lap_s() {
@@ -82,6 +93,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   TimedFrames timed(*renderer, options.frame_duration_s);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
+  const RenderedContact contact = experiment.rendered_contact();
 
   Trace trace;
   trace.reserve(ticks);
@@ -97,7 +109,11 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     const RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
     hand.apply(device, out);
-    trace.append(time_s, device, out, truth(*scenario, out, time_s, frames.newest_hash()), hand.state());
+    Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
+    if (options.find_true_contact)
+      known.contact =
+          true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
+    trace.append(time_s, device, out, known, hand.state());
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }

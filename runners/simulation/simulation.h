@@ -18,8 +18,9 @@ struct SimulationOptions {
   std::vector<double>* step_duration_s = nullptr;   // wall-clock time of each tick; null: not measured
   std::vector<double>* frame_duration_s = nullptr;  // and of the renderer's work on each frame
   bool generate_all_points =
-      false;                 // frames come with every point computed: durations without noise generation
-  bool hash_frames = false;  // compute every point of every frame for the trace's frame_hash; else 0
+      false;  // frames come with every point computed: durations without noise generation
+  bool find_true_contact = false;  // fill Trace::contact, for measures that need it
+  bool hash_frames = false;        // compute every point of every frame for the trace's frame_hash; else 0
 };
 
 struct Interrupted {};

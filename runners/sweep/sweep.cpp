@@ -268,6 +268,11 @@ const std::vector<Measure>& Sweep::measures() const {
   return definition_->measures;
 }
 
+bool Sweep::needs_true_contact() const {
+  return std::any_of(measures().begin(), measures().end(),
+                     [](const Measure& measure) { return measure.runs == MeasuredRuns::contact; });
+}
+
 std::optional<RefinementRule> Sweep::refinement() const {
   if (!definition_->refine) return std::nullopt;
   const RefineSettings& refine = *definition_->refine;

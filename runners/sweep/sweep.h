@@ -33,6 +33,7 @@ class Sweep {
   // The recordings that its cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
+  bool needs_true_contact() const;  // one of its measures does
   std::optional<RefinementRule> refinement() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
   // The sweep with every every-th value of each axis; of a range, whose steps may not divide evenly,

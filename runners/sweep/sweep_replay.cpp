@@ -32,6 +32,7 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   const int replicate = stored.result.replicate_of(run);
   Replay replay{sweep.experiment(cell, replicate), {}, {}};
   options.hash_frames = true;
+  options.find_true_contact = sweep.needs_true_contact();
   const std::string inputs = input_hashes(replay.experiment.inputs());
   replay.trace = simulate(replay.experiment, options);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;

@@ -20,6 +20,7 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     SimulationOptions simulation;
     simulation.kernels = options.kernels;
     simulation.stop = options.stop;
+    simulation.find_true_contact = sweep.needs_true_contact();
     const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
       std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);

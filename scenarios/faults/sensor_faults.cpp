@@ -62,6 +62,14 @@ Parameters parameters(SensorFaults& s) {
        "probability that a frame repeats the previous one"},
       {"rolling_shutter_s", &s.rolling_shutter_s, 0, 10,
        "rolling shutter: time from reading the first row to the last; needs a scene whose true surface is known between frames"},
+      {"ray_noise_m", &s.ray_noise.sigma_m, 0, 1,
+       "standard deviation of the noise along the viewing direction at 1 m from the sensor; it grows with the square of the distance"},
+      {"ray_noise_correlation_m", &s.ray_noise.correlation_m, 0, 10,
+       "noise is interpolated between the nodes of a lattice of this pitch across the view, in images at a depth of 1 m; 0: independent in each point"},
+      {"ray_noise_memory", &s.ray_noise.memory, 0, 0.99,
+       "correlation of the noise of successive frames, as behind a filter in time; 0: new noise in every frame"},
+      {"sensor_distance_m", &s.sensor_distance_m, 0, 100,
+       "distance of the sensor from the origin, against view_direction, for ray_noise_m; in images the distance of each point from the camera is used instead"},
       {"flying_probability", &s.flying_probability, 0, 1,
        "probability that a point is a flying pixel, that is displaced along the viewing direction"},
       {"max_flying_distance_m", &s.max_flying_distance_m, 0, 100,
@@ -93,15 +101,19 @@ FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const Senso
   if (!validate(settings).empty()) throw std::invalid_argument(validate(settings));
 }
 
+bool FaultySensor::needs_view_coordinates() const {
+  return settings_.hole_fraction > 0 || settings_.ray_noise.sigma_m > 0;
+}
+
 bool FaultySensor::moves_points() const {
-  return settings_.flying_probability > 0 || settings_.outlier_probability > 0 ||
-         settings_.quantisation_m > 0;
+  return settings_.ray_noise.sigma_m > 0 || settings_.flying_probability > 0 ||
+         settings_.outlier_probability > 0 || settings_.quantisation_m > 0;
 }
 
 int FaultySensor::frame_count() const {
   const SensorFaults& s = settings_;
   const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
-                      s.outlier_probability > 0;
+                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0;
   const bool continues = !ends() && (change || loses_points());
   return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }
@@ -136,8 +148,9 @@ PointCloud FaultySensor::cloud(int frame) const {
   const int content = shown(frame);
   PointCloud cloud = scenario_->cloud(seen(content));
   ViewCoordinates without_faults;
-  if (settings_.hole_fraction > 0) without_faults = across_the_view(cloud);
+  if (needs_view_coordinates()) without_faults = across_the_view(cloud);
   if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
+  if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.places, content);
   if (moves_points()) displace(cloud, content);
   if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
   if (settings_.dropout_probability > 0) drop_points(cloud, content);
@@ -184,6 +197,23 @@ Vec3 FaultySensor::as_it_was(const Vec3& p_W, double now_s, double then_s, const
   const double slope = normal.dot(*ray);
   if (std::abs(slope) < kMinSlope) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   return p_W - change / slope * *ray;
+}
+
+// What would lie behind the camera is lost.
+void FaultySensor::add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const {
+  const RayNoise& s = settings_.ray_noise;
+  const std::vector<double> noise = standard_noise(s, places, key_, frame, kernels_);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    const Vec3 p_W = cloud.point(i), direction = sight(cloud, p_W);
+    const double distance = cloud.image ? (p_W - cloud.image->X_WC.translation()).norm()
+                                        : settings_.sensor_distance_m + p_W.dot(direction);
+    const double displacement = s.sigma_m * distance * distance * noise[i];
+    if (cloud.image && distance + displacement <= 0)
+      lose(cloud, i);
+    else
+      move(cloud, i, p_W + displacement * direction);
+  }
 }
 
 // Flying points, outliers and steps. What would lie behind the camera is lost.

@@ -1,5 +1,5 @@
-// Faults that a depth sensor adds to the frames of any scenario: rounded depths, flying points and outliers,
-// lost points, frames that come twice or late, rows that are read one after the other.
+// Faults that a depth sensor adds to the frames of any scenario: noise along its rays, rounded depths, flying
+// points and outliers, lost points, frames that come twice or late, rows that are read one after the other.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
+#include "scenarios/faults/ray_noise.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
@@ -19,6 +20,8 @@ struct SensorFaults {
   Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
   double repeat_probability = 0;  // frames that show the one before them
   double rolling_shutter_s = 0;   // time in which the rows of a frame are read
+  RayNoise ray_noise;
+  double sensor_distance_m = 1;  // from the origin, against the viewing direction; not used for images
   double flying_probability = 0, max_flying_distance_m = 0.02;
   double outlier_probability = 0, max_outlier_distance_m = 0.05;
   double quantisation_m = 0;
@@ -66,12 +69,14 @@ class FaultySensor final : public Scenario {
   };
   int shown(int frame) const;  // the frame whose content this one has
   int seen(int frame) const;   // the scenario's frame for it
+  bool needs_view_coordinates() const;
   bool moves_points() const;
   bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
   Vec3 sight(const PointCloud& cloud, const Vec3& p_W) const;
   void shear(PointCloud& cloud, double captured_s) const;
   Vec3 normal_at(const Vec3& p_W, double time_s) const;
   Vec3 as_it_was(const Vec3& p_W, double now_s, double then_s, const Vec3* ray) const;
+  void add_ray_noise(PointCloud& cloud, const PointCloud& places, int frame) const;
   void displace(PointCloud& cloud, int frame) const;
   ViewCoordinates across_the_view(const PointCloud& cloud) const;
   void cut_holes(PointCloud& cloud, const ViewCoordinates& seen, int frame) const;

@@ -19,10 +19,12 @@ using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or at least in some where it is one that lets go"};
-// Share of the ticks. Direct rendering lets the HIP through, and a mesh that moves leaves it behind: they
-// push back only in the moments before.
+// Share of the ticks. Direct rendering lets the HIP through, a mesh that moves leaves it behind, and who
+// knows no regions meets only the points in their middle: these push back only in the moments before.
 double min_touch(ContactModel contact_model) {
-  return contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ? 0.02 : 0.5;
+  const bool lets_go = contact_model == ContactModel::nothing || contact_model == ContactModel::mesh ||
+                       contact_model == ContactModel::oriented;
+  return lets_go ? 0.02 : 0.5;
 }
 
 // The renderer to check, as often as it is needed.
@@ -57,7 +59,8 @@ class Subject {
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = max_length_m(parameters);
-    run.fits_a_sheet = entry_.contact_model == ContactModel::sheet;
+    run.view_matters = entry_.contact_model == ContactModel::oriented;
+    run.fits_a_sheet = entry_.contact_model == ContactModel::sheet || run.view_matters;
     run.order_matters = entry_.contact_model == ContactModel::mesh;
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;

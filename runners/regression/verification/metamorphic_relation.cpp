@@ -25,18 +25,26 @@ bool other_instructions(Variation& run) {
 
 // --- the points ---
 
+// Whether a search by grid takes from the renderer what it has to know.
+bool needs_its_images(const Variation& run) {
+  return run.view_matters && std::any_of(run.scene.views.begin(), run.scene.views.end(),
+                                         [](const CloudView& view) { return view.cloud.image.has_value(); });
+}
+
 bool search_all_points(Variation& run) {
+  if (needs_its_images(run)) return false;
   search_by_grid(run, 0);
   return true;
 }
 
 bool use_other_grid(Variation& run) {
+  if (needs_its_images(run)) return false;
   search_by_grid(run, 2.7 * run.scene.cell_m);
   return true;
 }
 
 bool shuffle(Variation& run) {
-  if (run.order_matters) return false;
+  if (run.order_matters || needs_its_images(run)) return false;
   search_by_grid(run, 0);
   reorder(run, [](int size) {
     std::vector<int> order(static_cast<std::size_t>(size));
@@ -49,7 +57,7 @@ bool shuffle(Variation& run) {
 }
 
 bool add_missing(Variation& run) {
-  if (run.order_matters) return false;
+  if (run.order_matters || needs_its_images(run)) return false;
   search_by_grid(run, run.scene.cell_m);
   reorder(run, [](int size) {
     std::vector<int> order{-1};
@@ -63,6 +71,7 @@ bool add_missing(Variation& run) {
 }
 
 bool add_far(Variation& run) {
+  if (needs_its_images(run)) return false;
   constexpr double kSceneRadius_m = 0.5, kReaches = 10;
   const Vec3 middle = run.scene.hip_W.front();
   const double distance = kSceneRadius_m + kReaches * run.reach_m;

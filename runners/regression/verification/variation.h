@@ -22,6 +22,7 @@ struct Variation {
   // The renderer fits a sheet (ContactModel::sheet): the world's axes matter, for its cells, and the number
   // of frames, for its estimate of noise.
   bool fits_a_sheet = false;
+  bool view_matters = false;                           // so does the layout of an image, for its camera
   bool order_matters = false;                          // the renderer depends on the points' rows and columns
   std::optional<double> stiffness_N_per_m = {};        // of the renderer, if it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run

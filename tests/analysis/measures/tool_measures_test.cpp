@@ -106,9 +106,10 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
   const Trace tool = trace_of({{}, {}});
   for (const Measure& each : measures()) {
     const bool of_tool = each.runs == MeasuredRuns::tool, of_proxy = each.runs == MeasuredRuns::proxy,
-               of_guidance = each.runs == MeasuredRuns::guidance;
-    EXPECT_EQ(applies(each, point), !of_tool && !of_guidance) << each.name;
-    EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance) << each.name;
+               of_guidance = each.runs == MeasuredRuns::guidance,
+               of_contact = each.runs == MeasuredRuns::contact;  // which this trace does not have
+    EXPECT_EQ(applies(each, point), !of_tool && !of_guidance && !of_contact) << each.name;
+    EXPECT_EQ(applies(each, tool), !of_proxy && !of_guidance && !of_contact) << each.name;
     if (of_tool || of_guidance) {
       EXPECT_TRUE(std::isnan(each.of(point))) << each.name;
     }

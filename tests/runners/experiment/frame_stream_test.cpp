@@ -138,6 +138,16 @@ TEST(FrameStream, DeliveryIsDrawnFromTheKey) {
   EXPECT_NE(indices(once), indices(other));
 }
 
+TEST(FrameStream, FramesOfASimulationCarryTheTruthForOracles) {
+  const MovingLift lift({}, NoiseKey{1}, scenes::kernels());
+  const auto frames = received(lift, 0.5, {});
+  ASSERT_GT(frames.size(), 5u);
+  const Vec3 p(0.01, 0.02, 0.03);
+  for (const Frame& frame : frames)
+    for (const double t : {0.0, 0.2, 0.4})
+      EXPECT_EQ(frame.truth->signed_distance(p, t), lift.signed_distance(p, t));
+}
+
 // However often the stream is asked, frames come in the same order.
 TEST(FrameStream, OneLateRequestHandsOverTheSameFrames) {
   const Walk walk(300);

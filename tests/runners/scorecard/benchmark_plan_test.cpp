@@ -69,6 +69,9 @@ TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
   const Sweep sweep = GetParam().sweep(chosen_methods({"proxy"}).front(), 2);
   const SweepResult plan = sweep.plan();
   for (const Bound& bound : GetParam().success) EXPECT_NO_THROW(plan.measure(bound.measure));
+  for (const Bound& bound : GetParam().old_success) EXPECT_NO_THROW(plan.measure(bound.measure));
+  EXPECT_NO_THROW(plan.measure("jump_fraction_10"));
+  EXPECT_NO_THROW(plan.measure("packet_rate_10"));
   for (const auto& judged : GetParam().measures) EXPECT_NO_THROW(plan.measure(judged.measure));
   EXPECT_EQ(plan.cell_count(), GetParam().noise.empty() ? 1u : scorecard_noise_m().size());
   EXPECT_EQ(plan.replicates, 2);
@@ -120,6 +123,34 @@ TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
   with_renderer.experiment = R"({"renderer": {"name": "proxy"}})";
   EXPECT_HAS(refusal([&] { with_renderer.sweep(proxy, 2); }), "methods bring it");
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
+}
+
+// A scene asks for a held surface in one word.
+TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
+  const std::string begin = R"({"title": "t", "experiment": {}, "measures": {}, "success": )";
+  const BenchmarkScene scene = read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0.002,
+                       "old_bounds": [{"measure": "end_distance", "min": -0.001}]}})");
+  ASSERT_EQ(scene.success.size(), 3u);
+  EXPECT_EQ(scene.success[0].measure, "max_contact_error");
+  EXPECT_EQ(scene.success[0].max, 0.002);
+  EXPECT_EQ(scene.success[1].measure, "contact_force_fraction");
+  EXPECT_EQ(scene.success[2].measure, "contact_known_fraction");
+  EXPECT_HAS(scene.meaning, "never more than 2 mm from it, above or below");
+  EXPECT_HAS(scene.meaning, "from 0.1 s after");
+  ASSERT_EQ(scene.old_success.size(), 1u);
+  EXPECT_EQ(scene.old_success[0].min, -0.001);
+  const BenchmarkScene more = read_benchmark_scene(
+      "x",
+      begin + R"({"rule": "held", "meaning": "in time", "bounds": [{"measure": "max_force", "max": 3}]}})");
+  ASSERT_EQ(more.success.size(), 4u);
+  EXPECT_EQ(more.success[0].max, kScorecardRadius_m);
+  EXPECT_EQ(more.success[3].measure, "max_force");
+  EXPECT_HAS(more.meaning, "these ticks; in time");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "kept"}})"); }), "expected held");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0}})"); }),
+             "tolerance_m");
+  EXPECT_HAS(refusal([&] { read_benchmark_scene("x", begin + R"({"rule": "held", "old_bounds": []}})"); }),
+             "old_bounds");
 }
 
 TEST(Benchmark, RunsNoSeedThatParametersWereFixedWith) {

@@ -31,13 +31,16 @@ const SceneRules kRules = {
 
 Scorecard two_scenes() {
   const std::vector<double> noise = {0, 0.005};
-  std::vector<double> good(20, 0.005), bad(20, -0.01);
-  good[19] = -0.001;
+  std::vector<double> good(40, 0.005), bad(40, -0.01);
+  good[39] = -0.001;
   Scorecard card{{"one", "two"}, {"the first", "the second"}, {}};
-  card.scenes.push_back(score(kRules, {sweep_of(good, noise), sweep_of(bad, noise)}, false, 1));
+  SceneRules rules = kRules;
+  rules.old_success = {{"end_distance", -0.005}};
+  card.scenes.push_back(score(rules, {sweep_of(good, noise), sweep_of(bad, noise)}, false));
   SceneRules other = kRules;
   other.name = "own-noise";
-  card.scenes.push_back(score(other, {sweep_of(good, {1}), sweep_of(good, {1})}, true, 1));
+  card.scenes.push_back(score(other, {sweep_of(good, {1}), sweep_of(good, {1})}, true));
+  correct(card);
   return card;
 }
 
@@ -56,18 +59,22 @@ Json json_of(const ScorecardReport& report) {
 TEST(Score, CountsSuccessesAndTellsWhoStandsOut) {
   const Scorecard card = two_scenes();
   const SceneScore& scene = card.scenes[0];
-  EXPECT_EQ(scene.success[0][0].events, 1);  // without noise, ten times the same run
-  EXPECT_EQ(scene.success[0][0].runs, 1);
-  EXPECT_EQ(scene.success[0][1].events, 9);
-  EXPECT_EQ(scene.success_overall[0].events, 10);
-  EXPECT_EQ(scene.success_overall[0].runs, 11);
-  EXPECT_EQ(scene.success_overall[1].events, 0);
+  EXPECT_EQ(scene.success[0].at_level[0].events, 1);  // without noise, twenty times the same run
+  EXPECT_EQ(scene.success[0].at_level[0].runs, 1);
+  EXPECT_EQ(scene.success[0].noise_free->runs, 1);
+  EXPECT_EQ(scene.success[0].at_level[1].events, 19);
+  EXPECT_EQ(scene.success[0].noisy.events, 19);  // and not mixed with the others
+  EXPECT_EQ(scene.success[0].noisy.runs, 20);
+  EXPECT_EQ(scene.success[1].noisy.events, 0);
+  EXPECT_EQ(scene.old_success[0].noisy.events, 20);
+  EXPECT_FALSE(card.scenes[1].success[0].noise_free);
+  EXPECT_TRUE(card.scenes[1].old_success.empty());
   EXPECT_EQ(verdict(card, scene), "Best: one. Worst: two.");
   EXPECT_EQ(verdict(card, card.scenes[1]), "No difference between any.");
   EXPECT_TRUE(std::isnan(card.scenes[1].noise_m.at(0)));
 }
 
-// Three noise levels of three runs: end_distance, and last_force_time where it is the same in all.
+// Three noise levels, and last_force_time where it is the same in all.
 SweepResult timed(const std::vector<double>& depth, double last_s) {
   SweepResult result = sweep_of(depth, {0, 0.001, 0.005});
   result.measures.push_back({"time", "s", "", std::vector<double>(depth.size(), last_s), 1, {}});
@@ -77,37 +84,38 @@ SweepResult timed(const std::vector<double>& depth, double last_s) {
 TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
   // Who loses the surface in two of three runs is quiet there: 0.1 against 2, and 2.5 where both hold.
   std::vector<double> upper, at_times;
-  for (int i = 0; i < 18; ++i)
+  for (int i = 0; i < 54; ++i)
     upper.push_back(1 + 0.01 * i), at_times.push_back(i % 3 == 0 ? 1 : -1 - 0.01 * i);
   SweepResult held = timed(upper, 2), lost = timed(at_times, 0.1);
   auto& time = std::get<std::vector<double>>(lost.measures[1].values);
-  for (std::size_t i = 0; i < 18; i += 3) time[i] = 2.5;
+  for (std::size_t i = 0; i < 54; i += 3) time[i] = 2.5;
   SceneRules rules = kRules;
   rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
-  const SceneScore scene = score(rules, {held, lost}, false, 1);
+  const SceneScore scene = score(rules, {held, lost}, false);
   const Ranking& judged = scene.measures[0].ranking;
-  EXPECT_EQ(judged.mean[1].pairs, 6);
+  EXPECT_EQ(judged.mean[1].pairs, 12);  // of the two levels with noise
   EXPECT_EQ(judged.mean[1].mean, 2.5);
   EXPECT_EQ(judged.order.front(), 0u);
   EXPECT_TRUE(judged.has_best);
-  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 2);
-  EXPECT_EQ(scene.measures[1].ranking.mean[1].pairs, 18);
-  time[6] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[6] = -1;
-  EXPECT_FALSE(score(rules, {held, lost}, false, 1).measures[0].ranking.has_best);  // five pairs are left
+  EXPECT_EQ(scene.measures[0].at_level[1][0].pairs, 6);
+  EXPECT_EQ(scene.measures[0].at_level[1][1].pairs, 6);
+  EXPECT_EQ(scene.measures[1].ranking.mean[1].pairs, 36);
+  time[18] = 0.1, std::get<std::vector<double>>(lost.measures[0].values)[18] = -1;
+  EXPECT_FALSE(score(rules, {held, lost}, false).measures[0].ranking.has_best);  // eleven pairs are left
 }
 
 TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
   const SweepResult same = sweep_of(std::vector<double>(9, 1), {0, 0.001, 0.005});
-  const SceneScore scene = score(kRules, {same, same}, false, 1);
-  EXPECT_EQ(scene.success[0][0].runs, 1);
-  EXPECT_EQ(scene.success[0][1].runs, 3);
-  EXPECT_EQ(scene.success_overall[0].runs, 7);
+  const SceneScore scene = score(kRules, {same, same}, false);
+  EXPECT_EQ(scene.success[0].at_level[0].runs, 1);
+  EXPECT_EQ(scene.success[0].at_level[1].runs, 3);
+  EXPECT_EQ(scene.success[0].noisy.runs, 6);
   EXPECT_EQ(scene.measures[0].at_level[0][0].pairs, 1);
   const SweepResult own = sweep_of(std::vector<double>(9, 1), {1});
-  EXPECT_EQ(score(kRules, {own}, true, 1).success[0][0].runs, 1);
+  EXPECT_EQ(score(kRules, {own}, true).success[0].noisy.runs, 1);
   SweepResult differ = same;
   std::get<std::vector<double>>(differ.measures[0].values)[2] = 1 + 1e-15;
-  EXPECT_EQ(score(kRules, {differ}, false, 1).success[0][0].runs, 3);
+  EXPECT_EQ(score(kRules, {differ}, false).success[0].at_level[0].runs, 3);
 }
 
 TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
@@ -117,7 +125,7 @@ TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
   for (const Table& table : figure.tables)
     for (const Column& column : table.columns)
       EXPECT_EQ(column.length(), table.columns[0].length()) << column.name;
-  EXPECT_EQ(numbers(figure.tables[0], "fraction")[1], 0.9);
+  EXPECT_EQ(numbers(figure.tables[0], "fraction")[1], 0.95);
   EXPECT_EQ(figure.panels.size(), 2u);
 }
 
@@ -128,16 +136,22 @@ TEST(ScorecardReport, TellsWhatItIsOf) {
   EXPECT_EQ(json["replicates"], 10);
   EXPECT_EQ(json["seed"], 301);
   EXPECT_EQ(json["last_tuned_seed"], 40);
-  EXPECT_EQ(json["min_pairs"], 6);
+  EXPECT_EQ(json["min_pairs"], 12);
+  EXPECT_EQ(json["significance"], 0.05);
   EXPECT_EQ(json["held_fraction"], 0.9);
   EXPECT_EQ(json["contact_radius_m"], 0.005);
   EXPECT_EQ(json["skipped"], Json({{{"name", "absent"}, {"why", "no <recording>"}}}));
-  EXPECT_EQ(json["methods"][0], Json({{"name", "one"},
-                                      {"title", "the first"},
-                                      {"scenes_held", 2},
-                                      {"scenes_best", 1},
-                                      {"scenes_worst", 0},
-                                      {"mean_success", (10. / 11 + 19. / 20) / 2}}));
+  const Json& first = json["methods"][0];
+  EXPECT_EQ(first["name"], "one");
+  EXPECT_EQ(first["title"], "the first");
+  EXPECT_EQ(first["scenes_held"], 2);
+  EXPECT_EQ(first["scenes_best"], 1);
+  EXPECT_EQ(first["scenes_worst"], 0);
+  EXPECT_NEAR(first["success"]["mean"].get<double>(), (19. / 20 + 39. / 40) / 2, 1e-15);
+  EXPECT_EQ(first["success"]["runs"], 2);
+  EXPECT_EQ(first["noise_free"]["mean"], 1);
+  EXPECT_EQ(first["old_success"]["mean"], 1);
+  EXPECT_EQ(json["behind"], nullptr);  // the project's own method is not in it
   EXPECT_EQ(json["methods"][1]["scenes_worst"], 1);
 }
 
@@ -161,13 +175,17 @@ TEST(ScorecardReport, HasSuccessesWithIntervalsMarksAndFailures) {
   const Scorecard card = two_scenes();
   const Json json = json_of(report_of(card)), &one = json["scenes"][0]["success"][0],
              &two = json["scenes"][0]["success"][1];
-  const Proportion& noisy = card.scenes[0].success[0][1];
+  const Proportion& noisy = card.scenes[0].success[0].at_level[1];
   EXPECT_EQ(one["levels"][0]["successes"], 1);
   EXPECT_EQ(one["levels"][0]["runs"], 1);
   EXPECT_EQ(
       one["levels"][1],
-      Json({{"successes", 9}, {"runs", 10}, {"fraction", 0.9}, {"low", noisy.low}, {"high", noisy.high}}));
-  EXPECT_EQ(one["overall"]["runs"], 11);
+      Json({{"successes", 19}, {"runs", 20}, {"fraction", 0.95}, {"low", noisy.low}, {"high", noisy.high}}));
+  EXPECT_EQ(one["overall"], one["levels"][1]);
+  EXPECT_EQ(one["noise_free"], one["levels"][0]);
+  EXPECT_EQ(one["old"]["overall"]["successes"], 20);
+  EXPECT_EQ(json["scenes"][1]["success"][0]["old"], nullptr);
+  EXPECT_EQ(json["scenes"][1]["success"][0]["noise_free"], nullptr);
   EXPECT_EQ(one["mark"], "best");
   EXPECT_EQ(one["failure"], nullptr);
   EXPECT_EQ(two["levels"][1]["successes"], 0);
@@ -187,11 +205,31 @@ TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
   EXPECT_EQ(measure["better"], "larger");
   const Json& one = measure["methods"][0];
   EXPECT_EQ(one["overall"]["mean"], card.scenes[0].measures[0].ranking.mean[0].mean);
-  EXPECT_EQ(one["overall"]["runs"], 10);
+  EXPECT_EQ(one["overall"]["runs"], 19);
   EXPECT_EQ(one["levels"][1]["low"], card.scenes[0].measures[0].at_level[0][1].low);
   EXPECT_EQ(one["levels"][0]["low"], nullptr);                     // one run has no interval
   EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // nor who never succeeds a mean
   EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);
+}
+
+// What the project's own method is behind in comes from weaknesses().
+TEST(ScorecardReport, SaysWhereTheOwnMethodIsBehind) {
+  Scorecard card = two_scenes();
+  card.methods[1] = kOwnMethod;
+  const Json behind = json_of(report_of(card))["behind"];
+  EXPECT_EQ(behind["method"], kOwnMethod);
+  ASSERT_EQ(behind["list"].size(), 2u);
+  const Json& first = behind["list"][0];
+  EXPECT_EQ(first["scene"], "flat <&>");
+  EXPECT_EQ(first["what"], "success");
+  EXPECT_EQ(first["other"], "one");
+  EXPECT_EQ(first["ahead"], 1);
+  EXPECT_EQ(first["own_mean"], 0);
+  EXPECT_EQ(first["other_mean"], 0.95);
+  EXPECT_EQ(first["shown"], true);
+  EXPECT_LT(first["p"], 0.05);
+  EXPECT_EQ(behind["list"][1]["what"], "success without noise");
+  EXPECT_EQ(behind["list"][1]["p"], nullptr);
 }
 
 TEST(ScorecardReport, AMeasureThatIsNotJudgedHasNoMark) {
@@ -228,7 +266,7 @@ TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
   rules.measures = {{"energy_injected", Better::reported}, {"mean_energy_per_update", Better::reported}};
   ScorecardReport report = report_of(two_scenes());
   EXPECT_EQ(json_of(report)["audit"], nullptr);
-  report.audit = Scorecard{{"law"}, {"a law"}, {score(rules, {sweep}, false, 1)}};
+  report.audit = Scorecard{{"law"}, {"a law"}, {score(rules, {sweep}, false)}};
   const Json audit = json_of(report)["audit"], &law = audit["laws"][0], &levels = law["levels"];
   EXPECT_EQ(audit["noise_sigma_m"], Json({0.001, 0.005}));
   EXPECT_EQ(law["name"], "law");

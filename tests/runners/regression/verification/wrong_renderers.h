@@ -8,6 +8,7 @@
 #include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
 #include "runners/experiment/factory.h"
+#include "runners/experiment/renderer_contacts.h"
 
 namespace remote_touch {
 

@@ -1,0 +1,79 @@
+#include "analysis/measures/settled_contact_measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/measures/no_value.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Times are rounded: a settling of 100 ticks is not 101.
+constexpr double kSameTime_s = 5e-7;
+
+// Calls act(i) for every settled tick.
+template <class Act>
+void for_each_settled(const Trace& trace, Act&& act) {
+  double below_since_s = kNoValue;
+  for (std::size_t i = 0; i < trace.contact.size(); ++i) {
+    if (!(trace.contact[i].hip_distance_m < 0)) {  // NaN too: the truth is not known there
+      below_since_s = kNoValue;
+      continue;
+    }
+    if (std::isnan(below_since_s)) below_since_s = trace.time_s[i];
+    if (trace.time_s[i] - below_since_s >= kSettling_s - kSameTime_s) act(i);
+  }
+}
+
+// The maximum of value(height) over the settled ticks with a known truth.
+template <class Value>
+double max_of_heights(const Trace& trace, Value&& value) {
+  double max = kNoValue;
+  for_each_settled(trace, [&](std::size_t i) {
+    const double height = trace.contact[i].height_m;
+    if (!std::isnan(height)) max = std::fmax(max, value(height));  // NaN loses
+  });
+  return max;
+}
+
+// Of the settled ticks, the fraction for which the condition on the tick's number holds.
+template <class Condition>
+double settled_fraction(const Trace& trace, Condition&& holds) {
+  double count = 0, all = 0;
+  for_each_settled(trace, [&](std::size_t i) { count += holds(i) ? 1 : 0, ++all; });
+  return all == 0 ? kNoValue : count / all;
+}
+
+}  // namespace
+
+double max_contact_error_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::abs(height); });
+}
+
+double max_sink_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::max(0.0, -height); });
+}
+
+double max_float_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::max(0.0, height); });
+}
+
+double rms_contact_error_m(const Trace& trace) {
+  double squares = 0, count = 0;
+  for_each_settled(trace, [&](std::size_t i) {
+    const double height = trace.contact[i].height_m;
+    if (!std::isnan(height)) squares += height * height, ++count;
+  });
+  return count == 0 ? kNoValue : std::sqrt(squares / count);
+}
+
+double contact_force_fraction(const Trace& trace) {
+  return settled_fraction(trace, [&](std::size_t i) { return !trace.force_N[i].isZero(0); });
+}
+
+double contact_known_fraction(const Trace& trace) {
+  return settled_fraction(trace, [&](std::size_t i) { return !std::isnan(trace.contact[i].height_m); });
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,191 @@
+#include "analysis/scorecard/card_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+namespace remote_touch {
+
+namespace {
+
+// Of a mean: rounding, and what no reader would call a change.
+constexpr double kSlack = 1e-3;
+
+using Texts = std::vector<std::string>;
+using Counts = std::vector<std::int32_t>;
+using Numbers = std::vector<double>;
+
+Column column_of(const char* name, const char* units, const char* meaning, Values values) {
+  return {name, units, meaning, std::move(values), 1, {}};
+}
+
+// The columns scene, method and noise_sigma.
+template <class Row>
+std::vector<Column> places(const std::vector<Row>& rows) {
+  Texts scene, method;
+  Numbers noise;
+  for (const Row& row : rows) {
+    scene.push_back(row.place.scene), method.push_back(row.place.method);
+    noise.push_back(row.place.noise_m);
+  }
+  return {column_of("scene", "1", "scene", scene), column_of("method", "1", "method", method),
+          column_of("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise)};
+}
+
+// A column of that type, as long as the table's first.
+template <class List>
+const List& values_of(const Table& table, const std::string& name) {
+  for (const Column& column : table.columns) {
+    if (column.name != name) continue;
+    const auto* values = std::get_if<List>(&column.values);
+    if (values && values->size() == table.columns.front().length()) return *values;
+    break;
+  }
+  throw std::out_of_range("table " + table.name + " has no usable column " + name);
+}
+
+CardPlace place_in(const Table& table, std::size_t row) {
+  return {values_of<Texts>(table, "scene")[row], values_of<Texts>(table, "method")[row],
+          values_of<Numbers>(table, "noise_sigma")[row]};
+}
+
+// Ordered; noise that is no number is the scene's own, which stands before all.
+std::tuple<std::string, std::string, double> key_of(const CardPlace& place) {
+  return {place.scene, place.method, std::isnan(place.noise_m) ? -1 : place.noise_m};
+}
+
+std::string words(const CardPlace& place) {
+  if (std::isnan(place.noise_m)) return place.scene + ", " + place.method + ", own noise";
+  char noise[40];
+  std::snprintf(noise, sizeof noise, ", noise %g mm", 1e3 * place.noise_m);
+  return place.scene + ", " + place.method + noise;
+}
+
+std::string sentence(const CardPlace& place, const char* format, auto... numbers) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, numbers...);
+  return words(place) + ": " + text;
+}
+
+void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std::vector<std::string>& list) {
+  const Proportion &a = then.successes, &b = now.successes;
+  if (b.runs > 0 && b.fraction >= a.low && b.fraction <= a.high) return;
+  list.push_back(sentence(now.place, "%d of %d runs succeed, stored %d of %d (%.3g to %.3g)", b.events,
+                          b.runs, a.events, a.runs, a.low, a.high));
+}
+
+void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::vector<std::string>& list) {
+  const MeanDifference &a = then.value, &b = now.value;
+  if (std::isnan(a.mean)) return;  // nothing was stored to compare with: the counts tell
+  const std::string what = now.measure + (now.units == "1" ? "" : " in " + now.units);
+  const double slack = kSlack * std::abs(a.mean);
+  const double low = (std::isnan(a.low) ? a.mean : a.low) - slack;
+  const double high = (std::isnan(a.high) ? a.mean : a.high) + slack;
+  if (b.mean >= low && b.mean <= high) return;
+  if (std::isnan(b.mean))
+    list.push_back(sentence(now.place, "%s has no number, stored %.6g", what.c_str(), a.mean));
+  else
+    list.push_back(sentence(now.place, "%s is %.6g, stored %.6g (%.6g to %.6g)", what.c_str(), b.mean, a.mean,
+                            low, high));
+}
+
+}  // namespace
+
+CardNumbers numbers_of(const Scorecard& card) {
+  CardNumbers numbers;
+  for (const SceneScore& scene : card.scenes)
+    for (std::size_t c = 0; c < card.methods.size(); ++c)
+      for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
+        const CardPlace place{scene.name, card.methods[c], scene.noise_m[i]};
+        numbers.counts.push_back({place, scene.success[c].at_level[i]});
+        for (const JudgedMeasure& measure : scene.measures)
+          if (measure.better != Better::reported)
+            numbers.means.push_back({place, measure.name, measure.units, measure.at_level[c][i]});
+      }
+  return numbers;
+}
+
+Table counts_table(const CardNumbers& numbers) {
+  Counts events, runs;
+  Numbers fraction, low, high;
+  for (const auto& row : numbers.counts) {
+    events.push_back(row.successes.events), runs.push_back(row.successes.runs);
+    fraction.push_back(row.successes.fraction);
+    low.push_back(row.successes.low), high.push_back(row.successes.high);
+  }
+  Table table{"success", "fractions of successful runs with Wilson's 95 % interval", places(numbers.counts)};
+  table.columns.push_back(column_of("successes", "1", "successful runs", events));
+  table.columns.push_back(column_of(
+      "runs", "1", "runs; those that are one and the same run, as without noise, count once", runs));
+  table.add("fraction", "1", "fraction of successful runs", fraction);
+  table.add("low", "1", "lower end of the interval", low);
+  table.add("high", "1", "upper end of the interval", high);
+  return table;
+}
+
+Table means_table(const CardNumbers& numbers) {
+  Texts measure, units;
+  Counts runs;
+  Numbers mean, low, high;
+  for (const auto& row : numbers.means) {
+    measure.push_back(row.measure), units.push_back(row.units);
+    runs.push_back(static_cast<std::int32_t>(row.value.pairs));
+    mean.push_back(row.value.mean), low.push_back(row.value.low), high.push_back(row.value.high);
+  }
+  Table table{"measures", "means over the successful runs with Student's 95 % interval",
+              places(numbers.means)};
+  table.columns.push_back(column_of("measure", "1", "measure", measure));
+  table.columns.push_back(column_of("units", "1", "unit of the measure", units));
+  table.columns.push_back(column_of("runs", "1", "runs that have a number", runs));
+  table.add("mean", "1", "mean, in the measure's unit", mean);
+  table.add("low", "1", "lower end of the interval", low);
+  table.add("high", "1", "upper end of the interval", high);
+  return table;
+}
+
+CardNumbers numbers_in(const Table& counts, const Table& means) {
+  CardNumbers numbers;
+  const auto number = [](const Table& table, const char* name, std::size_t row) {
+    return values_of<Numbers>(table, name)[row];
+  };
+  for (std::size_t i = 0; i < values_of<Texts>(counts, "scene").size(); ++i)
+    numbers.counts.push_back(
+        {place_in(counts, i),
+         {values_of<Counts>(counts, "successes")[i], values_of<Counts>(counts, "runs")[i],
+          number(counts, "fraction", i), number(counts, "low", i), number(counts, "high", i)}});
+  for (std::size_t i = 0; i < values_of<Texts>(means, "scene").size(); ++i)
+    numbers.means.push_back({place_in(means, i),
+                             values_of<Texts>(means, "measure")[i],
+                             values_of<Texts>(means, "units")[i],
+                             {values_of<Counts>(means, "runs")[i], number(means, "mean", i),
+                              number(means, "low", i), number(means, "high", i)}});
+  return numbers;
+}
+
+std::vector<std::string> differences(const CardNumbers& stored, const CardNumbers& now) {
+  std::map<decltype(key_of({})), const CardNumbers::Count*> counts;
+  std::map<std::pair<decltype(key_of({})), std::string>, const CardNumbers::Mean*> means;
+  for (const auto& row : stored.counts) counts[key_of(row.place)] = &row;
+  for (const auto& row : stored.means) means[{key_of(row.place), row.measure}] = &row;
+  std::vector<std::string> list;
+  for (const auto& row : now.counts) {
+    const auto found = counts.find(key_of(row.place));
+    if (found == counts.end())
+      list.push_back(words(row.place) + ": its successes are not in the stored card");
+    else
+      compare(*found->second, row, list);
+  }
+  for (const auto& row : now.means) {
+    const auto found = means.find({key_of(row.place), row.measure});
+    if (found == means.end())
+      list.push_back(words(row.place) + ": " + row.measure + " is not in the stored card");
+    else
+      compare(*found->second, row, list);
+  }
+  return list;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,107 @@
+#include "analysis/scorecard/overview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/statistics/paired_bootstrap.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kUntested = std::numeric_limits<double>::quiet_NaN();
+
+MeanDifference mean_over_scenes(const std::vector<double>& fractions) {
+  constexpr std::uint64_t kBootstrapKey = 1;
+  return bootstrap_mean({fractions}, kBootstrapKey);
+}
+
+// Others that are better by more than chance; of several the first in the order.
+void add_shown(const SceneScore& scene, const std::string& what, const std::string& units,
+               const Ranking& ranking, const Scorecard& card, std::size_t own, std::vector<Weakness>& list) {
+  if (ranking.against.empty()) return;
+  Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].mean, 0, 0, true};
+  for (const std::size_t c : ranking.order) {
+    if (!ranking.against[c][own].shows_better()) continue;
+    if (found.ahead++ > 0) continue;
+    found.other = card.methods[c], found.other_mean = ranking.mean[c].mean;
+    found.p = ranking.against[c][own].p;
+  }
+  if (found.ahead > 0) list.push_back(found);
+}
+
+// Others with a larger fraction, from what fraction(method) gives; the largest of them.
+template <class Fraction>
+Weakness more_often(const SceneScore& scene, const char* what, const Scorecard& card, std::size_t own,
+                    Fraction&& fraction) {
+  Weakness found{scene.name, what, "1", {}, 0, fraction(own), fraction(own), kUntested, false};
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    if (!(fraction(c) > fraction(own))) continue;
+    ++found.ahead;
+    if (fraction(c) > found.other_mean) found.other = card.methods[c], found.other_mean = fraction(c);
+  }
+  return found;
+}
+
+void add_not_shown(const SceneScore& scene, const Scorecard& card, std::size_t own,
+                   std::vector<Weakness>& list) {
+  Weakness noisy =
+      more_often(scene, "success", card, own, [&](std::size_t c) { return scene.success[c].noisy.fraction; });
+  const auto& against = scene.ranking.against;
+  const auto is_shown = [&](std::size_t c) { return !against.empty() && against[c][own].shows_better(); };
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    if (is_shown(c)) noisy.ahead = 0;  // it is in the list already
+    if (card.methods[c] == noisy.other && !against.empty()) noisy.p = against[c][own].p;
+  }
+  if (noisy.ahead > 0) list.push_back(noisy);
+  if (!scene.success[own].noise_free) return;
+  const Weakness quiet = more_often(scene, "success without noise", card, own,
+                                    [&](std::size_t c) { return scene.success[c].noise_free->fraction; });
+  if (quiet.ahead > 0) list.push_back(quiet);
+}
+
+}  // namespace
+
+Mark mark_of(const Ranking& ranking, std::size_t method) {
+  if (ranking.order.empty()) return Mark::none;
+  if (ranking.has_best && ranking.order.front() == method) return Mark::best;
+  if (ranking.has_worst && ranking.order[ranking.ranked - 1] == method) return Mark::worst;
+  return Mark::none;
+}
+
+std::vector<MethodSummary> overview(const Scorecard& card) {
+  std::vector<MethodSummary> methods(card.methods.size());
+  for (std::size_t c = 0; c < methods.size(); ++c) {
+    MethodSummary& method = methods[c];
+    std::vector<double> noisy, noise_free, old;
+    for (const SceneScore& scene : card.scenes) {
+      const Mark mark = mark_of(scene.ranking, c);
+      method.held += scene.success[c].noisy.fraction > kHeldFraction;
+      method.best += mark == Mark::best, method.worst += mark == Mark::worst;
+      noisy.push_back(scene.success[c].noisy.fraction);
+      if (const auto& quiet = scene.success[c].noise_free) noise_free.push_back(quiet->fraction);
+      if (!scene.old_success.empty()) old.push_back(scene.old_success[c].noisy.fraction);
+    }
+    method.success = mean_over_scenes(noisy);
+    method.noise_free = mean_over_scenes(noise_free);
+    method.old_success = mean_over_scenes(old);
+  }
+  return methods;
+}
+
+std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method) {
+  const auto found = std::find(card.methods.begin(), card.methods.end(), method);
+  if (found == card.methods.end()) return {};
+  const auto own = static_cast<std::size_t>(found - card.methods.begin());
+  std::vector<Weakness> list;
+  for (const SceneScore& scene : card.scenes) {
+    add_shown(scene, "success", "1", scene.ranking, card, own, list);
+    for (const JudgedMeasure& measure : scene.measures)
+      add_shown(scene, measure.name, measure.units, measure.ranking, card, own, list);
+  }
+  for (const SceneScore& scene : card.scenes) add_not_shown(scene, card, own, list);
+  return list;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,44 @@
+// What a scorecard says of its methods over all scenes, and where one of them is behind others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/scorecard/scorecard.h"
+
+namespace remote_touch {
+
+enum class Mark { none, best, worst };
+Mark mark_of(const Ranking& ranking, std::size_t method);
+
+// A scene counts as held where more than this share of the runs are successes.
+inline constexpr double kHeldFraction = 0.9;
+
+// Of one method over all scenes.
+struct MethodSummary {
+  int held = 0, best = 0, worst = 0;  // scenes
+  // Mean over the scenes of the fraction of successes, with an interval of the percentile bootstrap over
+  // scenes: as if they were drawn from all scenes that there could be. Of runs with noise, of those without,
+  // and of runs with noise by the rule before. `pairs` is the number of scenes.
+  MeanDifference success, noise_free, old_success;
+};
+std::vector<MethodSummary> overview(const Scorecard& card);
+
+// The method of this project whose weaknesses are shown first.
+inline constexpr const char* kOwnMethod = "tracked-sheet";
+
+// Something in which a method is behind another one.
+struct Weakness {
+  std::string scene, what, units;  // "success", "success without noise", or a measure
+  std::string other;               // the first of those that are ahead of it
+  int ahead = 0;                   // how many are
+  double own_mean = 0, other_mean = 0;
+  double p = 0;           // corrected for all comparisons of the card; NaN: not tested, as runs without noise
+  bool is_shown = false;  // by more than chance
+};
+// Everything in which others are better than the method by more than chance, then the scenes in which others
+// succeed more often, but not by more than chance, or without noise. Each by the order of scenes. Empty for a
+// method that the card does not have.
+std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method);
+
+}  // namespace remote_touch

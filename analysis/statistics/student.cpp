@@ -1,0 +1,109 @@
+#include "analysis/statistics/student.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace remote_touch {
+
+namespace {
+
+struct Moments {
+  double count = 0, mean = 0, variance = 0, third = 0;  // third: mean of the cubes, not of count - 1
+};
+
+Moments moments_of(const std::vector<double>& values) {
+  Moments m;
+  double sum = 0, squares = 0, cubes = 0;
+  for (const double value : values)
+    if (!std::isnan(value)) sum += value, ++m.count;
+  if (m.count == 0) return m;
+  m.mean = sum / m.count;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    const double d = value - m.mean;
+    squares += d * d, cubes += d * d * d;
+  }
+  if (m.count > 1) m.variance = squares / (m.count - 1);
+  m.third = cubes / m.count;
+  return m;
+}
+
+// Hall's transformation, which grows with the mean whatever the skewness.
+double hall_t(const Moments& m) {
+  const double sd = std::sqrt(m.variance), u = m.mean / sd, skewness = m.third / (m.variance * sd);
+  const double y = skewness * u;
+  return std::sqrt(m.count) * (u * (1 + y / 3 + y * y / 27) + skewness / (6 * m.count));
+}
+
+// Numbers of each group without NaNs; those alone in theirs together at the front.
+std::vector<std::vector<double>> with_lone_numbers_together(const std::vector<std::vector<double>>& groups,
+                                                            const std::vector<bool>& certain) {
+  std::vector<std::vector<double>> known(1);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    std::vector<double> numbers;
+    std::copy_if(groups[i].begin(), groups[i].end(), std::back_inserter(numbers),
+                 [](double value) { return !std::isnan(value); });
+    if (numbers.size() == 1 && !(i < certain.size() && certain[i]))
+      known.front().push_back(numbers.front());
+    else
+      known.push_back(numbers);
+  }
+  return known;
+}
+
+}  // namespace
+
+double student_two_sided(double t, int degrees) {
+  const double angle = std::atan(std::abs(t) / std::sqrt(static_cast<double>(degrees)));
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const bool is_odd = degrees % 2 == 1;
+  double term = is_odd ? cosine : 1, sum = degrees == 1 ? 0 : term;
+  for (int k = is_odd ? 3 : 2; k <= degrees - 2; k += 2) term *= cosine * cosine * (k - 1) / k, sum += term;
+  const double within = is_odd ? 2 / std::numbers::pi * (angle + sine * sum) : sine * sum;
+  return std::clamp(1 - within, 0.0, 1.0);
+}
+
+double student_quantile(double probability, int degrees) {
+  double low = 0, high = 1;
+  while (high < 1e12 && student_two_sided(high, degrees) > probability) high *= 2;
+  for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
+    (student_two_sided(middle, degrees) > probability ? low : high) = middle;
+  return high;
+}
+
+MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
+                            const std::vector<bool>& certain) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  MeanDifference result{0, kNone, kNone, kNone};
+  double all = 0, sum = 0, scatter = 0, squares = 0;
+  bool has_scatter = false;
+  for (const auto& group : with_lone_numbers_together(groups, certain)) {
+    const Moments m = moments_of(group);
+    all += m.count, sum += m.count * m.mean;
+    if (m.count < 2) continue;
+    const double part = m.count * m.variance;
+    scatter += part, squares += part * part / (m.count - 1), has_scatter = true;
+  }
+  result.pairs = static_cast<std::int64_t>(all);
+  if (all > 0) result.mean = sum / all;
+  if (!has_scatter) return result;
+  const int degrees = scatter > 0 ? std::max(1, static_cast<int>(scatter * scatter / squares)) : 1;
+  const double half = scatter > 0 ? student_quantile(0.05, degrees) * std::sqrt(scatter) / all : 0;
+  result.low = result.mean - half, result.high = result.mean + half;
+  return result;
+}
+
+double mean_test(const std::vector<double>& differences) {
+  const Moments m = moments_of(differences);
+  if (m.count < 2 || m.mean == 0) return 1;
+  const double least = std::exp2(1 - m.count);
+  if (!(m.variance > 0)) return least;
+  const int degrees = static_cast<int>(m.count) - 1;
+  const double t = m.mean * std::sqrt(m.count / m.variance), corrected = hall_t(m);
+  if (!(t * corrected > 0)) return 1;
+  return std::max(least, student_two_sided(std::min(std::abs(t), std::abs(corrected)), degrees));
+}
+
+}  // namespace remote_touch

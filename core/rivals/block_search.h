@@ -1,0 +1,36 @@
+// A neighbour search over points in the order of their numbers, in blocks with bounding boxes. It is filled
+// again and again without allocating. Points with neighbouring numbers should be near each other, as in an
+// image or a grid.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/bounding_box.h"
+#include "core/search/neighbour_search.h"
+
+namespace remote_touch {
+
+class BlockSearch final : public NeighbourSearch {
+ public:
+  void reserve(std::size_t points);
+  // So many points, none of which is measured. Keeps its memory.
+  void clear(std::size_t points, int columns, bool with_stiffness);
+  void set(std::size_t number, const Vec3& p_W) {
+    x_[number] = p_W.x(), y_[number] = p_W.y(), z_[number] = p_W.z();
+  }
+  void set_stiffness(std::size_t number, double N_per_m) { stiffness_[number] = N_per_m; }
+  // To be called after the last set().
+  void finish();
+
+  void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
+  std::size_t size() const override { return x_.size(); }
+  bool has_stiffness() const override { return !stiffness_.empty(); }
+  int organised_columns() const override { return columns_; }
+
+ private:
+  std::vector<double> x_, y_, z_, stiffness_;
+  std::vector<BoundingBox> boxes_;
+  int columns_ = 0;
+};
+
+}  // namespace remote_touch

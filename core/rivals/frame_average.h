@@ -1,0 +1,69 @@
+// Averages of each point over the last frames, the cheap way to less noise that sensors and programs offer. A
+// point is followed by its number: the pixel of an image, or the node of a synthetic grid. So a surface that
+// moves drags its old positions behind it.
+//
+//   exponential  the temporal filter of common depth cameras, from the public description of its settings
+//                (librealsense): along the ray, d_j' = alpha d_j + (1 - alpha) d_{j-1}', but d_j where both
+//                differ by step_threshold_m or more; a point that is missing keeps its last place while it
+//                was measured in persistence_hits of the last persistence_frames frames
+//   mean         the mean place over the frames of the last mean_frames in which it was measured, the newest
+//                being one of them
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/parameters/parameter.h"
+#include "core/rivals/block_search.h"
+#include "core/rivals/point_normals.h"
+
+namespace remote_touch {
+
+enum class AverageRule { exponential, mean };
+
+struct FrameAverageSettings {
+  AverageRule rule = AverageRule::exponential;
+  double alpha = 0.4;
+  double step_threshold_m = 0.02;
+  int persistence_hits = 2, persistence_frames = 4;
+  int mean_frames = 4;
+  Vec3 view_direction{0, -1, 0};
+};
+
+Parameters parameters(FrameAverageSettings& s);
+// Describes the first invalid combination of settings in one line; empty if there is none.
+std::string validate(const FrameAverageSettings& s);
+
+class FrameAverage {
+ public:
+  FrameAverage(const FrameAverageSettings& settings, const Kernels& kernels);
+  void reserve(std::size_t points);
+  // The averaged points of a stream that goes on with this frame; valid until the next call but one. A frame
+  // of another size begins anew, but one without points counts as one in which all are missing. Allocates
+  // only for a frame larger than reserved. Regions r_f are not taken over.
+  std::shared_ptr<const NeighbourSearch> next(const NeighbourSearch& points);
+
+ private:
+  static constexpr int kMaxFrames = 16;
+  void begin(std::size_t points);
+  void take(const NeighbourSearch& points);
+  Vec3 exponential(std::size_t number, const ViewPoint& view);
+  Vec3 mean(std::size_t number) const;
+  const Vec3& latest(std::size_t number) const { return history_[newest_][number]; }
+
+  const FrameAverageSettings s_;
+  const Kernels& kernels_;
+  GatheredPoints all_;
+  // What was measured in the last frames, NaN where nothing was; as many are used as the rule needs.
+  std::array<std::vector<Vec3>, kMaxFrames> history_;
+  int newest_ = 0;
+  std::vector<Vec3> smooth_;         // of the exponential rule
+  std::vector<std::uint32_t> seen_;  // in which of the last frames it was measured, one bit each
+  std::array<std::shared_ptr<BlockSearch>, 2> shown_;
+  int shown_last_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,79 @@
+#include "core/rivals/nearest_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kMaxRadius_m = 0.5;
+// Squares of equal distances differ by rounding.
+constexpr double kSameDistance = 1 + 1e-9;
+constexpr std::size_t kMaxSample = 20000;
+constexpr int kNeighbours = 3;
+
+}  // namespace
+
+void NearestPoints::reserve(std::size_t points) {
+  near_.reserve(points, true, true);
+  squared_.grow(points), sorted_.grow(points);
+}
+
+Vec3 NearestPoints::offset(std::size_t i) const {
+  const PointsView view = near_.view();
+  return Vec3(view.x[i], view.y[i], view.z[i]) - p_W_;
+}
+
+// The points in a ball around the place. Returns how many: the list has more where regions reach into it.
+std::size_t NearestPoints::gather(const NeighbourSearch& points, double radius) {
+  near_.clear();
+  points.gather({p_W_, radius}, kernels_, near_);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    sorted_[i] = squared_[i] = offset(i).squaredNorm();
+    if (squared_[i] <= radius * radius) ++inside;
+  }
+  return inside;
+}
+
+// A ball that holds enough points holds the nearest ones, however large it is: its radius costs time only.
+double NearestPoints::find(const NeighbourSearch& points, const Vec3& p_W, int count) {
+  reserve(points.size());
+  p_W_ = p_W;
+  const auto wanted = static_cast<std::size_t>(count);
+  double radius = radius_m_;
+  while (gather(points, radius) < wanted && radius < kMaxRadius_m) radius *= 2;
+  const std::size_t found = near_.size(), last = std::min(wanted, found);
+  if (found == 0) return limit_ = 0;
+  std::nth_element(sorted_.data(), sorted_.data() + (last - 1), sorted_.data() + found);
+  limit_ = sorted_[last - 1] * kSameDistance;
+  const double distance = std::sqrt(sorted_[last - 1]);
+  if (found >= wanted && distance > 0) radius_m_ = std::min(1.5 * distance, kMaxRadius_m);
+  return distance;
+}
+
+// Sums whole nanometres, so that the order does not matter.
+double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
+                      PointCloud& buffer) {
+  constexpr double kUnit_m = 1e-9;
+  const PointCloud& cloud = points.every_point(kernels, buffer);
+  const std::size_t stride = cloud.size() / kMaxSample + 1;
+  std::int64_t sum = 0, terms = 0;
+  for (std::size_t i = 0; i < cloud.size(); i += stride) {
+    if (!cloud.is_measured(i)) continue;
+    const double farthest = nearest.find(points, cloud.point(i), kNeighbours + 1);
+    if (!(farthest > 0)) continue;
+    double distances = 0;
+    int others = 0;
+    nearest.for_each([&](const Vec3& e) { distances += std::round(e.norm() / kUnit_m), ++others; });
+    if (others <= kNeighbours) continue;
+    // Of more than three at the same last distance only three count.
+    distances -= (others - 1 - kNeighbours) * std::round(farthest / kUnit_m);
+    sum += static_cast<std::int64_t>(distances), terms += kNeighbours;
+  }
+  return terms > 0 ? kUnit_m * static_cast<double>(sum) / static_cast<double>(terms) : 0;
+}
+
+}  // namespace remote_touch

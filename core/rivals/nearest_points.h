@@ -1,0 +1,46 @@
+// The nearest neighbours of a place in a frame: what methods that adapt to the density of the points need.
+#pragma once
+
+#include "core/geometry/vector.h"
+#include "core/kernels/kernels.h"
+#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
+
+namespace remote_touch {
+
+class NearestPoints {
+ public:
+  explicit NearestPoints(const Kernels& kernels) : kernels_(kernels) {}
+
+  // Allocates for clouds of so many points.
+  void reserve(std::size_t points);
+  // Finds the `count` points nearest to p, p itself included if it is one, or all within 0.5 m if there are
+  // fewer. The same set for every order of the points: those as far away as the last one belong to it too.
+  // Returns the distance of the last one; 0 without points. Allocates only for a cloud larger than reserved.
+  double find(const NeighbourSearch& points, const Vec3& p_W, int count);
+  // The set found last. points: of the last find(). Calls act(x - p) for each.
+  template <class Act>
+  void for_each(const Act& act) const {
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      if (squared_[i] <= limit_) act(Vec3(offset(i)));
+  }
+
+ private:
+  Vec3 offset(std::size_t i) const;
+  std::size_t gather(const NeighbourSearch& points, double radius);
+
+  const Kernels& kernels_;
+  GatheredPoints near_;
+  Buffer<double> squared_, sorted_;
+  Vec3 p_W_ = Vec3::Zero();
+  double limit_ = 0;         // squared distance of the last one
+  double radius_m_ = 0.004;  // of the first ball: what was enough the last time
+};
+
+// Mean over all points of the mean distance to the three nearest others: the spacing of a square grid without
+// noise. Of clouds larger than 20000 points only every n-th by its number counts. 0 if there are fewer
+// than four points. The same for every order of the points. buffer: for a search without a stored cloud.
+double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, const Kernels& kernels,
+                      PointCloud& buffer);
+
+}  // namespace remote_touch

@@ -1,0 +1,48 @@
+#include "core/rivals/oracle_proxy_renderer.h"
+
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+// The gradient of the distance, unit; zero where there is none.
+Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
+  constexpr double kStep_m = 1e-6;
+  Vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kStep_m * Vec3::Unit(axis);
+    gradient[axis] = truth.signed_distance(p_W + step, time_s) - truth.signed_distance(p_W - step, time_s);
+  }
+  return gradient.allFinite() ? Vec3(gradient.normalized()) : Vec3::Zero();  // 0 stays 0
+}
+
+}  // namespace
+
+Parameters parameters(OracleProxyParameters& p) {
+  Parameters list = parameters(p.proxy);
+  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });  // it is told
+  return list;
+}
+
+SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s) {
+  SurfaceMotion motion;
+  const double moved_m = truth.signed_distance(p_W, before_s) - truth.signed_distance(p_W, now_s);
+  if (!std::isfinite(moved_m) || moved_m == 0) return motion;
+  motion.normal_W = true_normal(truth, p_W, now_s);
+  motion.displacement_m = moved_m * motion.normal_W;
+  motion.velocity_m_per_s = moved_m / (now_s - before_s);
+  return motion;
+}
+
+void OracleProxyRenderer::on_frame(const Frame& frame) {
+  SurfaceMotion motion;
+  if (proxy_.is_newer(frame)) {
+    if (has_frame_ && frame.truth)
+      motion = true_motion(*frame.truth, proxy_.proxy_W(), captured_s_, frame.captured_s);
+    captured_s_ = frame.captured_s, has_frame_ = true;
+  }
+  proxy_.on_frame(frame, motion);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,49 @@
+// ORACLE, no method: the proxy of chapter 4 that is told how the true surface moved. It shows what the proxy
+// would reach with a perfect estimate of the velocity, and what it loses otherwise: the points and their
+// noise are the same. Only a simulation knows the truth (Frame::truth); without it the proxy is that of
+// velocity_estimate = false.
+//
+// At a frame the displacement in (4.3) is that of the true surface since the frame before, along its true
+// normal at the proxy, and v_hat in (4.15) is its mean velocity in that time, of either sign. A frame whose
+// truth is not known at the proxy does not move it.
+#pragma once
+
+#include <string>
+
+#include "core/proxy/proxy_renderer.h"
+
+namespace remote_touch {
+
+struct OracleProxyParameters {
+  ProxyParameters proxy;
+};
+
+Parameters parameters(OracleProxyParameters& p);
+inline std::string validate(const OracleProxyParameters& p) {
+  return validate(p.proxy);
+}
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const OracleProxyParameters& p) {
+  return max_stiffness_N_per_m(p.proxy);
+}
+
+// How the true surface nearest to p moved between two times, along its normal at the second. Nothing moved
+// where that is not known.
+SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s);
+
+class OracleProxyRenderer final : public Renderer {
+ public:
+  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  OracleProxyRenderer(const OracleProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
+      : proxy_(parameters.proxy, haptic_rate_hz, kernels) {}
+  void reserve(std::size_t points) override { proxy_.reserve(points); }
+  void on_frame(const Frame& frame) override;
+  RenderOutput step(const DeviceState& device, double time_s) override { return proxy_.step(device, time_s); }
+
+ private:
+  ProxyRenderer proxy_;
+  double captured_s_ = 0;  // of the newest frame
+  bool has_frame_ = false;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,52 @@
+// A normal for each point of a frame: the axis along which its nearest neighbours are thinnest (principal
+// component analysis), turned towards the sensor. Computed when it is asked for and kept until the next
+// frame.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/vector.h"
+#include "core/rivals/nearest_points.h"
+
+namespace remote_touch {
+
+// Where the sensor is: at a position, or far away, looking along a direction.
+struct ViewPoint {
+  bool has_position = false;
+  Vec3 position_W = Vec3::Zero();
+  Vec3 direction_W{0, -1, 0};
+
+  // From the sensor to p; not of unit length.
+  Vec3 ray_to(const Vec3& p_W) const { return has_position ? Vec3(p_W - position_W) : direction_W; }
+};
+
+// The camera of an organised frame, else the direction.
+ViewPoint view_point(const NeighbourSearch& points, const Vec3& direction_W);
+
+class PointNormals {
+ public:
+  // neighbours: points of a plane, the point itself included; 3 or more.
+  PointNormals(int neighbours, const Kernels& kernels) : neighbours_(neighbours), nearest_(kernels) {}
+
+  void reserve(std::size_t points);
+  // A new frame. Allocates only for one larger than reserved. The points must outlive it.
+  void set_points(const NeighbourSearch& points, const ViewPoint& view);
+  // Unit normal of the point with that number in the frame; zero where the neighbours span no plane. The same
+  // for every order of the points. Allocates nothing.
+  Vec3 of(std::uint32_t number, const Vec3& x_W);
+  NearestPoints& nearest() { return nearest_; }
+
+ private:
+  Vec3 compute(const Vec3& x_W);
+
+  const int neighbours_;
+  NearestPoints nearest_;
+  const NeighbourSearch* points_ = nullptr;
+  ViewPoint view_;
+  std::uint32_t frame_ = 0;  // counts set_points()
+  std::vector<Vec3> normals_;
+  std::vector<std::uint32_t> computed_in_;  // frame_ when the normal was computed
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,174 @@
+#include "core/rivals/surfel_renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "core/rivals/exact_sum.h"
+
+namespace remote_touch {
+
+namespace {
+
+// R in units of the mean distance to the three nearest neighbours; and where a cloud has no four points.
+constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
+// In units of R: longest step of the HIP's way that is looked at, of a tick in the tangent plane, and of a
+// projection; a shorter displacement is none.
+constexpr double kLookStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
+constexpr int kMaxLooks = 64;
+
+PointCloud joined(const std::deque<std::shared_ptr<const NeighbourSearch>>& frames, const Kernels& kernels) {
+  PointCloud all, buffer;
+  for (const auto& frame : frames) {
+    const PointCloud& cloud = frame->every_point(kernels, buffer);
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(all.x, cloud.x), append(all.y, cloud.y), append(all.z, cloud.z);
+    append(all.stiffness_N_per_m, cloud.stiffness_N_per_m);
+  }
+  if (all.stiffness_N_per_m.size() != all.size()) all.stiffness_N_per_m.clear();
+  return all;
+}
+
+}  // namespace
+
+Parameters parameters(SurfelParameters& p) {
+  return {
+      {"support_radius_m", &p.support_radius_m, 0, 1,
+       "R of [84]: points at a larger distance have weight 0; 0: three times the mean distance to the three nearest neighbours in the first frame"},
+      {"weight", choice(p.weight, {"wyvill", "wendland"}), 0, 0,
+       "weight w(q) at the distance q R; wyvill: 1 - 4/9 q^6 + 17/9 q^4 - 22/9 q^2; wendland: (1 - q)^4 (4 q + 1)"},
+      {"normal_neighbours", &p.normal_neighbours, 3, 100,
+       "number of neighbours, the point included, to whose thinnest axis the normal of a point is set"},
+      {"previous_normal_fraction", &p.previous_normal_fraction, 0, 0.99,
+       "weight of the normal of the tick before in the normal of a tick; the new one has the rest"},
+      {"friction", &p.friction, 0, 2,
+       "coefficient of friction: the proxy slides by the tangential distance of the HIP less this times its depth"},
+      {"fused_frames", &p.fused_frames, 1, 4, "number of the newest frames that are joined to one cloud"},
+      {"view", &p.view_direction, -1, 1,
+       "viewing direction of the sensor, to which normals are turned; for images the ray of each pixel is used instead"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy"},
+  };
+}
+
+std::string validate(const SurfelParameters& p) {
+  return p.view_direction.norm() < 0.001 ? "view: expected 0.001 or longer" : "";
+}
+
+SurfelRenderer::SurfelRenderer(const SurfelParameters& parameters, double, const Kernels& kernels)
+    : RivalRenderer(kRadiusWithoutSpacing_m, parameters.stiffness_N_per_m, kernels),
+      p_(parameters),
+      radius_m_(parameters.support_radius_m),
+      normals_(parameters.normal_neighbours, kernels) {}
+
+void SurfelRenderer::reserve(std::size_t points) {
+  RivalRenderer::reserve(points);
+  normals_.reserve(points);
+  gathered_normals_.grow(points + kLanes);
+}
+
+std::shared_ptr<const NeighbourSearch> SurfelRenderer::shown(const Frame& frame) {
+  if (p_.fused_frames == 1) return frame.points;
+  latest_.push_back(frame.points);
+  if (latest_.size() > static_cast<std::size_t>(p_.fused_frames)) latest_.pop_front();
+  return make_search(joined(latest_, kernels_));
+}
+
+bool SurfelRenderer::take(const NeighbourSearch& points) {
+  normals_.set_points(points, view_point(points, p_.view_direction));
+  gathered_normals_.grow(points.size() + kLanes);
+  if (radius_m_ == 0 && points.size() > 0) {
+    radius_m_ = kRadiusInSpacings * mean_spacing_m(points, normals_.nearest(), kernels_, buffer_);
+    if (radius_m_ == 0) radius_m_ = kRadiusWithoutSpacing_m;
+  }
+  return true;
+}
+
+SurfaceSample SurfelRenderer::sample(const Vec3& p_W) {
+  ++samples_;
+  if (radius_m_ == 0) return {};
+  const GatheredPoints& near = near_.within(p_W, radius_m_);
+  PointsView points = near.view();
+  points.radius = nullptr;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    gathered_normals_[i] = normals_.of(near.index()[i], {points.x[i], points.y[i], points.z[i]});
+  const PointSurface surface(SurfaceKind::surfels, p_.weight, radius_m_, 1);
+  return surface.oriented(points, gathered_normals_.data(), sum_grid_for(near.size()), p_W);
+}
+
+void SurfelRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  samples_ = 0;
+  const Vec3 before_W = proxy_W_;
+  if (is_held_) follow(hip_W);
+  if (!is_held_) {
+    approach(hip_W);
+    if (is_held_) follow(hip_W);
+  }
+  out.converged = (proxy_W_ - before_W).norm() <= kSurfelRest * radius_m_;
+  report(hip_W, out);
+}
+
+void SurfelRenderer::release(const Vec3& hip_W) {
+  is_held_ = false;
+  depth_m_ = 0;
+  proxy_W_ = hip_W;
+}
+
+// From where the HIP was to where it is, up to the first place behind the surface. Where nothing is near, to
+// where something is.
+void SurfelRenderer::approach(const Vec3& hip_W) {
+  const double R = radius_m_;
+  for (int look = 1; look <= kMaxLooks; ++look) {
+    const Vec3 u = hip_W - proxy_W_;
+    const double distance = u.norm();
+    double path_length = kLookStride * R;
+    if (path_length < distance && R > 0 && near_.within(proxy_W_, R).size() == 0)
+      path_length += near_.first_hit(proxy_W_, u / distance, R, distance);
+    const bool is_last = !(path_length < distance) || R == 0 || look == kMaxLooks;
+    proxy_W_ = is_last ? hip_W : Vec3(proxy_W_ + path_length / distance * u);
+    const SurfaceSample here = sample(proxy_W_);
+    if (here.supported && here.value < 0) {
+      is_held_ = true;
+      normal_W_ = here.normal();
+    }
+    if (is_held_ || is_last) return;
+  }
+}
+
+// One tick in contact.
+void SurfelRenderer::follow(const Vec3& hip_W) {
+  const double R = radius_m_;
+  const Vec3 u = hip_W - proxy_W_, tangential = u - u.dot(normal_W_) * normal_W_;
+  const double length = tangential.norm(), held_back = p_.friction * std::max(0.0, -u.dot(normal_W_));
+  const double slide = std::min(length - held_back, kMaxSlide * R);
+  const Vec3 to_W = slide > 0 ? Vec3(proxy_W_ + slide / length * tangential) : proxy_W_;
+  const SurfaceSample here = sample(to_W);
+  if (!here.supported) return release(hip_W);
+  const Vec3 blended =
+      p_.previous_normal_fraction * normal_W_ + (1 - p_.previous_normal_fraction) * here.normal();
+  normal_W_ = blended.norm() > 0.1 ? Vec3(blended.normalized()) : here.normal();
+  const double projection = std::clamp(here.value, -kMaxProjection, kMaxProjection);
+  proxy_W_ = to_W - projection * R * normal_W_;
+  depth_m_ = std::max(0.0, (projection - here.value) * R);
+  if (normal_W_.dot(hip_W - proxy_W_) >= depth_m_) release(hip_W);
+}
+
+void SurfelRenderer::report(const Vec3& hip_W, RenderOutput& out) {
+  out.nearest_distance_m = std::numeric_limits<double>::infinity();
+  out.steps = samples_;
+  if (radius_m_ == 0) return;
+  const GatheredPoints& near = near_.within(proxy_W_, radius_m_);
+  PointsView points = near.view();
+  points.radius = nullptr;
+  const double grid = sum_grid_for(near.size());
+  const ContactQuery query = kernels_.proxy.contact_query(
+      points, proxy_W_.data(), {0, radius_m_, radius_m_, grid, p_.stiffness_N_per_m});
+  if (query.nearest <= radius_m_) out.nearest_distance_m = query.nearest;
+  out.contact_count = static_cast<int>(query.touching);
+  if (!is_held_) return;
+  out.state = depth_m_ > 0 ? ContactState::entrenched : ContactState::contact;
+  out.force_N = stiffness_of(query) * (proxy_W_ - hip_W);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,78 @@
+// The surfels of A. Leeper, S. Chan, K. Salisbury, ICRA 2012, [84] of the dissertation, as the authors'
+// program does it (README.md of this folder says what is known of it): every point has a normal of its own,
+// turned towards the sensor, and the surface is f = n . (p - a) = 0 with the weighted means a of the points
+// and n of their normals within R. So f < 0 is behind the surface, wherever the proxy came from.
+//
+//   free      the proxy is the HIP. Contact begins wherever f < 0 on the HIP's way since the last tick, its
+//             end included; so also when a frame put the surface in front of the HIP
+//   contact   per tick one step in the tangent plane towards the HIP, less what friction holds back, and one
+//             projection onto f = 0 of at most R/2
+//   released  when the HIP is outside of the tangent plane, or nothing is within R of the proxy
+//
+// and F = k_s (proxy - HIP). The normal of a tick is blended with that of the tick before. Limits: a cloud
+// that passes the proxy by more than R from one frame to the next is lost, unless the HIP is within R behind
+// it; the back of a sheet pulls the hand through; forbidden regions r_f are ignored.
+//
+// Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
+// f < 0 at the end of a tick.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "core/parameters/parameter.h"
+#include "core/rivals/point_normals.h"
+#include "core/rivals/point_surface.h"
+#include "core/rivals/rival_renderer.h"
+
+namespace remote_touch {
+
+struct SurfelParameters {
+  double support_radius_m = 0.01;  // 0: from the first frame
+  SurfaceWeight weight = SurfaceWeight::wendland;
+  int normal_neighbours = 9;
+  double previous_normal_fraction = 0.4;
+  double friction = 0.2;
+  int fused_frames = 1;
+  Vec3 view_direction{0, -1, 0};
+  double stiffness_N_per_m = 600;
+};
+
+Parameters parameters(SurfelParameters& p);
+// Describes the first invalid combination of settings in one line; empty if there is none.
+std::string validate(const SurfelParameters& p);
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const SurfelParameters& p) {
+  return p.stiffness_N_per_m;
+}
+
+class SurfelRenderer final : public RivalRenderer {
+ public:
+  // pre: validate(parameters) is empty. haptic_rate_hz has no effect: the method does not depend on time.
+  SurfelRenderer(const SurfelParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+  void reserve(std::size_t points) override;
+
+ private:
+  std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) override;
+  bool take(const NeighbourSearch& points) override;
+  void touch(const Vec3& hip_W, RenderOutput& out) override;
+  void reset_motion() override { is_held_ = false; }
+
+  SurfaceSample sample(const Vec3& p_W);
+  void approach(const Vec3& hip_W);
+  void follow(const Vec3& hip_W);
+  void release(const Vec3& hip_W);
+  void report(const Vec3& hip_W, RenderOutput& out);
+
+  const SurfelParameters p_;
+  double radius_m_;  // R; 0 until it is known
+  PointNormals normals_;
+  PointCloud buffer_;
+  Buffer<Vec3> gathered_normals_;
+  std::deque<std::shared_ptr<const NeighbourSearch>> latest_;  // frames to be fused, the newest last
+  bool is_held_ = false;
+  double depth_m_ = 0;  // of the held proxy behind the surface
+  int samples_ = 0;     // of this tick
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,22 @@
+// What the commands of a scorecard share: its folder and its runs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runners/cli/commands.h"
+#include "runners/scorecard/benchmark_run.h"
+
+namespace remote_touch {
+
+// Makes the folder with its subfolders. Throws InputError.
+void make_scorecard_folder(const std::string& folder);
+// Does the runs that are left, with a line of progress. Throws Interrupted.
+void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps);
+// Prints how many runs ended with an error, and the first one; they count as no success. Returns kDone, or
+// kCheckFailed if there are any.
+int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps);
+// Says that the runs are kept. Returns kInterrupted.
+int report_interrupted(const std::string& folder);
+
+}  // namespace remote_touch

@@ -1,0 +1,81 @@
+#include <omp.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "core/parameters/input_error.h"
+#include "runners/cli/commands.h"
+#include "runners/cli/outputs.h"
+#include "runners/cli/scorecard_runs.h"
+#include "runners/provenance/provenance.h"
+#include "runners/scorecard/evaluation.h"
+#include "runners/scorecard/stored_card.h"
+#include "runners/simulation/simulation.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The runs of a plan without the audit, in its folder, and their scores.
+Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan, int threads) {
+  if (threads > 0) omp_set_num_threads(threads);
+  std::vector<BenchmarkSweep> sweeps;
+  for (const ScenePlan& one : plan.scenes) sweeps.insert(sweeps.end(), one.sweeps.begin(), one.sweeps.end());
+  require_same_benchmark(sweeps);
+  make_scorecard_folder(plan.benchmark.folder.string());
+  do_scorecard_runs(line, sweeps);
+  for (const auto& [name, why] : plan.skipped) std::printf("skipped: %s: %s\n", name.c_str(), why.c_str());
+  if (report_failed_runs(sweeps) != kDone) std::printf("runs that failed count as no success\n");
+  return scores_of(plan);
+}
+
+// Those that were asked for, or all that are stored.
+std::vector<std::string> wanted(const std::vector<std::string>& names,
+                                const std::vector<std::string>& stored) {
+  return names.empty() ? stored : names;
+}
+
+void require_folder(const std::string& folder) {
+  if (folder.empty())
+    throw InputError("--output", "is missing: expected a folder for the runs, as of remote-touch scorecard");
+}
+
+}  // namespace
+
+int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest& request) {
+  require_folder(request.folder);
+  const BenchmarkPlan plan = plan_of(
+      {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
+  const FileLock lock = lock_output(line, request.file, {});
+  try {
+    const Scorecard card = scored(line, plan, request.threads);
+    const std::string config = configuration_of(plan);
+    const std::string sum =
+        write_stored_card(request.file, card, provenance(config, "remote-touch scorecard store", ""));
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n", request.file.c_str(), card.scenes.size(),
+                card.methods.size(), sum.c_str());
+    return kDone;
+  } catch (const Interrupted&) {
+    return report_interrupted(request.folder);
+  }
+}
+
+int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest& request) {
+  require_folder(request.folder);
+  const StoredCard stored = read_stored_card(request.file);
+  const BenchmarkPlan plan =
+      plan_of({chosen_methods(wanted(request.methods, stored.methods)),
+               chosen_scenes(wanted(request.scenes, stored.scenes)), stored.replicates, request.folder});
+  try {
+    const Scorecard card = scored(line, plan, request.threads);
+    const std::vector<std::string> list = differences(stored, plan, card);
+    for (const std::string& difference : list) std::printf("differs: %s\n", difference.c_str());
+    std::printf("%s: %zu scenes and %zu methods compared, %zu differences\n", request.file.c_str(),
+                card.scenes.size(), card.methods.size(), list.size());
+    return list.empty() ? kDone : kCheckFailed;
+  } catch (const Interrupted&) {
+    return report_interrupted(request.folder);
+  }
+}
+
+}  // namespace remote_touch

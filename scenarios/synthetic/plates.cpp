@@ -1,0 +1,110 @@
+#include "scenarios/synthetic/plates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace remote_touch {
+
+namespace {
+
+// A row of the list.
+struct PlateColumn {
+  enum { x, y, z, size_x, size_z, velocity_x, velocity_y, from_s, until_s };
+};
+
+}  // namespace
+
+Parameters parameters(Plates::Settings& s) {
+  Parameters list = parameters(s.grid);
+  const Parameters more = {
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
+      {"plates",
+       Rows{{"x_m", "y_m", "z_m", "size_x_m", "size_z_m", "velocity_x", "velocity_y", "from_s", "until_s"},
+            &s.plates},
+       -1000, 1000,
+       "a row for each plate: centre at the start, size along x and z, velocity along x and y in m/s, when it starts and stops to move; the first is the true surface"},
+      {"max_height_m", &s.max_height_m, -1000, 1000,
+       "a plate higher than this is too near to the camera: it gives no points, but hides what is below"},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
+      {"true_motion", &s.true_motion, 0, 1,
+       "true surface: true: as it moves between frames; false: as at the last capture"},
+  };
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
+std::string validate(const Plates::Settings& s) {
+  if (s.plates.empty()) return "plates = []: expected one row or more";
+  for (std::size_t first = 0; first < s.plates.size(); first += Plates::kColumns)
+    if (!(s.plates[first + PlateColumn::size_x] > 0 && s.plates[first + PlateColumn::size_z] > 0))
+      return "plates: row " + std::to_string(first / Plates::kColumns + 1) + ": expected sizes above 0";
+  return "";
+}
+
+Plates::Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
+    : settings_(settings), key_(key), kernels_(kernels) {}
+
+int Plates::frame_count() const {
+  double until = 0;
+  for (std::size_t i = 0; i < plate_count(); ++i) {
+    const double* row = settings_.plates.data() + i * kColumns;
+    if ((row[PlateColumn::velocity_x] != 0 || row[PlateColumn::velocity_y] != 0) &&
+        row[PlateColumn::until_s] > row[PlateColumn::from_s])
+      until = std::max(until, row[PlateColumn::until_s]);
+  }
+  if (settings_.noise_sigma_m > 0) return std::numeric_limits<int>::max();
+  return static_cast<int>(std::ceil(until * settings_.frame_rate_hz)) + 1;
+}
+
+FlatPanel Plates::plate(std::size_t number, double time_s) const {
+  const double* row = settings_.plates.data() + number * kColumns;
+  const double moving_s =
+      std::max(0.0, std::min(time_s, row[PlateColumn::until_s]) - row[PlateColumn::from_s]);
+  FlatPanel panel;
+  panel.centre = {row[PlateColumn::x] + moving_s * row[PlateColumn::velocity_x],
+                  row[PlateColumn::y] + moving_s * row[PlateColumn::velocity_y], row[PlateColumn::z]};
+  panel.half_u_m = 0.5 * row[PlateColumn::size_x], panel.half_v_m = 0.5 * row[PlateColumn::size_z];
+  return panel;
+}
+
+std::shared_ptr<const NeighbourSearch> Plates::points(int frame) const {
+  return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
+}
+
+PointCloud Plates::cloud(int frame) const {
+  std::vector<FlatPanel> panels;
+  for (std::size_t i = 0; i < plate_count(); ++i) panels.push_back(plate(i, captured_s(frame)));
+  const auto highest_over = [&](double px, double pz) {
+    double height = -std::numeric_limits<double>::infinity();
+    for (const FlatPanel& panel : panels)
+      if (std::abs(px - panel.centre.x()) <= panel.half_u_m &&
+          std::abs(pz - panel.centre.z()) <= panel.half_v_m)
+        height = std::max(height, panel.centre.y());
+    return height;
+  };
+  PointCloud cloud;
+  const Grid& grid = settings_.grid;
+  cloud.grid_columns = grid.columns;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const double px = grid.x(column), pz = grid.z(row), height = highest_over(px, pz);
+      const bool is_seen = std::isfinite(height) && height <= settings_.max_height_m;
+      cloud.append(is_seen ? Vec3(px, height, pz) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
+  add_noise(cloud, settings_.noise_sigma_m,
+            noise_stream(key_, NoiseUse::point_position, static_cast<std::uint32_t>(frame)), kernels_);
+  return cloud;
+}
+
+double Plates::signed_distance(const Vec3& p_W, double time_s) const {
+  const FlatPanel panel = plate(0, settings_.true_motion ? time_s : captured_s(newest_frame(time_s)));
+  return remote_touch::signed_distance(std::span(&panel, 1), p_W);
+}
+
+double Plates::surface_height(double, double, double time_s) const {
+  return plate(0, time_s).centre.y();
+}
+
+}  // namespace remote_touch

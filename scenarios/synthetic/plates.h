@@ -1,0 +1,58 @@
+// Flat plates that a camera sees from above, where they hide each other: a nearer object passes or enters, or
+// two objects move apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/interface/scenario.h"
+#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/panel.h"
+
+namespace remote_touch {
+
+// The camera looks along -y with parallel rays through the nodes of the grid, which stand still: each sees
+// the highest plate over its place, and nothing where there is no plate, or one above max_height_m, which is
+// too near to be measured but hides what is below. The points are stored row by row; noise is added in the
+// world frame. The true surface is the first plate, whether it is hidden or not.
+class Plates final : public Scenario {
+ public:
+  struct Settings {
+    Grid grid{80, 80, 0.0015, 0, 0};
+    double frame_rate_hz = 30;
+    // Rows of x, y, z of the centre, size along x and along z, velocity along x and along y, and when the
+    // plate starts and stops to move.
+    std::vector<double> plates{0, 0, 0, 0.2, 0.2, 0, 0, 0, 0};
+    double max_height_m = 10;
+    double noise_sigma_m = 0;
+    bool true_motion = false;
+  };
+  static constexpr std::size_t kColumns = 9;
+
+  Plates(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
+
+  double frame_rate_hz() const override { return settings_.frame_rate_hz; }
+  int frame_count() const override;
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override;
+  PointCloud cloud(int frame) const override;
+  // To the first plate, positive above it; beyond its border the distance to the border with the sign of the
+  // side of its plane.
+  double signed_distance(const Vec3& p_W, double time_s) const override;
+  // Of the first plate, continued beyond its border.
+  double surface_height(double x, double z, double time_s) const override;
+
+  // Where a plate is at a time.
+  FlatPanel plate(std::size_t number, double time_s) const;
+
+ private:
+  std::size_t plate_count() const { return settings_.plates.size() / kColumns; }
+
+  const Settings settings_;
+  const NoiseKey key_;
+  const Kernels& kernels_;
+};
+
+Parameters parameters(Plates::Settings& s);
+std::string validate(const Plates::Settings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,98 @@
+#include "analysis/measures/perceived_force_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+
+namespace remote_touch::perceived_force_measures_test {
+namespace {
+
+// A tick a millisecond, and a frame every so many.
+Trace trace_of(const std::vector<Vec3>& force_N, int frame_ticks) {
+  Trace trace;
+  for (const Vec3& one : force_N) {
+    RenderOutput out;
+    out.force_N = one;
+    out.frame_index = static_cast<int>(trace.length()) / frame_ticks;
+    trace.append(0.001 * static_cast<double>(trace.length()), {}, out, {});
+  }
+  return trace;
+}
+
+template <class Force>
+Trace trace_along(int ticks, Force&& newtons) {
+  std::vector<Vec3> force_N;
+  for (int i = 0; i < ticks; ++i) force_N.push_back({0, newtons(i), 0});
+  return trace_of(force_N, 10);
+}
+
+TEST(PerceivedForce, JumpsAreThoseAboveTheFractionOfTheForceBefore) {
+  // Updates at every tick: 4 to 4.2 is 5 %, to 4.5 7.1 %, to 4.0 -11 %, to 0 and back; none to none is no
+  // pair.
+  const Trace trace =
+      trace_of({{0, 4, 0}, {0, 4.2, 0}, {0, 4.5, 0}, {0, 4, 0}, {0, 0, 0}, {0, 0, 0}, {0, 1, 0}}, 1);
+  EXPECT_EQ(felt_jump_fraction(trace, 0.04), 1);
+  EXPECT_EQ(felt_jump_fraction(trace, 0.06), 0.8);
+  EXPECT_EQ(felt_jump_fraction(trace, 0.1), 0.6);
+  EXPECT_EQ(felt_jump_fraction(trace, 0.2), 0.4);
+  EXPECT_EQ(felt_jump_fraction(trace, 1), 0.2);  // a force that begins is above any fraction
+}
+
+TEST(PerceivedForce, BetweenUpdatesAndWithoutForceThereIsNoJump) {
+  EXPECT_EQ(felt_jump_fraction(trace_of({{0, 1, 0}, {0, 9, 0}, {0, 9, 0}, {0, 1, 0}}, 2), 0.2), 0);
+  EXPECT_TRUE(std::isnan(felt_jump_fraction(trace_of({{0, 1, 0}, {0, 9, 0}}, 2), 0.2)));
+  EXPECT_TRUE(std::isnan(felt_jump_fraction(trace_of({{0, 0, 0}, {0, 0, 0}}, 1), 0.2)));
+  EXPECT_TRUE(std::isnan(felt_jump_fraction(Trace(), 0.2)));
+}
+
+// A force that turns by an angle changes by twice the sine of its half.
+TEST(PerceivedForce, AForceThatTurnsChanges) {
+  const double angle = 0.15;
+  const Trace trace = trace_of({{2, 0, 0}, {2 * std::cos(angle), 2 * std::sin(angle), 0}}, 1);
+  EXPECT_EQ(felt_jump_fraction(trace, 2 * std::sin(angle / 2) - 1e-9), 1);
+  EXPECT_EQ(felt_jump_fraction(trace, 2 * std::sin(angle / 2) + 1e-9), 0);
+}
+
+// exp(a t): a packet whenever the force has grown by 1 + d, so every ceil(ln(1 + d) / a) ticks.
+TEST(PerceivedForce, OfAnExponentialForcePacketsComeAtEqualTimes) {
+  const double per_tick = 0.003;
+  const Trace trace = trace_along(1000, [&](int i) { return std::exp(per_tick * i); });
+  for (const double weber : {0.05, 0.1, 0.2}) {
+    const int between = static_cast<int>(std::ceil(std::log1p(weber) / per_tick));
+    EXPECT_NEAR(deadband_packets_per_s(trace, weber), 1 + 999 / between, 1e-9) << weber;
+  }
+}
+
+// Two forces in turn: each is a packet where they differ by more than the fraction.
+TEST(PerceivedForce, AForceThatEndsIsSentOnceAndNoMore) {
+  const Trace trace = trace_along(100, [](int i) { return i < 50 ? 1.0 : 0.0; });
+  EXPECT_NEAR(deadband_packets_per_s(trace, 0.1), 2 / 0.1, 1e-9);
+  EXPECT_NEAR(deadband_packets_per_s(trace_along(100, [](int) { return 0.0; }), 0.1), 1 / 0.1, 1e-9);
+  EXPECT_NEAR(deadband_packets_per_s(trace_along(100, [](int i) { return i % 2 ? 1.0 : 1.3; }), 0.2),
+              100 / 0.1, 1e-9);
+  EXPECT_NEAR(deadband_packets_per_s(trace_along(100, [](int i) { return i % 2 ? 1.0 : 1.3; }), 0.31),
+              1 / 0.1, 1e-9);
+  EXPECT_TRUE(std::isnan(deadband_packets_per_s(trace_along(1, [](int) { return 1.0; }), 0.1)));
+}
+
+TEST(PerceivedForce, AreInTheTableAtThreeFractions) {
+  const Trace trace = trace_along(200, [](int i) { return 1 + 0.01 * (i / 10) * (i % 20 < 10 ? 1 : -1); });
+  const auto value = [&](const std::string& name) {
+    for (const Measure& measure : measures())
+      if (measure.name == name) return measure.of(trace);
+    return std::nan("");
+  };
+  for (const int percent : {5, 10, 20}) {
+    const std::string end = "_" + std::to_string(percent);
+    EXPECT_EQ(value("jump_fraction" + end), felt_jump_fraction(trace, percent / 100.)) << percent;
+    EXPECT_EQ(value("packet_rate" + end), deadband_packets_per_s(trace, percent / 100.)) << percent;
+  }
+  EXPECT_GT(value("jump_fraction_5"), value("jump_fraction_20"));
+  EXPECT_GT(value("packet_rate_5"), value("packet_rate_20"));
+}
+
+}  // namespace
+}  // namespace remote_touch::perceived_force_measures_test

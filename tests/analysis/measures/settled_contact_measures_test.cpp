@@ -1,0 +1,101 @@
+#include "analysis/measures/settled_contact_measures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/measures/measures.h"
+
+namespace remote_touch::settled_contact_measures_test {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Tick {
+  double height_m = 0, hip_distance_m = -0.01;
+  bool has_force = true;
+};
+
+// A tick every 20 ms: five intervals are the settling.
+Trace trace_of(const std::vector<Tick>& ticks) {
+  Trace trace;
+  for (const Tick& tick : ticks) {
+    RenderOutput out;
+    out.force_N = {0, tick.has_force ? 1.0 : 0.0, 0};
+    trace.append(0.02 * static_cast<double>(trace.length()), {}, out,
+                 {0, 0, 0, Trace::TrueContact{tick.height_m, tick.hip_distance_m}});
+  }
+  return trace;
+}
+
+// What comes after five ticks below the surface, in which anything may happen.
+Trace settled(const std::vector<Tick>& ticks) {
+  std::vector<Tick> all(5, Tick{-1, -0.01, false});
+  all.insert(all.end(), ticks.begin(), ticks.end());
+  return trace_of(all);
+}
+
+TEST(SettledContact, TheWorstTickCountsOnEitherSide) {
+  const Trace trace = settled({{0.001}, {-0.004}, {0.003}, {0}});
+  EXPECT_EQ(max_contact_error_m(trace), 0.004);
+  EXPECT_EQ(max_sink_m(trace), 0.004);
+  EXPECT_EQ(max_float_m(trace), 0.003);
+  EXPECT_NEAR(rms_contact_error_m(trace), std::sqrt((1 + 16 + 9) / 4.0) * 1e-3, 1e-18);
+  EXPECT_EQ(max_contact_error_m(settled({{0.004}, {-0.001}})), 0.004);
+  EXPECT_EQ(max_sink_m(settled({{0.004}})), 0);
+  EXPECT_EQ(max_float_m(settled({{-0.004}})), 0);
+}
+
+TEST(SettledContact, TheFirstTenthOfASecondIsNotJudged) {
+  EXPECT_TRUE(std::isnan(max_contact_error_m(trace_of(std::vector<Tick>(5, {0.001})))));
+  EXPECT_EQ(max_contact_error_m(trace_of(std::vector<Tick>(6, {0.001}))), 0.001);
+}
+
+TEST(SettledContact, EndsWhereTheHandLeavesTheSurfaceAndSettlesAnew) {
+  std::vector<Tick> ticks(6, {0.001});
+  for (const double outside : {0.0, 0.01, kUnknown}) {
+    std::vector<Tick> all = ticks;
+    all.push_back({-0.5, outside});
+    all.insert(all.end(), 5, {-0.5});  // below it again, and not settled yet
+    EXPECT_EQ(max_contact_error_m(trace_of(all)), 0.001) << outside;
+    all.push_back({-0.002});
+    EXPECT_EQ(max_contact_error_m(trace_of(all)), 0.002) << outside;
+  }
+}
+
+TEST(SettledContact, TicksWithoutATruthAreLeftOutAndCounted) {
+  const Trace trace = settled({{kUnknown}, {0.002}, {kUnknown}, {-0.001}});
+  EXPECT_EQ(max_contact_error_m(trace), 0.002);
+  EXPECT_NEAR(rms_contact_error_m(trace), std::sqrt(2.5e-6), 1e-18);
+  EXPECT_EQ(contact_known_fraction(trace), 0.5);
+  const Trace dark = settled({{kUnknown}, {kUnknown}});
+  for (const auto measure : {max_contact_error_m, max_sink_m, max_float_m, rms_contact_error_m})
+    EXPECT_TRUE(std::isnan(measure(dark)));
+  EXPECT_EQ(contact_known_fraction(dark), 0);
+}
+
+TEST(SettledContact, AForceIsAskedForInSettledTicksOnly) {
+  EXPECT_EQ(contact_force_fraction(settled({{0}, {0, -0.01, false}, {0}, {0}})), 0.75);
+  EXPECT_TRUE(std::isnan(contact_force_fraction(trace_of({{0}, {0}}))));
+  EXPECT_TRUE(std::isnan(contact_known_fraction(trace_of({{0}, {0}}))));
+}
+
+TEST(SettledContact, MeansNothingWhereTheContactWasNotComputed) {
+  Trace trace;
+  trace.append(0, {}, {}, {});
+  int found = 0;
+  for (const Measure& measure : measures()) {
+    if (measure.runs != MeasuredRuns::contact) continue;
+    ++found;
+    EXPECT_FALSE(applies(measure, trace)) << measure.name;
+    EXPECT_TRUE(applies(measure, settled({{0}}))) << measure.name;
+    EXPECT_TRUE(std::isnan(value_of(measure, trace))) << measure.name;
+    EXPECT_TRUE(std::isnan(measure.of(trace))) << measure.name;
+  }
+  EXPECT_EQ(found, 6);
+}
+
+}  // namespace
+}  // namespace remote_touch::settled_contact_measures_test

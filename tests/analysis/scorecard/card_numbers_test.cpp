@@ -1,0 +1,102 @@
+#include "analysis/scorecard/card_numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace remote_touch::card_numbers_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A scene with two levels and one with its own noise; a judged measure and one that is not.
+CardNumbers numbers() {
+  CardNumbers n;
+  n.counts = {{{"flat", "proxy", 0}, {1, 1, 1, 0.2, 1}},
+              {{"flat", "proxy", 0.003}, {9, 10, 0.9, 0.6, 0.98}},
+              {{"organ", "proxy", kNan}, {0, 10, 0, 0, 0.28}}};
+  n.means = {{{"flat", "proxy", 0}, "max_force", "N", {1, 2, kNan, kNan}},
+             {{"flat", "proxy", 0.003}, "max_force", "N", {9, 2.5, 2.4, 2.6}},
+             {{"organ", "proxy", kNan}, "max_force", "N", {0, kNan, kNan, kNan}}};
+  return n;
+}
+
+std::string only(const std::vector<std::string>& list) {
+  EXPECT_EQ(list.size(), 1u);
+  return list.empty() ? "" : list.front();
+}
+
+TEST(CardNumbers, TablesAndBackAreTheSame) {
+  const CardNumbers n = numbers();
+  EXPECT_TRUE(differences(numbers_in(counts_table(n), means_table(n)), n).empty());
+  const CardNumbers back = numbers_in(counts_table(n), means_table(n));
+  ASSERT_EQ(back.counts.size(), 3u);
+  EXPECT_EQ(back.counts[1].successes.low, 0.6);
+  EXPECT_EQ(back.counts[1].place.noise_m, 0.003);
+  EXPECT_TRUE(std::isnan(back.counts[2].place.noise_m));
+  EXPECT_EQ(back.means[1].value.pairs, 9);
+  EXPECT_EQ(back.means[1].units, "N");
+}
+
+TEST(CardNumbers, ATableThatIsDamagedIsRefused) {
+  const CardNumbers n = numbers();
+  Table counts = counts_table(n), cut = counts, wrong = counts;
+  cut.columns.pop_back();
+  EXPECT_THROW(numbers_in(cut, means_table(n)), std::out_of_range);
+  wrong.columns[2].values = std::vector<std::string>{"a", "b", "c"};
+  EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
+  wrong.columns[2].values = std::vector<double>{0};
+  EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
+}
+
+TEST(CardNumbers, WithinTheIntervalsTheyAgree) {
+  CardNumbers now = numbers();
+  now.counts[1].successes = {7, 10, 0.7, 0, 1};
+  now.counts[2].successes = {2, 10, 0.2, 0, 1};
+  now.means[0].value.mean = 2.0015;  // a single run: up to a thousandth
+  now.means[1].value.mean = 2.6;
+  now.means[2].value = {2, 7, 6, 8};  // nothing was stored
+  EXPECT_TRUE(differences(numbers(), now).empty());
+}
+
+TEST(CardNumbers, EachNumberOutsideHasItsLine) {
+  CardNumbers now = numbers();
+  now.counts[1].successes = {5, 10, 0.5, 0.2, 0.8};
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "flat, proxy, noise 3 mm: 5 of 10 runs succeed, stored 9 of 10 (0.6 to 0.98)");
+  now = numbers();
+  now.counts[0].successes = {0, 1, 0, 0, 0.8};
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "flat, proxy, noise 0 mm: 0 of 1 runs succeed, stored 1 of 1 (0.2 to 1)");
+  now = numbers();
+  now.means[1].value.mean = 2.61;
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "flat, proxy, noise 3 mm: max_force in N is 2.61, stored 2.5 (2.3975 to 2.6025)");
+  now = numbers();
+  now.means[0].value.mean = 2.003;
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "flat, proxy, noise 0 mm: max_force in N is 2.003, stored 2 (1.998 to 2.002)");
+  now = numbers();
+  now.means[1].value = {0, kNan, kNan, kNan};
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "flat, proxy, noise 3 mm: max_force in N has no number, stored 2.5");
+  now = numbers();
+  now.counts[2].successes = {0, 0, kNan, 0, 1};
+  EXPECT_EQ(only(differences(numbers(), now)),
+            "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10 (0 to 0.28)");
+}
+
+TEST(CardNumbers, WhatIsNotStoredIsADifferenceAndWhatIsNotRunIsNone) {
+  CardNumbers now = numbers();
+  now.counts[1].place.method = "newcomer", now.means[1].place.method = "newcomer";
+  const auto list = differences(numbers(), now);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0], "flat, newcomer, noise 3 mm: its successes are not in the stored card");
+  EXPECT_EQ(list[1], "flat, newcomer, noise 3 mm: max_force is not in the stored card");
+  EXPECT_TRUE(differences(numbers(), {}).empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::card_numbers_test

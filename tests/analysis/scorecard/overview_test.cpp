@@ -1,0 +1,113 @@
+#include "analysis/scorecard/overview.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace remote_touch::overview_test {
+namespace {
+
+// 20 runs without noise, which are one, and 20 with noise: of these so many succeed. `steps` is 1 plus a
+// scatter that all methods have in common.
+SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
+  SweepResult result;
+  result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}, 1, {}}};
+  result.replicates = 20;
+  result.measures = {{"held", "1", "", {}, 1, {}}, {"steps", "1", "", {}, 1, {}}};
+  result.start(false);
+  std::vector<double> held(40, without_noise ? 1.0 : 0.0), count(40, 1);
+  for (int i = 0; i < 20; ++i) {
+    held[static_cast<std::size_t>(20 + i)] = i < with_noise ? 1 : 0;
+    count[static_cast<std::size_t>(20 + i)] = 1 + steps * (1 + 0.1 * (i % 3)) + i;
+  }
+  result.measures[0].values = held, result.measures[1].values = count;
+  for (RunState& state : result.state) state = RunState::done;
+  return result;
+}
+
+Bound held() {
+  return {"held", 1};
+}
+
+Scorecard card_of(const std::vector<std::vector<SweepResult>>& scenes) {
+  Scorecard card{{kOwnMethod, "proxy", "penalty"}, {"", "", ""}, {}};
+  for (const auto& sweeps : scenes) {
+    const std::string name = "scene " + std::to_string(card.scenes.size());
+    card.scenes.push_back(
+        score({name, "", "", {held()}, {{"steps", Better::smaller}}, {{"steps", -1000}}}, sweeps, false));
+  }
+  correct(card);
+  return card;
+}
+
+TEST(Overview, NoiseFreeRunsAreAColumnOfTheirOwn) {
+  const Scorecard card = card_of({{sweep_of(false, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
+                                  {sweep_of(true, 10, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)}});
+  const Successes& own = card.scenes[0].success[0];
+  ASSERT_TRUE(own.noise_free);
+  EXPECT_EQ(own.noise_free->runs, 1);
+  EXPECT_EQ(own.noise_free->events, 0);
+  EXPECT_EQ(own.noisy.runs, 20);
+  EXPECT_EQ(own.noisy.events, 20);
+  const auto summary = overview(card);
+  EXPECT_EQ(summary[0].success.mean, 0.75);
+  EXPECT_EQ(summary[0].noise_free.mean, 0.5);
+  EXPECT_EQ(summary[1].noise_free.mean, 1);
+  EXPECT_EQ(summary[0].held, 1);
+  EXPECT_EQ(summary[0].old_success.mean, 1);  // by the rule before, which every run keeps
+  EXPECT_EQ(card.scenes[0].old_success[2].noisy.events, 20);
+}
+
+TEST(Overview, TheMeanOverScenesHasAnInterval) {
+  std::vector<std::vector<SweepResult>> scenes;
+  for (const int held_runs : {20, 18, 20, 4, 20, 16, 20, 0, 20, 20})
+    scenes.push_back({sweep_of(true, held_runs, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)});
+  const auto summary = overview(card_of(scenes));
+  EXPECT_EQ(summary[0].success.pairs, 10);
+  EXPECT_NEAR(summary[0].success.mean, 158 / 200.0, 1e-12);
+  EXPECT_LT(summary[0].success.low, 0.65);
+  EXPECT_GT(summary[0].success.high, 0.88);
+  EXPECT_EQ(summary[1].success.low, 0.5);  // the same in every scene
+}
+
+TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
+  const Scorecard card = card_of({{sweep_of(true, 20, 2), sweep_of(true, 20, 1), sweep_of(true, 0, 1)},
+                                  {sweep_of(true, 0, 1), sweep_of(true, 20, 1), sweep_of(true, 20, 1)},
+                                  {sweep_of(true, 20, 1), sweep_of(true, 0, 1), sweep_of(true, 0, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].scene, "scene 0");
+  EXPECT_EQ(list[0].what, "steps");
+  EXPECT_EQ(list[0].other, "proxy");
+  EXPECT_EQ(list[0].ahead, 1);
+  EXPECT_GT(list[0].own_mean, list[0].other_mean);
+  EXPECT_TRUE(list[0].is_shown);
+  EXPECT_LT(list[0].p, kSignificance);
+  EXPECT_EQ(list[1].scene, "scene 1");
+  EXPECT_EQ(list[1].what, "success");
+  EXPECT_EQ(list[1].ahead, 2);
+  EXPECT_EQ(list[1].own_mean, 0);
+  EXPECT_EQ(list[1].other_mean, 1);
+  EXPECT_TRUE(weaknesses(card, "nobody").empty());
+}
+
+TEST(Weaknesses, WhatMayBeChanceIsListedApart) {
+  const Scorecard card = card_of({{sweep_of(false, 17, 1), sweep_of(true, 18, 1), sweep_of(true, 20, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].what, "success");
+  EXPECT_EQ(list[0].other, "penalty");
+  EXPECT_EQ(list[0].ahead, 2);
+  EXPECT_FALSE(list[0].is_shown);
+  EXPECT_GT(list[0].p, kSignificance);
+  EXPECT_EQ(list[1].what, "success without noise");
+  EXPECT_EQ(list[1].own_mean, 0);
+  EXPECT_EQ(list[1].other_mean, 1);
+  EXPECT_TRUE(std::isnan(list[1].p));
+  EXPECT_TRUE(
+      weaknesses(card_of({{sweep_of(true, 20, 1), sweep_of(true, 20, 1), sweep_of(true, 0, 1)}}), kOwnMethod)
+          .empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::overview_test

@@ -1,0 +1,176 @@
+// Surfels with normals towards the sensor, against closed forms on planes.
+#include "core/rivals/surfel_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cloud/camera.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::surfel_renderer_test {
+namespace {
+
+SurfelParameters without_friction() {
+  SurfelParameters p;
+  p.friction = 0;
+  return p;
+}
+
+SurfelRenderer over(const PointCloud& cloud, const SurfelParameters& p) {
+  SurfelRenderer renderer(p, 1000, scenes::kernels());
+  renderer.on_frame(scenes::frame(cloud));
+  return renderer;
+}
+
+RenderOutput rest(SurfelRenderer& r, const Vec3& hip, int ticks = 40) {
+  RenderOutput out;
+  for (int i = 0; i < ticks; ++i) out = r.step({hip}, 0.001 * i);
+  return out;
+}
+
+RenderOutput press(SurfelRenderer& r, double depth_m, double from_m = 0.02) {
+  for (double y = from_m; y > -depth_m; y -= 0.0005) r.step({Vec3(0, y, 0)}, 0);
+  return rest(r, {0, -depth_m, 0});
+}
+
+TEST(SurfelRenderer, APlaneHoldsTheProxyOnItAndTheSpringDoesTheRest) {
+  SurfelRenderer r = over(scenes::flat_grid(60), {});
+  const RenderOutput out = press(r, 0.03);
+  EXPECT_NEAR(out.proxy_W.norm(), 0, 1e-8);
+  EXPECT_NEAR((out.force_N - Vec3(0, 18, 0)).norm(), 0, 1e-5);
+  EXPECT_NEAR((out.normal_W - Vec3::UnitY()).norm(), 0, 1e-9);
+  EXPECT_EQ(out.state, ContactState::contact);
+  EXPECT_TRUE(out.converged);
+}
+
+// f < 0 at the HIP is enough: nothing has crossed the surface on the way.
+TEST(SurfelRenderer, TakesHoldOfAHipThatAFramePutBehindTheSurface) {
+  SurfelRenderer r = over(scenes::flat_grid(60, 0.0015, -0.05), {});
+  EXPECT_EQ(rest(r, Vec3::Zero()).state, ContactState::free);
+  r.on_frame(scenes::frame(scenes::flat_grid(60, 0.0015, 0.006), 1));
+  const RenderOutput out = rest(r, Vec3::Zero());
+  EXPECT_EQ(out.state, ContactState::contact);
+  EXPECT_NEAR((out.force_N - Vec3(0, 3.6, 0)).norm(), 0, 1e-5);
+}
+
+TEST(SurfelRenderer, LosesAHipThatIsFartherBehindThanTheRadius) {
+  SurfelRenderer r = over(scenes::flat_grid(60, 0.0015, -0.05), {});
+  rest(r, Vec3::Zero());
+  r.on_frame(scenes::frame(scenes::flat_grid(60, 0.0015, 0.0101), 1));
+  EXPECT_TRUE(rest(r, Vec3::Zero()).force_N.isZero(0));
+}
+
+// The side is the sensor's, not that from which the HIP comes: it is drawn to the front.
+TEST(SurfelRenderer, TheBackOfASheetPullsTheHandThrough) {
+  SurfelRenderer r = over(scenes::flat_grid(60), {});
+  for (double y = -0.02; y < -0.002; y += 0.0005) r.step({Vec3(0, y, 0)}, 0);
+  EXPECT_GT(rest(r, {0, -0.002, 0}).force_N.y(), 1.1);
+  SurfelParameters below;
+  below.view_direction = Vec3::UnitY();
+  SurfelRenderer seen_from_below = over(scenes::flat_grid(60), below);
+  for (double y = -0.02; y < -0.002; y += 0.0005) seen_from_below.step({Vec3(0, y, 0)}, 0);
+  EXPECT_TRUE(rest(seen_from_below, {0, -0.002, 0}).force_N.isZero(0));
+}
+
+TEST(SurfelRenderer, ACameraTurnsTheNormals) {
+  const CameraIntrinsics camera{64, 64, 200, 200, 31.5, 31.5};
+  DepthImage image{64, 64, std::vector<double>(64 * 64, 0.5)};
+  RigidTransform X_WC = RigidTransform::Identity();  // looks along +z
+  SurfelParameters p;
+  p.view_direction = {0, 0, -1};  // the other way round: not used
+  SurfelRenderer r = over(cloud_from_depth(image, camera, X_WC), p);
+  for (double z = 0.47; z < 0.505; z += 0.0005) r.step({Vec3(0, 0, z)}, 0);
+  EXPECT_NEAR(rest(r, {0, 0, 0.505}).force_N.z(), -600 * 0.005, 1e-5);
+}
+
+// A HIP beside the proxy: without friction the proxy ends over it, with friction mu it stays back by mu times
+// the depth.
+TEST(SurfelRenderer, FrictionHoldsTheProxyBackByItsConeAndNoMore) {
+  for (const double mu : {0.0, 0.2, 0.7}) {
+    SurfelParameters p;
+    p.friction = mu;
+    SurfelRenderer r = over(scenes::flat_grid(60), p);
+    press(r, 0.01);
+    const RenderOutput out = rest(r, {0.02, -0.01, 0}, 200);
+    EXPECT_NEAR(out.proxy_W.x(), 0.02 - mu * 0.01, 1e-6) << mu;
+    EXPECT_NEAR(out.force_N.x(), -600 * mu * 0.01, 1e-3) << mu;
+  }
+}
+
+// The first tick after a jump of the surface brings the proxy out by R / 2, the second by the rest.
+TEST(SurfelRenderer, ProjectsByHalfTheRadiusPerTick) {
+  SurfelRenderer r = over(scenes::flat_grid(60), without_friction());
+  press(r, 0.01);
+  r.on_frame(scenes::frame(scenes::flat_grid(60, 0.0015, 0.007), 1));
+  const RenderOutput first = r.step({Vec3(0, -0.01, 0)}, 0.1);
+  EXPECT_NEAR(first.proxy_W.y(), 0.005, 1e-8);
+  EXPECT_EQ(first.state, ContactState::entrenched);
+  const RenderOutput second = r.step({Vec3(0, -0.01, 0)}, 0.101);
+  EXPECT_NEAR(second.proxy_W.y(), 0.007, 1e-8);
+  EXPECT_EQ(second.state, ContactState::contact);
+}
+
+// A plane that turns by an angle between two frames: the normal of the first tick lies between both.
+TEST(SurfelRenderer, BlendsTheNormalWithThatOfTheTickBefore) {
+  for (const double memory : {0.0, 0.4}) {
+    SurfelParameters p = without_friction();
+    p.previous_normal_fraction = memory;
+    SurfelRenderer r = over(scenes::flat_grid(60), p);
+    press(r, 0.002);
+    PointCloud turned = scenes::flat_grid(60);
+    const double angle = 0.1;
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      const double x = turned.x[i];
+      turned.x[i] = x * std::cos(angle), turned.y[i] = x * std::sin(angle);
+    }
+    r.on_frame(scenes::frame(turned, 1));
+    const Vec3 to(-std::sin(angle), std::cos(angle), 0);
+    const Vec3 expected = (memory * Vec3::UnitY() + (1 - memory) * to).normalized();
+    EXPECT_NEAR((r.step({Vec3(0, -0.002, 0)}, 0.1).normal_W - expected).norm(), 0, 1e-6) << memory;
+  }
+}
+
+TEST(SurfelRenderer, TheDefaultRadiusOfTheAuthorsIsThreeSpacings) {
+  SurfelParameters p;
+  p.support_radius_m = 0;
+  SurfelRenderer r = over(scenes::flat_grid(60, 0.002), p);  // R = 6 mm, but for the border
+  EXPECT_EQ(rest(r, {0, 0.0065, 0}).contact_count, 0);
+  EXPECT_GT(rest(r, {0, 0.0055, 0}).contact_count, 0);
+}
+
+// Two frames of half of the points each, joined, hold as the whole does.
+TEST(SurfelRenderer, FusesTheNewestFrames) {
+  const PointCloud whole = scenes::flat_grid(60);
+  PointCloud halves[2];
+  for (std::size_t i = 0; i < whole.size(); ++i) halves[i % 60 < 30 ? 0 : 1].append(whole.point(i));
+  for (const int fused : {1, 2}) {
+    SurfelParameters p;
+    p.fused_frames = fused;
+    SurfelRenderer r = over(halves[0], p);
+    r.on_frame(scenes::frame(halves[1], 1));
+    for (double y = 0.02; y > -0.005; y -= 0.0005) r.step({Vec3(-0.02, y, 0)}, 0);
+    const double force = rest(r, {-0.02, -0.005, 0}).force_N.y();
+    if (fused == 1)
+      EXPECT_EQ(force, 0);
+    else
+      EXPECT_NEAR(force, 3, 1e-5);
+  }
+}
+
+TEST(SurfelRenderer, LeavesWithoutAForceAndAnEmptyFrameLetsGo) {
+  SurfelRenderer r = over(scenes::flat_grid(60), {});
+  press(r, 0.01);
+  RenderOutput out = rest(r, {0, 0.02, 0});
+  EXPECT_EQ(out.proxy_W, Vec3(0, 0.02, 0));
+  EXPECT_TRUE(out.force_N.isZero(0));
+  press(r, 0.01);
+  r.on_frame(scenes::frame({}, 1));
+  out = r.step({Vec3(0, -0.01, 0)}, 0.1);
+  EXPECT_EQ(out.proxy_W, Vec3(0, -0.01, 0));
+  EXPECT_TRUE(out.force_N.isZero(0));
+}
+
+}  // namespace
+}  // namespace remote_touch::surfel_renderer_test
