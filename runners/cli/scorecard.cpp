@@ -12,6 +12,7 @@
 #include "runners/cli/progress.h"
 #include "runners/cli/scorecard_runs.h"
 #include "runners/provenance/provenance.h"
+#include "runners/scorecard/benchmark_choice.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/report_json.h"
 #include "runners/scorecard/stored_card.h"
@@ -81,8 +82,8 @@ void print(const ScorecardReport& report) {
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
   if (request.folder.empty()) throw InputError("--output", "is missing: expected a folder to write to");
   if (request.threads > 0) omp_set_num_threads(request.threads);
-  const BenchmarkPlan plan = plan_of(
-      {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
+  const BenchmarkPlan plan =
+      plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
   const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
   require_same_benchmark(sweeps);
   require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);

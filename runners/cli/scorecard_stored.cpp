@@ -8,6 +8,7 @@
 #include "runners/cli/outputs.h"
 #include "runners/cli/scorecard_runs.h"
 #include "runners/provenance/provenance.h"
+#include "runners/scorecard/benchmark_choice.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/stored_card.h"
 #include "runners/simulation/simulation.h"
@@ -44,8 +45,8 @@ void require_folder(const std::string& folder) {
 
 int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest& request) {
   require_folder(request.folder);
-  const BenchmarkPlan plan = plan_of(
-      {chosen_methods(request.methods), chosen_scenes(request.scenes), request.seeds, request.folder});
+  const BenchmarkPlan plan =
+      plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
   const FileLock lock = lock_output(line, request.file, {});
   try {
     const Scorecard card = scored(line, plan, request.threads);
@@ -64,8 +65,8 @@ int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest
   require_folder(request.folder);
   const StoredCard stored = read_stored_card(request.file);
   const BenchmarkPlan plan =
-      plan_of({chosen_methods(wanted(request.methods, stored.methods)),
-               chosen_scenes(wanted(request.scenes, stored.scenes)), stored.replicates, request.folder});
+      plan_of(chosen_benchmark(wanted(request.methods, stored.methods), wanted(request.scenes, stored.scenes),
+                               stored.replicates, request.folder));
   try {
     const Scorecard card = scored(line, plan, request.threads);
     const std::vector<std::string> list = differences(stored, plan, card);

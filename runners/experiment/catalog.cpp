@@ -157,7 +157,7 @@ const RendererEntry kRenderers[] = {
     renderer<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
                                                "6-DOF rendering of a rigid tool, chapter 6"),
     renderer<LoadedToolPenalty, LoadedToolPenalty::Settings>(
-        "tool-penalty", DegreesOfFreedom::six, ContactModel::nothing,
+        "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
         "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
     renderer<LoadedSpheres, LoadedSpheres::Settings>(
         "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,

@@ -54,6 +54,7 @@ inline RenderedContact rendered_contact(const GodObjectParameters& p) {
 RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 // A tool has a shape, not a radius: not known.
 RenderedContact rendered_contact(const LoadedTool::Settings&);
+RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);
 RenderedContact rendered_contact(const LoadedSpheres::Settings&);
 
 }  // namespace remote_touch

@@ -194,9 +194,11 @@ Method read_method(const std::string& name, const std::string& json) {
 
 BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
   const std::string label = "scene " + name;
-  const Json object = read_object(json, label, {"title", "experiment", "noise", "measures", "success"});
+  const Json object =
+      read_object(json, label, {"title", "experiment", "tool", "noise", "measures", "success"});
   BenchmarkScene scene{
       name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
+  if (object.contains("tool")) scene.tool = object_of(object, "tool", label);
   if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
   const Json measures = parse_json(object_of(object, "measures", label), label);
   for (const auto& item : measures.items())
@@ -219,6 +221,7 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   if (run.contains("seed"))
     throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);
+  if (!tool.empty()) run["renderer"].update(parse_json(tool, label));
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
   const bool own_noise = noise.empty();
@@ -242,6 +245,7 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
   for (const BenchmarkScene& scene : scenes) {
     Json& json = all["scenes"][scene.name];
     json["experiment"] = parse_json(scene.experiment, scene.name);
+    if (!scene.tool.empty()) json["tool"] = parse_json(scene.tool, scene.name);
     if (!scene.noise.empty()) json["noise"] = scene.noise;
     for (const Bound& bound : scene.success) {
       Json limits = {{"measure", bound.measure}};

@@ -38,6 +38,7 @@ struct BenchmarkScene {
   std::string meaning;           // of success, in words
   std::vector<Bound> success;
   std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
+  std::string tool = {};  // JSON: settings of the renderers that say which tool they hold; empty: for a HIP
 
   // The runs of a method: noise levels by replicates, and nothing else, so that cell and replicate, the
   // keys of all noise, are the same for every method. Throws InputError when it cannot be run.

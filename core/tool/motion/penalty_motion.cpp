@@ -44,9 +44,10 @@ PenaltyMotion::Push PenaltyMotion::push(const ToolPose& pose, const ContactList&
   for (const std::uint32_t point : finder.within(pose, 0)) {
     const Vec3 n_W = cloud.normal(point);
     const Vec3 p_T = R_TW * (cloud.point(point) - pose.p_W);
-    const double depth_m = -sample_field(finder.tool(), p_T).distance_m;
-    if (!(depth_m > 0) || !n_W.allFinite()) continue;
-    const Vec3 n_T = R_TW * n_W;
+    const FieldSample at = sample_field(finder.tool(), p_T);
+    const double depth_m = -at.distance_m;
+    if (!(depth_m > 0)) continue;
+    const Vec3 n_T = n_W.allFinite() ? Vec3(R_TW * n_W) : Vec3(-at.gradient_T.normalized());
     Vector6 line;
     line << n_T, p_T.cross(n_T);
     ++all.points;

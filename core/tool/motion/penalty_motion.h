@@ -2,10 +2,11 @@
 // degree-of-freedom haptic rendering using voxel sampling", 1999. Nothing constrains the tool. Every point of
 // the cloud in it pushes, and the tool follows the device on the spring of (6.9):
 //
-//   f_i = k_p d_i n_i at r_i,   d_i the depth of point i below the tool's surface, n_i its normal,
+//   f_i = k_p d_i n_i at r_i,   d_i the depth of point i below the tool's surface, n_i its normal
 //
-// and where N > 10 points touch, all f_i are multiplied by 10 / N, as there. In each step the tool moves
-// towards the pose at which both wrenches balance, linearised at the present one, by half a voxel at most.
+// (without one: the direction in which the tool leaves it soonest), and where N > 10 points touch, all f_i
+// are multiplied by 10 / N, as there. In each step the tool moves towards the pose at which both wrenches
+// balance, linearised at the present one, by half a voxel at most.
 //
 // Where it differs from its source: the roles are exchanged (there the environment is voxels and the tool is
 // points); d_i is of the distance field and not of a plane through the middle of a voxel, so it is exact and
@@ -23,8 +24,8 @@
 namespace remote_touch {
 
 struct ToolPenaltyParameters {
-  double point_stiffness_N_per_m = 1200;  // k_p
-  int steps_per_tick = 20;
+  double point_stiffness_N_per_m = 2400;  // k_p
+  int steps_per_tick = 200;
   double rest_threshold_m = 1e-6;
   // As of ToolParameters.
   double stiffness_N_per_m = 600, gyration_radius_m = 0.03;

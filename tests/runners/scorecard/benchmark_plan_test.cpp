@@ -12,6 +12,7 @@
 #include <set>
 
 #include "analysis/storage/digest.h"
+#include "runners/scorecard/benchmark_choice.h"
 #include "runners/scorecard/benchmark_plan.h"
 #include "runners/scorecard/passivity.h"
 #include "runners/settings/json_parameters.h"
@@ -43,13 +44,17 @@ Experiment beginning(const Sweep& sweep) {
   return Experiment::from_json(std::move(json));
 }
 
+std::vector<Method> methods_for(const BenchmarkScene& scene) {
+  return chosen_benchmark({}, {scene.name}, 2, "card").methods;
+}
+
 class Scenes : public testing::TestWithParam<BenchmarkScene> {};
 
 TEST_P(Scenes, RunWithEveryContenderOverTheSameNoise) {
   look_for_recordings();
   const BenchmarkScene& scene = GetParam();
   std::vector<std::uint64_t> hashes;
-  for (const Method& method : chosen_methods({})) {
+  for (const Method& method : methods_for(scene)) {
     SimulationOptions options;
     options.hash_frames = true;
     Trace trace;
@@ -66,7 +71,7 @@ TEST_P(Scenes, RunWithEveryContenderOverTheSameNoise) {
 }
 
 TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
-  const Sweep sweep = GetParam().sweep(chosen_methods({"proxy"}).front(), 2);
+  const Sweep sweep = GetParam().sweep(methods_for(GetParam()).front(), 2);
   const SweepResult plan = sweep.plan();
   for (const Bound& bound : GetParam().success) EXPECT_NO_THROW(plan.measure(bound.measure));
   for (const Bound& bound : GetParam().old_success) EXPECT_NO_THROW(plan.measure(bound.measure));
@@ -98,9 +103,37 @@ TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("a b.json", "{}").string()}); }), "expected letters");
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("bad.json", "[").string()}); }), "expected JSON");
   EXPECT_HAS(refusal([] { chosen_scenes({"none.json"}); }), "none.json: cannot be read");
-  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected god-object, ");
+  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected ");
   EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
   EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");
+}
+
+std::vector<std::string> names(const auto& list) {
+  std::vector<std::string> all;
+  for (const auto& each : list) all.push_back(each.name);
+  return all;
+}
+
+TEST(Benchmark, ToolsAreComparedWithTools) {
+  const auto chosen = [](std::vector<std::string> methods, std::vector<std::string> scenes) {
+    return chosen_benchmark(methods, scenes, 2, "card");
+  };
+  const Benchmark all = chosen({}, {}), tools = chosen({"tool-voxels"}, {}), slot = chosen({}, {"tool-slot"});
+  for (const BenchmarkScene& scene : all.scenes) EXPECT_FALSE(is_for_tools(scene)) << scene.name;
+  for (const Method& method : all.methods) EXPECT_FALSE(is_for_tools(method)) << method.name;
+  for (const BenchmarkScene& scene : tools.scenes) EXPECT_TRUE(is_for_tools(scene)) << scene.name;
+  EXPECT_EQ(all.scenes.size() + tools.scenes.size(), chosen_scenes({}).size());
+  EXPECT_EQ(all.methods.size() + slot.methods.size(), chosen_methods({}).size());
+  EXPECT_GE(tools.scenes.size(), 5u);
+  EXPECT_EQ(names(slot.methods),
+            (std::vector<std::string>{"tool-look-ahead", "tool-penalty", "tool-voxels"}));
+  EXPECT_HAS(refusal([&] { chosen({"proxy"}, {"tool-slot"}); }),
+             "scene tool-slot: expected only those for a HIP");
+  EXPECT_HAS(refusal([&] {
+               chosen({"tool-voxels", "proxy"}, {});
+             }),
+             "method proxy: expected only those for tools");
+  EXPECT_HAS(refusal([&] { chosen({}, {"flat-press", "tool-slot"}); }), "scene tool-slot: expected only");
 }
 
 TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
@@ -108,7 +141,8 @@ TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
     return refusal([&] { read_benchmark_scene("x", text); });
   };
   EXPECT_HAS(scene("[]"), "scene x");
-  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"), "colour: unknown: expected title, experiment, noise");
+  EXPECT_HAS(scene(R"({"title": "t", "colour": 1})"),
+             "colour: unknown: expected title, experiment, tool, noise");
   EXPECT_HAS(scene(R"({"title": "t"})"), "experiment: missing");
   const std::string begin = R"({"title": "t", "experiment": {}, )";
   EXPECT_HAS(scene(begin + R"("measures": {"force_fraction": "bigger"}})"), "expected larger, smaller");
@@ -167,7 +201,7 @@ TEST(Benchmark, RunsNoSeedThatParametersWereFixedWith) {
 
 TEST(Benchmark, CostsAreThoseOfTheSamePoints) {
   const BenchmarkScene scene = chosen_scenes({"flat-slide"}).front();
-  for (const Method& method : chosen_methods({})) {
+  for (const Method& method : methods_for(scene)) {
     Json json = parse_json(beginning(scene.sweep(method, 2)).to_json(), "run");
     json["duration_s"] = 0.3;
     const Experiment run = Experiment::from_json(std::move(json));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/geometry/rotation.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "tests/support/box_tool.h"
@@ -55,7 +57,7 @@ TEST(PenaltyMotion, InFreeSpaceTheToolIsTheDevice) {
 
 // k (D - s) = min(N, 10) k_p s
 TEST(PenaltyMotion, SinksUntilTheSpringsBalance) {
-  constexpr double k = 600, k_p = 1200, pressed_m = 0.004;
+  constexpr double k = 600, k_p = 2400, pressed_m = 0.004;
   for (const auto& [columns, rows, pushing] : {std::tuple{20, 10, 10}, {5, 2, 10}, {3, 2, 6}}) {
     const RenderOutput out = pressed(sheet(columns, rows), -pressed_m);
     const double sinks_m = k * pressed_m / (k + pushing * k_p);
@@ -64,6 +66,15 @@ TEST(PenaltyMotion, SinksUntilTheSpringsBalance) {
     EXPECT_EQ(out.tool->active_constraints, columns * rows);
     EXPECT_TRUE(out.converged);
   }
+}
+
+// Then the surface of the tool says where its way out is.
+TEST(PenaltyMotion, PointsWithoutANormalPushTheSame) {
+  PointCloud bare = sheet(20, 10);
+  for (std::size_t i = 0; i < bare.size(); ++i) bare.nx[i] = bare.ny[i] = bare.nz[i] = std::nan("");
+  const RenderOutput with = pressed(sheet(20, 10), -0.004), without = pressed(bare, -0.004);
+  EXPECT_NEAR((without.proxy_W - with.proxy_W).norm(), 0, 1e-6);
+  EXPECT_NEAR((without.force_N - with.force_N).norm(), 0, 1e-3);
 }
 
 // What the hand feels is the push of the point: its force, and its torque about the centre of mass.

@@ -1,0 +1,38 @@
+#include "runners/scorecard/benchmark_choice.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog.h"
+#include "runners/settings/json_parameters.h"
+
+namespace remote_touch {
+
+bool is_for_tools(const Method& method) {
+  const std::string label = "method " + method.name + ": renderer";
+  const Json renderer = parse_json(method.renderer, label);
+  if (!renderer.contains("name") || !renderer["name"].is_string())
+    throw InputError(label + ".name", "missing: expected a renderer");
+  const std::string name = renderer["name"];
+  return find_entry(renderers(), name, label + ".name").degrees_of_freedom == DegreesOfFreedom::six;
+}
+
+Benchmark chosen_benchmark(const std::vector<std::string>& methods, const std::vector<std::string>& scenes,
+                           int replicates, const std::string& folder) {
+  Benchmark chosen{chosen_methods(methods), chosen_scenes(scenes), replicates, folder};
+  const bool tools = !methods.empty()  ? is_for_tools(chosen.methods.front())
+                     : !scenes.empty() ? is_for_tools(chosen.scenes.front())
+                                       : false;
+  const auto fits = [tools](const auto& each) { return is_for_tools(each) == tools; };
+  if (methods.empty()) std::erase_if(chosen.methods, [&](const Method& method) { return !fits(method); });
+  if (scenes.empty()) std::erase_if(chosen.scenes, [&](const BenchmarkScene& scene) { return !fits(scene); });
+  const char* const expected = tools ? "expected only those for tools, like the first"
+                                     : "expected only those for a HIP, like the first";
+  for (const Method& method : chosen.methods)
+    if (!fits(method)) throw InputError("method " + method.name, expected);
+  for (const BenchmarkScene& scene : chosen.scenes)
+    if (!fits(scene)) throw InputError("scene " + scene.name, expected);
+  return chosen;
+}
+
+}  // namespace remote_touch
