@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <stdexcept>
 #include <tuple>
 
 namespace remote_touch {
@@ -33,18 +32,6 @@ std::vector<Column> places(const std::vector<Row>& rows) {
   }
   return {column_of("scene", "1", "scene", scene), column_of("method", "1", "method", method),
           column_of("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise)};
-}
-
-// A column of that type, as long as the table's first.
-template <class List>
-const List& values_of(const Table& table, const std::string& name) {
-  for (const Column& column : table.columns) {
-    if (column.name != name) continue;
-    const auto* values = std::get_if<List>(&column.values);
-    if (values && values->size() == table.columns.front().length()) return *values;
-    break;
-  }
-  throw std::out_of_range("table " + table.name + " has no usable column " + name);
 }
 
 CardPlace place_in(const Table& table, std::size_t row) {
@@ -94,7 +81,7 @@ void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::v
 
 }  // namespace
 
-CardNumbers numbers_of(const Scorecard& card) {
+CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
   CardNumbers numbers;
   for (const SceneScore& scene : card.scenes)
     for (std::size_t c = 0; c < card.methods.size(); ++c)
@@ -102,7 +89,7 @@ CardNumbers numbers_of(const Scorecard& card) {
         const CardPlace place{scene.name, card.methods[c], scene.noise_m[i]};
         numbers.counts.push_back({place, scene.success[c].at_level[i]});
         for (const JudgedMeasure& measure : scene.measures)
-          if (measure.better != Better::reported)
+          if (kept == KeptMeasures::all || measure.better != Better::reported)
             numbers.means.push_back({place, measure.name, measure.units, measure.at_level[c][i]});
       }
   return numbers;
@@ -135,8 +122,11 @@ Table means_table(const CardNumbers& numbers) {
     runs.push_back(static_cast<std::int32_t>(row.value.pairs));
     mean.push_back(row.value.mean), low.push_back(row.value.low), high.push_back(row.value.high);
   }
-  Table table{"measures", "means over the successful runs with Student's 95 % interval",
-              places(numbers.means)};
+  Table table{
+      "measures",
+      "means with Student's 95 % intervals: of a measure that is judged over the successful runs, of one that is "
+      "reported over all",
+      places(numbers.means)};
   table.columns.push_back(column_of("measure", "1", "measure", measure));
   table.columns.push_back(column_of("units", "1", "unit of the measure", units));
   table.columns.push_back(column_of("runs", "1", "runs that have a number", runs));

@@ -2,7 +2,9 @@
 // whether a later card agrees with them.
 #pragma once
 
+#include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "analysis/scorecard/scorecard.h"
@@ -26,10 +28,23 @@ struct CardNumbers {
     MeanDifference value;  // NaN where there is none: no run succeeded, or one run has no interval
   };
   std::vector<Count> counts;
-  std::vector<Mean> means;  // of judged measures
+  std::vector<Mean> means;
 };
 
-CardNumbers numbers_of(const Scorecard& card);
+enum class KeptMeasures { judged, all };
+CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept);
+
+// A column of that type, as long as the table's first. Throws std::out_of_range.
+template <class List>
+const List& values_of(const Table& table, const std::string& name) {
+  for (const Column& column : table.columns) {
+    if (column.name != name) continue;
+    const auto* values = std::get_if<List>(&column.values);
+    if (values && values->size() == table.columns.front().length()) return *values;
+    break;
+  }
+  throw std::out_of_range("table " + table.name + " has no usable column " + name);
+}
 
 // As two tables, and back. Throws std::out_of_range for a table without one of the columns, or with one of
 // another type or length.

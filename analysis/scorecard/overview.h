@@ -41,4 +41,9 @@ struct Weakness {
 // method that the card does not have.
 std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& method);
 
+// As tables of a result: "overview", a row for each method, and "behind", a row for each weakness of
+// kOwnMethod.
+Table overview_table(const Scorecard& card);
+Table behind_table(const Scorecard& card);
+
 }  // namespace remote_touch

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/scorecard/card_numbers.h"
+#include "analysis/scorecard/overview.h"
 #include "analysis/statistics/proportion.h"
 #include "analysis/statistics/student.h"
 
@@ -167,57 +169,15 @@ Column counts(const char* name, const char* meaning, std::vector<std::int32_t> v
   return {name, "1", meaning, std::move(values), 1, {}};
 }
 
-Table success_table(const Scorecard& card) {
-  std::vector<std::string> scene, method;
-  std::vector<double> noise, low, high, fraction;
-  std::vector<std::int32_t> events, runs, old_events;
+Table success_table(const Scorecard& card, const CardNumbers& numbers) {
+  std::vector<std::int32_t> old_events;
   for (const SceneScore& s : card.scenes)
     for (std::size_t c = 0; c < card.methods.size(); ++c)
-      for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
+      for (std::size_t i = 0; i < s.noise_m.size(); ++i)
         old_events.push_back(s.old_success.empty() ? -1 : s.old_success[c].at_level[i].events);
-        const Proportion& one = s.success[c].at_level[i];
-        scene.push_back(s.name), method.push_back(card.methods[c]), noise.push_back(s.noise_m[i]);
-        events.push_back(one.events), runs.push_back(one.runs);
-        fraction.push_back(one.fraction), low.push_back(one.low), high.push_back(one.high);
-      }
-  Table table{"success", "share of successful runs with Wilson's 95 % interval"};
-  table.columns = {texts("scene", "scene", scene), texts("method", "method", method)};
-  table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
-  table.columns.push_back(counts("successes", "successful runs", events));
-  table.columns.push_back(
-      counts("runs", "runs; those that are one and the same run, as without noise, count once", runs));
-  table.add("fraction", "1", "share of successful runs", fraction);
-  table.add("low", "1", "lower end of the interval", low);
-  table.add("high", "1", "upper end of the interval", high);
+  Table table = counts_table(numbers);
   table.columns.push_back(
       counts("old_successes", "successes by the rule before; -1: there was none", old_events));
-  return table;
-}
-
-Table measure_table(const Scorecard& card) {
-  std::vector<std::string> scene, method, measure, units;
-  std::vector<double> noise, mean, low, high;
-  std::vector<std::int32_t> runs;
-  for (const SceneScore& s : card.scenes)
-    for (const JudgedMeasure& m : s.measures)
-      for (std::size_t c = 0; c < card.methods.size(); ++c)
-        for (std::size_t i = 0; i < s.noise_m.size(); ++i) {
-          const MeanDifference& one = m.at_level[c][i];
-          scene.push_back(s.name), method.push_back(card.methods[c]);
-          measure.push_back(m.name), units.push_back(m.units), noise.push_back(s.noise_m[i]);
-          runs.push_back(static_cast<std::int32_t>(one.pairs));
-          mean.push_back(one.mean), low.push_back(one.low), high.push_back(one.high);
-        }
-  Table table{"measures",
-              "means with Student's 95 % intervals: of a measure that is judged over the successful runs, "
-              "of one that is reported over all"};
-  table.columns = {texts("scene", "scene", scene), texts("method", "method", method),
-                   texts("measure", "measure", measure), texts("units", "unit of the measure", units)};
-  table.add("noise_sigma", "m", "standard deviation of the noise; NaN: the scene's own", noise);
-  table.columns.push_back(counts("runs", "runs that have a number", runs));
-  table.add("mean", "1", "mean, in the measure's unit", mean);
-  table.add("low", "1", "lower end of the interval", low);
-  table.add("high", "1", "upper end of the interval", high);
   return table;
 }
 
@@ -278,10 +238,12 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
 }  // namespace
 
 Figure scorecard_figure(const Scorecard& card) {
+  const CardNumbers numbers = numbers_of(card, KeptMeasures::all);
   Figure figure{kScorecardFigure,
                 "Scorecard of 3-DOF renderers",
                 "Share of successful runs over noise, scene by scene. Every method met the same noise.",
-                {success_table(card), measure_table(card), ranking_table(card)}};
+                {success_table(card, numbers), means_table(numbers), ranking_table(card),
+                 overview_table(card), behind_table(card)}};
   for (std::size_t i = 0; i < card.scenes.size(); ++i) add_panel(card, i, figure);
   return figure;
 }

@@ -69,7 +69,7 @@ void correct(Scorecard& card);
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
 // The tables of the result file: success, measures and standings, with a row for each scene, method, and
-// level or measure; and the curves of every scene's panel.
+// level or measure; overview and behind, see overview.h; and the curves of every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch

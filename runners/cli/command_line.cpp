@@ -172,6 +172,9 @@ void add_scorecard(Subcommands& commands) {
   add_scorecard_options(store_command, *store, "all");
   add_seeds(store_command, *store);
   store_command->add_option("--stored", store->file, "the file to write")->capture_default_str();
+  auto [summary_command, summary] =
+      below.add("summary", "print what the stored scorecard says, as Markdown", command_scorecard_summary);
+  summary_command->add_option("--stored", summary->file, "the stored scorecard")->capture_default_str();
 }
 
 void add_compare(Subcommands& commands) {

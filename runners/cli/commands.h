@@ -60,7 +60,7 @@ int command_sweep(const CommandLine& line, const SweepRequest& request);
 struct ScorecardRequest {
   std::vector<std::string> methods, scenes;  // empty: all
   std::string folder;
-  int seeds = 20;
+  int seeds = 10;
   int threads = 0;  // 0: as OpenMP decides
 };
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request);
@@ -79,6 +79,11 @@ struct ScorecardCheckRequest {
   int threads = 0;
 };
 int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest& request);
+
+struct ScorecardSummaryRequest {
+  std::string file = kStoredCard;
+};
+int command_scorecard_summary(const CommandLine& line, const ScorecardSummaryRequest& request);
 
 struct MergeRequest {
   std::vector<std::string> shards;

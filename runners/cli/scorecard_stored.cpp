@@ -79,4 +79,9 @@ int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest
   }
 }
 
+int command_scorecard_summary(const CommandLine&, const ScorecardSummaryRequest& request) {
+  std::fputs(stored_summary(request.file).c_str(), stdout);
+  return kDone;
+}
+
 }  // namespace remote_touch

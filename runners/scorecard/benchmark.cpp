@@ -224,12 +224,14 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   if (!tool.empty()) run["renderer"].update(parse_json(tool, label));
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
+  // It then has as many runs as others have with noise, so that as many pairs decide.
   const bool own_noise = noise.empty();
+  const auto noisy_levels = static_cast<int>(scorecard_noise_m().size()) - 1;
   const Json levels = own_noise ? Json::array({kScorecardSeed}) : Json(scorecard_noise_m());
   return Sweep::from_json(Json{{"title", name + " with " + method.name + ": " + title},
                                {"experiment", run},
                                {"axes", {{{"parameter", own_noise ? "seed" : noise}, {"values", levels}}}},
-                               {"replicates", replicates},
+                               {"replicates", own_noise ? noisy_levels * replicates : replicates},
                                {"measures", measured(*this)}}
                               .dump(),
                           label);

@@ -40,8 +40,9 @@ struct BenchmarkScene {
   std::vector<Bound> old_success = {};  // the rule before the symmetric one; empty: there was none
   std::string tool = {};  // JSON: settings of the renderers that say which tool they hold; empty: for a HIP
 
-  // The runs of a method: noise levels by replicates, and nothing else, so that cell and replicate, the
-  // keys of all noise, are the same for every method. Throws InputError when it cannot be run.
+  // The runs of a method: noise levels by replicates (of a scene with its own noise, as many runs as others
+  // have with noise), and nothing else, so that cell and replicate, the keys of all noise, are the same for
+  // every method. Throws InputError when it cannot be run.
   Sweep sweep(const Method& method, int replicates) const;
 };
 

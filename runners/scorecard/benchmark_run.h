@@ -25,7 +25,7 @@ struct BenchmarkSweep {
 struct Benchmark {
   std::vector<Method> methods;
   std::vector<BenchmarkScene> scenes;
-  int replicates = 20;
+  int replicates = 10;
   std::filesystem::path folder;
 };
 

@@ -1,10 +1,14 @@
 #include "runners/scorecard/stored_card.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/scorecard/overview.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/text_files/json_text.h"
@@ -26,6 +30,67 @@ Table table_in(const Hdf5Reader& file, const std::string& name) {
   }
   if (table.columns.empty()) file.damaged("has no table " + name);
   return table;
+}
+
+Hdf5Reader stored_card_file(const std::filesystem::path& file) {
+  Hdf5Reader hdf5(file);
+  hdf5.require_kind("figure", kMadeBy);
+  if (attribute(hdf5.attributes(), "figure") != kStoredCardFigure)
+    throw InputError(file.string(), std::string("not a stored card: expected ") + kMadeBy);
+  return hdf5;
+}
+
+// Three digits; a dash where there is no number.
+std::string digits(double value) {
+  if (std::isnan(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string with_unit(double value, const std::string& units) {
+  const bool is_length = units == "m";
+  return digits(is_length ? 1e3 * value : value) + (units == "1" ? "" : is_length ? " mm" : " " + units);
+}
+
+std::string behind_text(const Table& behind, bool shown) {
+  std::string rows;
+  for (std::size_t i = 0; i < values_of<std::vector<std::string>>(behind, "scene").size(); ++i) {
+    if ((values_of<std::vector<std::int32_t>>(behind, "shown")[i] != 0) != shown) continue;
+    const auto text = [&](const char* name) { return values_of<std::vector<std::string>>(behind, name)[i]; };
+    const auto number = [&](const char* name) { return values_of<std::vector<double>>(behind, name)[i]; };
+    rows += "| " + text("scene") + " | " + text("what") + " | " +
+            with_unit(number("own_mean"), text("units")) + " | " +
+            with_unit(number("other_mean"), text("units")) + " (" + text("other") + ") | " +
+            digits(number("p")) + " |\n";
+  }
+  if (rows.empty()) return "None.\n";
+  return std::string("| scene | what | ") + kOwnMethod +
+         " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
+}
+
+std::string overview_text(const Table& overview) {
+  std::string text =
+      "| method | successes with noise (95 %) | without noise | by the rule before | best alone | worst alone |\n"
+      "|---|---|---|---|---|---|\n";
+  const auto& methods = values_of<std::vector<std::string>>(overview, "method");
+  const auto& success = values_of<std::vector<double>>(overview, "success");
+  std::vector<std::size_t> order(methods.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return success[a] > success[b]; });
+  for (const std::size_t i : order) {
+    const auto number = [&](const char* name) {
+      return digits(values_of<std::vector<double>>(overview, name)[i]);
+    };
+    const auto count = [&](const char* name) {
+      return std::to_string(values_of<std::vector<std::int32_t>>(overview, name)[i]);
+    };
+    text += "| " + methods[i] + " | " + number("success") + " (" + number("low") + " to " + number("high") +
+            ") | " + number("noise_free") + " | " + number("old_success") + " | " + count("best") + " | " +
+            count("worst") + " |\n";
+  }
+  return text;
 }
 
 std::vector<std::string> names_in(const Json& configuration, const char* kind) {
@@ -56,20 +121,18 @@ std::string configuration_of(const BenchmarkPlan& plan) {
 
 std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
                               const TextAttributes& provenance) {
-  const CardNumbers numbers = numbers_of(card);
-  return write_figure(file,
-                      {kStoredCardFigure,
-                       "Stored scorecard",
-                       "Successes and means with their intervals, for remote-touch scorecard check.",
-                       {counts_table(numbers), means_table(numbers)}},
-                      provenance);
+  const CardNumbers numbers = numbers_of(card, KeptMeasures::judged);
+  return write_figure(
+      file,
+      {kStoredCardFigure,
+       "Stored scorecard",
+       "Successes and means with their intervals, for remote-touch scorecard check.",
+       {overview_table(card), behind_table(card), counts_table(numbers), means_table(numbers)}},
+      provenance);
 }
 
 StoredCard read_stored_card(const std::filesystem::path& file) {
-  const Hdf5Reader hdf5(file);
-  hdf5.require_kind("figure", kMadeBy);
-  if (attribute(hdf5.attributes(), "figure") != kStoredCardFigure)
-    throw InputError(file.string(), std::string("not a stored card: expected ") + kMadeBy);
+  const Hdf5Reader hdf5 = stored_card_file(file);
   StoredCard stored{attribute(hdf5.attributes(), "config"), 0, {}, {}, {}};
   try {
     const Json all = Json::parse(stored.configuration);
@@ -84,13 +147,28 @@ StoredCard read_stored_card(const std::filesystem::path& file) {
   return stored;
 }
 
+std::string stored_summary(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  try {
+    const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
+    return std::string("Where ") + kOwnMethod + " is not the best, by more than chance:\n\n" +
+           behind_text(behind, true) +
+           "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
+           behind_text(behind, false) + "\nAll methods, means over " +
+           std::to_string(values_of<std::vector<std::int32_t>>(overview, "scenes").at(0)) + " scenes:\n\n" +
+           overview_text(overview);
+  } catch (const std::out_of_range& missing) {
+    hdf5.damaged(missing.what());
+  }
+}
+
 std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
                                      const Scorecard& now) {
   std::vector<std::string> list;
   const Json then = Json::parse(stored.configuration), here = Json::parse(configuration_of(plan));
   compare_definitions(then, here, "methods", "method", list);
   compare_definitions(then, here, "scenes", "scene", list);
-  const std::vector<std::string> numbers = differences(stored.numbers, numbers_of(now));
+  const std::vector<std::string> numbers = differences(stored.numbers, numbers_of(now, KeptMeasures::judged));
   list.insert(list.end(), numbers.begin(), numbers.end());
   return list;
 }

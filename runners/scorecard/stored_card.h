@@ -26,6 +26,10 @@ std::string write_stored_card(const std::filesystem::path& file, const Scorecard
 // Throws InputError for what is not a stored card.
 StoredCard read_stored_card(const std::filesystem::path& file);
 
+// What the stored card says, as Markdown: first where the project's own method is not the best, then all
+// methods. Throws InputError for what is not a stored card.
+std::string stored_summary(const std::filesystem::path& file);
+
 // A sentence for each method and scene of the plan that is not in the stored card, or was defined in another
 // way there, and for each number that does not agree, see differences() of numbers. plan: without scenes
 // that were skipped.

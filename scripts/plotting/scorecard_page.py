@@ -9,12 +9,13 @@ from plotting.plot_error import PlotError
 from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
 from plotting.scorecard_plots import colours_css, level_text, noise_plot
-from plotting.scorecard_tables import (audit_table, cost_table, level_heads, level_tables, measure_table,
-                                       overview_table, success_table)
+from plotting.scorecard_tables import (audit_table, behind_table, cost_table, level_heads, level_tables,
+                                       measure_table, overview_table, success_table)
 
-SCHEMA = "remote-touch-scorecard/1"
+SCHEMA = "remote-touch-scorecard/2"
 OWN_CSS = """
 body { font-size: 15px; max-width: 78rem; }
+h2#reading ~ p { max-width: 60rem; }
 table { width: auto; margin: .5em 0; font-size: 13px; }
 th, td { border: 1px solid #ddd; padding: 2px 7px; text-align: right; font-weight: normal; }
 th.name { text-align: left; white-space: nowrap; } td.left { text-align: left; }
@@ -25,28 +26,55 @@ td.all { background: #eaf7ee; } td.zero { background: #fbe9e6; }
 """
 
 
+def behind_section(card):
+    """What the project's own method is not best in, before all else."""
+    behind = card["behind"]
+    if not behind:
+        return ""
+    method = esc(behind["method"])
+    shown = [one for one in behind["list"] if one["shown"]]
+    others = [one for one in behind["list"] if not one["shown"]]
+    parts = [f'<h2 id="behind">Where {method} is not the best</h2>']
+    if shown:
+        parts.append(f"<p>Another method is better by more than chance in {len(shown):d} comparison(s):</p>"
+                     f"{behind_table(card, shown)}")
+    else:
+        parts.append("<p>No other method is better by more than chance in any scene or measure.</p>")
+    if others:
+        parts.append(f"<details><summary>{len(others):d} case(s) in which another method succeeds more often, which may "
+                     f"be chance or was not tested (no noise)</summary>{behind_table(card, others)}</details>")
+    return "\n".join(parts)
+
+
 def how_to_read(card):
     """What the reader of the tables must know."""
-    return f"""<p>Each method ran each scene {card["replicates"]:d} times at each noise level. Noise is given in units \
-of the contact radius r_c = {1e3 * card["contact_radius_m"]:g} mm ("own": the scene has its own noise). It depends on \
+    return f"""<h2 id="reading">How to read the tables</h2>
+<p>Each method ran each scene {card["replicates"]:d} times at each noise level, and a scene with its own \
+noise as often as others at all levels with noise. Noise is given in units of the contact radius \
+r_c = {1e3 * card["contact_radius_m"]:g} mm ("own": the scene's own). It depends on \
 the seed {card["seed"]:d}, the level and the number of the run, not on the method: all methods got the same points in \
 the same frames. The parameters of the tracked sheet were chosen with seeds 1 to {card["last_tuned_seed"]:d}, which no \
 run here uses. Lines are fractions of successful runs with Wilson's 95 % intervals. Where there is no noise and all \
-runs of a method have the same numbers to the last bit, they count as one run in every fraction and mean, and in a \
-comparison if this holds for both methods.</p>
-<p><b>Success.</b> A surface is held while the proxy is at most 0.5 r_c below it; popped through means that the proxy \
-is on the other side. This does not ask the same of all methods: a proxy that is a ball rests 1 r_c above a surface \
-and may sink by 1.5 r_c; a proxy that is a point rests on the surface, with noise a little below it, and may sink by \
-0.5 r_c; the surface of metaballs is higher than both. Direct rendering has no proxy: its position is the HIP itself, \
-so it fails where a scene presses deeper than 0.5 r_c. A held surface must also be felt: there must be a force in the \
-last 0.1 s or, where the path ends in free space, in a quarter of the ticks.</p>
-<p><b>Best and worst</b> are marked only if the paired differences to all other methods, run by run over all noise \
-levels, have 95 % intervals on one side of zero (fractions: Agresti and Min; others: percentile bootstrap with fixed \
-keys). Without a mark these runs do not show a difference. A measure that is judged is compared over the pairs of runs \
-in which both methods succeeded; with fewer than {card["min_pairs"]:d} such pairs there is no verdict. Its means are \
-over the successful runs of each method, so a method that succeeds only where it is easy has the mean of easy runs. A \
-measure that is not judged has its mean over all runs that have a number. The intervals are not adjusted for the \
-number of comparisons.</p>"""
+runs of a method have the same numbers to the last bit, they count as one run. Runs without noise are never mixed with \
+the others.</p>
+<p><b>Success</b> in most scenes is a held surface, by one rule for all methods. Judged is the point that touches: of a \
+ball the point that faces the surface, of a point the point itself, of direct rendering (a spring without a proxy) \
+the place where its force would end. From 0.1 s after the HIP got below the true surface, this point must never be \
+farther from it than the tolerance, below or above, and there must be a force in 90 % of these ticks. The rule before \
+allowed a ball to sink three times as far as a point, did not count floating, and looked at the last tick only; its \
+fractions stand beside those of the new one. Where the truth is not known in a tenth of these ticks, a run is no \
+success.</p>
+<p><b>Best and worst</b> are marked only where one method differs from all others by more than chance: fractions by the \
+exact sign test, other measures by Student's t with a correction for skewness, run by run over all levels with noise. \
+The p values of all pairs of methods in all scenes and measures of this page are corrected together (Holm), so that \
+the probability of any false verdict on the page is at most {card["significance"]:g}. Fewer than {card["min_pairs"]:d} \
+pairs give no verdict. A measure that is judged is compared over the pairs of runs in which both methods succeeded. \
+Its means are over the successful runs of each method, so a method that succeeds only where it is easy has the mean of \
+easy runs. A measure that is not judged has its mean over all runs that have a number. Intervals of single numbers \
+are not corrected.</p>
+<p><b>In units of perception</b>: jump_fraction_10 is the fraction of the frame updates at which the force changes by \
+more than 10 % of the force before; packet_rate_10 is how many packets a second a connection with a dead-band of 10 % \
+would send (IEEE 1918.1.1).</p>"""
 
 
 def scene_section(card, scene, link):
@@ -102,10 +130,12 @@ def scorecard_page(card, link=lambda file: file):
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Scorecard</title><style>{CSS}{OWN_CSS}{PLOT_CSS}{colours_css(len(card["methods"]))}</style></head><body>
 <h1>Scorecard of 3-DOF renderers</h1>
-{how_to_read(card)}
-{skipped_section(card)}
+{behind_section(card)}
+<h2 id="overview">All scenes</h2>
 {overview_table(card)}
+{skipped_section(card)}
 {contents(card)}
+{how_to_read(card)}
 {scenes}
 {audit_section(card)}
 {costs_section(card)}

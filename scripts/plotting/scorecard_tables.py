@@ -55,12 +55,35 @@ def named_rows(card, methods, cells):
 
 
 def overview_table(card):
-    """Successes of all scenes together, and how often each method stands out."""
-    heads = ["", f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone",
-             "mean share of successes"]
-    return table(heads, named_rows(card, card["methods"], lambda method: [
+    """Successes of all scenes together, and how often each method stands out; the most successful first."""
+    interval = "<br><small>mean over the scenes, 95 % interval</small>"
+    heads = ["", f"successes with noise{interval}", f"successes without noise{interval}",
+             f"by the rule before, with noise{interval}",
+             f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone"]
+    rows = named_rows(card, card["methods"], lambda method: [
+        cell(with_interval(method["success"], 1)), cell(with_interval(method["noise_free"], 1)),
+        cell(with_interval(method["old_success"], 1)),
         cell(f"{method['scenes_held']:d} of {len(card['scenes'])}"), cell(f"{method['scenes_best']:d}"),
-        cell(f"{method['scenes_worst']:d}"), cell(f"{method['mean_success']:.2f}")]))
+        cell(f"{method['scenes_worst']:d}")])
+    order = sorted(range(len(rows)), key=lambda c: -(card["methods"][c]["success"]["mean"] or 0))
+    return table(heads, [rows[c] for c in order])
+
+
+def behind_table(card, weaknesses):
+    """What a method is behind in, and whom; each scene leads to its section."""
+    def value(one, key):
+        factor, units = SHOWN_UNITS.get(one["units"], (1, one["units"]))
+        return f"{number(one[key], factor)} {esc(units)}".strip()
+
+    def row(one):
+        more = "" if one["ahead"] == 1 else f" <small>and {one['ahead'] - 1:d} more</small>"
+        p = "-" if one["p"] is None else f"{one['p']:.2g}"
+        return [f'<th class="name"><a href="#{esc(one["scene"])}">{esc(one["scene"])}</a></th>',
+                cell(esc(one["what"]), "left"), cell(value(one, "own_mean")),
+                cell(f"{value(one, 'other_mean')} <small>{esc(one['other'])}</small>{more}"), cell(p)]
+
+    heads = ["scene", "what", esc(card["behind"]["method"]), "better", "p, corrected"]
+    return table(heads, [row(one) for one in weaknesses])
 
 
 def failure_text(failure, levels, link):
@@ -81,14 +104,16 @@ def success_table(card, scene, link):
             successes, runs = share["successes"], share["runs"]
             yield cell(f"{successes:d}/{runs:d}", "all" if successes == runs else "zero" if successes == 0 else "some")
         yield cell(share_text(one["overall"]), MARKS[one["mark"]])
+        yield cell("-" if one["old"] is None else f"{one['old']['overall']['fraction']:.2f}")
         yield cell(failure_text(one["failure"], levels, link), "left")
 
-    heads = ["noise / r_c", *levels, "all, 95 % interval", "a typical failure, at the lowest noise that has one"]
+    heads = ["noise / r_c", *levels, "with noise, 95 % interval", "by the rule before",
+             "a typical failure, at the lowest noise that has one"]
     return table(heads, named_rows(card, scene["success"], cells))
 
 
 def measure_table(card, scene):
-    """The measures over all noise levels."""
+    """The measures over all levels with noise."""
     heads = [f"{esc(measure['name'])} {esc(unit_of(measure)[1])}<br><small>{BETTER[measure['better']]}</small>"
              for measure in scene["measures"]]
     of_method = [[(measure, measure["methods"][c]) for measure in scene["measures"]]

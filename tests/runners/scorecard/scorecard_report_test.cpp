@@ -120,7 +120,7 @@ TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
 
 TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
   const Figure figure = scorecard_figure(two_scenes());
-  ASSERT_EQ(figure.tables.size(), 5u);
+  ASSERT_EQ(figure.tables.size(), 7u);
   EXPECT_EQ(figure.tables[0].columns[0].length(), 2u * 2 + 2u * 1);
   for (const Table& table : figure.tables)
     for (const Column& column : table.columns)
