@@ -13,6 +13,10 @@ from commands import EMPTY, KINDS, done_runs, read, restore, state_of
 # What only a library or the language would say.
 FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library refused|libgomp|terminate|what\(\)|"
                      r"vector::|malloc")
+# The C library says so by itself, before the program's line, where the HDF5 library damaged the heap after it found no
+# memory. It cannot be told not to.
+DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\))[^\n]*\n"
+                          r"(?=remote-touch: the HDF5 library failed: out of memory)")
 # What the message of each failure has to say.
 REASON = {"ENOSPC": "No space left on device", "EIO": "Input/output error", "ENOMEM": "memory"}
 
@@ -33,6 +37,7 @@ class Outcome:
     failed: bool    # the call came, and failed
     harmless: bool  # with the whole result all the same
     problem: str    # empty: none
+    damaged_heap: bool = False  # by the HDF5 library, as the C library said
 
 
 def counted(counts):
@@ -101,12 +106,13 @@ class Trials:
             if not problem:
                 problem = self.again(state)
             restore(self.folder, self.scene.before)
-        return Outcome(failed, harmless, problem)
+        damaged = done is not None and bool(DAMAGED_HEAP.match(done.stderr.decode(errors="replace")))
+        return Outcome(failed, harmless, problem, damaged)
 
     def judge(self, failure, done, state):
         if done is None:
             return "does not end"
-        message = done.stderr.decode(errors="replace")
+        message = DAMAGED_HEAP.sub("", done.stderr.decode(errors="replace"))
         if failure.how == "KILL":
             if done.returncode != -9 and failure.process == 0 and not message:
                 return f"exit {done.returncode} after a kill"
