@@ -12,6 +12,9 @@
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <string_view>
+
+#include "analysis/storage/hdf5_file.h"
 
 namespace remote_touch {
 
@@ -54,15 +57,17 @@ void limit(int resource, rlim_t wanted) {
 }
 
 // In the child. Signals end it, whatever the program does with them; so does the end of the program.
-[[noreturn]] void answer(int to, const ChildLimits& limits, const std::function<std::string()>& work) {
+[[noreturn]] void answer(int to, const ChildLimits& limits,
+                         const std::function<std::string()>& work) noexcept {
   for (const int signal :
        {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP})
     std::signal(signal, SIG_DFL);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Hdf5Work::silence();
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_s);
   limit(RLIMIT_AS, address_space() + limits.memory_bytes);
-  const auto send = [to](char kind, const std::string& text) {
+  const auto send = [to](char kind, std::string_view text) {  // allocates nothing
     write_all(to, &kind, 1);
     write_all(to, text.data(), text.size());
   };
@@ -82,7 +87,7 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
   }
   if (WIFEXITED(status)) return {};
   if (WTERMSIG(status) == SIGXCPU) return "it takes more than " + std::to_string(limits.processor_s) + " s";
-  return "its reader ended with signal " + std::to_string(WTERMSIG(status));
+  return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + ", perhaps without memory";
 }
 
 }  // namespace
@@ -109,7 +114,7 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
   ::close(ends[0]);
   if (child < 0) throw std::runtime_error(std::strerror(error));
   if (const std::string end = end_of(child, limits); !end.empty()) throw std::runtime_error(end);
-  if (answered.empty()) throw std::runtime_error("its reader gave no answer");
+  if (answered.empty()) throw std::runtime_error("its reader gave no answer, perhaps without memory");
   const char kind = answered.front();
   answered.erase(0, 1);
   if (kind == kNoMemory)

@@ -21,13 +21,17 @@ class Hdf5Work {
   Hdf5Work(const Hdf5Work&) : Hdf5Work() {}
   Hdf5Work& operator=(const Hdf5Work&) = default;
   ~Hdf5Work() { --count_; }
-  // Also for a signal handler: whether there is one, and the file descriptor of the messages to the user.
+  // Also for a signal handler: whether there is one, and the file descriptor of the messages to the user; -1:
+  // there are none.
   static bool is_on() { return count_ > 0; }
-  static int messages() { return messages_; }
+  static int messages() { return is_silent_ ? -1 : static_cast<int>(messages_); }
   // While the library's own messages are sent elsewhere.
   static void move_messages(int descriptor) { messages_ = descriptor; }
+  // In a child process that reads for this one, which tells what became of it.
+  static void silence() { is_silent_ = true; }
 
  private:
+  static inline std::atomic<bool> is_silent_ = false;
   static inline std::atomic<int> messages_ = 2;
   static inline std::atomic<int> count_ = 0;
 };

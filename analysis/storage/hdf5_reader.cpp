@@ -1,6 +1,7 @@
 #include "analysis/storage/hdf5_reader.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <new>
 #include <stdexcept>
@@ -23,7 +24,9 @@ namespace {
 // Where the HDF5 part of a file may begin: at 0, 512, 1024, 2048, ...
 bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();
   stream.exceptions(std::ios::badbit);  // no memory is no missing signature
   for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
     std::string found(kSignature.size(), '\0');

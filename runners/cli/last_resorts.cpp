@@ -15,6 +15,7 @@ namespace remote_touch {
 namespace {
 
 int exit_code_of_last_resorts = EXIT_FAILURE;
+volatile std::sig_atomic_t found_no_memory = 0;
 
 constexpr std::string_view kNoMemory = "remote-touch: out of memory\n";
 constexpr std::string_view kHdf5Failed =
@@ -39,12 +40,18 @@ constexpr std::string_view kHdf5Failed =
 
 void on_crash(int signal) {
   if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
+  if (found_no_memory) end_at_once(kNoMemory);
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
 
 void on_exit_by_a_library() {
   if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
+}
+
+[[noreturn]] void note_that_memory_ran_out() {
+  found_no_memory = 1;
+  throw std::bad_alloc();
 }
 
 void take_if_free(int signal) {
@@ -68,6 +75,7 @@ void use_own_stack() {
 void install_last_resorts(int exit_code) {
   exit_code_of_last_resorts = exit_code;
   std::set_terminate(on_terminate);
+  std::set_new_handler(note_that_memory_ran_out);
   std::atexit(on_exit_by_a_library);
   use_own_stack();
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT}) take_if_free(signal);

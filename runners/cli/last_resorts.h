@@ -1,6 +1,6 @@
 // One clear line where a program can go on no longer: no memory in a thread or before main() begins, and a
 // crash or an exit inside the HDF5 library, which does not always survive that it finds no memory or a
-// damaged file.
+// damaged file. A crash after some call found no memory counts as that: not every library takes it well.
 #pragma once
 
 namespace remote_touch {

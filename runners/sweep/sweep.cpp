@@ -1,8 +1,10 @@
 #include "runners/sweep/sweep.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -169,6 +171,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
   const auto cells = static_cast<long>(grid.cell_count());
   long first_wrong = cells;
   std::string problem;
+  std::atomic<bool> lacks_memory{false};  // that is no problem of a cell
   std::set<RecordingPart> parts;
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
@@ -177,11 +180,14 @@ void Sweep::Definition::check_cells(const std::string& label) {
       if (read.empty()) continue;
 #pragma omp critical(sweep_inputs)
       parts.insert(read.begin(), read.end());
+    } catch (const std::bad_alloc&) {
+      lacks_memory = true;
     } catch (const std::exception& error) {
 #pragma omp critical(sweep_check)
       if (i < first_wrong) first_wrong = i, problem = error.what();
     }
   }
+  if (lacks_memory) throw std::bad_alloc();
   inputs.assign(parts.begin(), parts.end());
   if (first_wrong == cells) return;
   std::string where;

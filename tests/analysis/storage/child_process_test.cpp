@@ -57,7 +57,7 @@ TEST(ChildProcess, ThatCrashesIsTold) {
               std::raise(SIGSEGV);
               return {};
             }),
-            "its reader ended with signal 11");
+            "its reader ended with signal 11, perhaps without memory");
 }
 
 }  // namespace

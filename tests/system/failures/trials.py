@@ -17,6 +17,8 @@ FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library 
 # memory. It cannot be told not to.
 DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\))[^\n]*\n"
                           r"(?=remote-touch: the HDF5 library failed: out of memory)")
+# OpenMP ends the program by itself where it finds no memory for its threads, and its library has no call to prevent it.
+ENDED_BY_OPENMP = re.compile(r"\A\nlibgomp: Out of memory allocating \d+ bytes\n\Z")
 # What the message of each failure has to say.
 REASON = {"ENOSPC": "No space left on device", "EIO": "Input/output error", "ENOMEM": "memory"}
 
@@ -38,6 +40,7 @@ class Outcome:
     harmless: bool  # with the whole result all the same
     problem: str    # empty: none
     damaged_heap: bool = False  # by the HDF5 library, as the C library said
+    by_openmp: bool = False  # its library ended the program
 
 
 def counted(counts):
@@ -106,8 +109,8 @@ class Trials:
             if not problem:
                 problem = self.again(state)
             restore(self.folder, self.scene.before)
-        damaged = done is not None and bool(DAMAGED_HEAP.match(done.stderr.decode(errors="replace")))
-        return Outcome(failed, harmless, problem, damaged)
+        message = "" if done is None else done.stderr.decode(errors="replace")
+        return Outcome(failed, harmless, problem, bool(DAMAGED_HEAP.match(message)), bool(ENDED_BY_OPENMP.match(message)))
 
     def judge(self, failure, done, state):
         if done is None:
@@ -117,6 +120,8 @@ class Trials:
             if done.returncode != -9 and failure.process == 0 and not message:
                 return f"exit {done.returncode} after a kill"
             return self.lost(state)
+        if done.returncode == 1 and ENDED_BY_OPENMP.match(message):
+            return self.lost(state) or self.litter(failure, state)
         if done.returncode not in (0, 2):
             return f"exit {done.returncode}: {message[:300]!r}"
         if done.returncode == 2:
