@@ -49,6 +49,7 @@ def program_tests(root, build):
     program = str(build / "remote-touch")
     for name in [name for name in listed(program, "figures") if name not in SLOW_FIGURES]:
         yield Test(f"figure {name}", [program, "-q", "figure", name, "-o", "figures"], "program")
+    yield Test("reference", [str(root / "scripts/reference"), "--check", program], "program")
     for renderer in ("proxy", "tracked-sheet"):
         yield Test(f"verify {renderer}", [program, "verify", renderer], "program")
     for subject in ("compare", "results", "live", "scorecard", "sweep"):
@@ -66,10 +67,17 @@ class Machine:
         self.root, self.build, self.scratch = root, build, scratch
         scratch.mkdir(parents=True, exist_ok=True)
 
+    def cache(self, mutation):
+        return self.scratch / f"cache-{mutation}"
+
+    def forget(self, mutation):
+        shutil.rmtree(self.cache(mutation), ignore_errors=True)
+
     def run(self, command, seconds, mutation=None, reached=None):
         """True when the command ends with 0 in time."""
         folder = pathlib.Path(tempfile.mkdtemp(dir=self.scratch))
-        env = os.environ | {"TMPDIR": str(folder), "OMP_NUM_THREADS": "1"}
+        # Tools that were made without the mistake would hide it.
+        env = os.environ | {"TMPDIR": str(folder), "OMP_NUM_THREADS": "1", "REMOTE_TOUCH_CACHE": str(self.cache(mutation))}
         env.setdefault("REMOTE_TOUCH_DATA", str(self.root.parent / "shared" / "data"))
         for name, value in (("REMOTE_TOUCH_MUTATION", mutation), ("REMOTE_TOUCH_MUTATION_REACHED", reached)):
             env.pop(name, None)
@@ -126,9 +134,12 @@ def batches(tests, mutation_file):
 def try_mutation(machine, number, file, tests):
     """(stage, name of what found it), or ("survived", "") or ("unreached", "")."""
     reaching = [test for test in tests if number in test.reached]
-    for stage in STAGES:
-        of_stage = [test for test in reaching if test.stage == stage]
-        for command, seconds, name in batches(of_stage, file):
-            if not machine.run(command, seconds, mutation=number):
-                return stage, name
+    try:
+        for stage in STAGES:
+            of_stage = [test for test in reaching if test.stage == stage]
+            for command, seconds, name in batches(of_stage, file):
+                if not machine.run(command, seconds, mutation=number):
+                    return stage, name
+    finally:
+        machine.forget(number)
     return ("survived" if reaching else "unreached"), ""
