@@ -70,6 +70,7 @@ TEST(UnionOfSpheres, WhatIsReportedIsTrue) {
     int ticks = 0, near = 0, at_hip = 0;
     walk_all(p, [&](const PointCloud& cloud, const Vec3& hip, const RenderOutput& out) {
       const double truth = nearest_region(cloud, out.proxy_W);
+      ASSERT_LE(out.steps, p.steps_per_tick);
       ASSERT_EQ(std::isfinite(out.nearest_distance_m), truth <= p.r3_m);
       if (std::isfinite(out.nearest_distance_m)) {
         ASSERT_NEAR(out.nearest_distance_m, truth, 1e-16);

@@ -59,6 +59,20 @@ TEST(SphereCover, TakesWhatAPlainSearchTakes) {
   }
 }
 
+// Cells of a millimetre would be 1e12 in a box of ten metres, though the points are few.
+TEST(SphereCover, TakesFewPointsFarApartWithoutACellForEveryMillimetre) {
+  const Vec3 far = Vec3::Constant(5);
+  const std::vector<Sphere> choice{{far, 0.001}, {-far, 0.001}, {Vec3::Zero(), 0.001}};
+  for (const Vec3& middle : {Vec3(0, 0, 0), Vec3(7, -7, 7)}) {
+    std::vector<Sphere> there = choice;
+    for (Sphere& sphere : there) sphere.centre += middle;
+    const SphereCover cover({middle - far, middle + far}, there, 0.001);
+    const SphereCover::Result result = cover.cover(0, 10);
+    EXPECT_EQ(result.spheres.size(), 2u);
+    EXPECT_EQ(result.left, 0u);
+  }
+}
+
 // The surface lies inside the union, and the union close to the tool: as close as the leaves are many.
 TEST(ToolSpheres, CoverTheToolTheCloserTheMoreThereAre) {
   for (const VoxelTool& tool : {tool_of("husky"), *scenes::box_tool({0.02, 0.005, 0.01})}) {

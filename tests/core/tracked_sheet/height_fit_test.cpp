@@ -172,5 +172,13 @@ TEST(Trend, FewPointsHaveNone) {
   for (const double c : fit_trend(points, 0.01).c) EXPECT_EQ(c, 0);
 }
 
+// On two lines any curvature between them fits: many points do not determine it.
+TEST(Trend, PointsThatDoNotDetermineACurvatureHaveNone) {
+  PatchPoints points(scenes::kernels());
+  points.reserve(400);
+  for (int i = 0; i < 400; ++i) points.add({i % 2 ? 1.0 : -1.0, 0.01 * (i - 200), 0.3}, true);
+  for (const double c : fit_trend(points, 0.01).c) EXPECT_EQ(c, 0);
+}
+
 }  // namespace
 }  // namespace remote_touch::height_fit_test

@@ -85,6 +85,8 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   for (std::size_t k = 0; k < disks.size(); ++k) {
     EXPECT_EQ(disks.distance_m(k), sample_field(*kTool, disks.p_T(k)).distance_m);
     EXPECT_EQ(disks.lower_m(k), lower_bound_m(disks.disk(k)));
+    EXPECT_EQ(disks.disk(k).at.gradient_T, sample_field(*kTool, disks.p_T(k)).gradient_T);
+    EXPECT_LT(disks.disk(k).at.gradient_T.x(), -0.5) << "out of the tool";
   }
 }
 
