@@ -100,9 +100,12 @@ std::shared_ptr<const NeighbourSearch> FrameAverage::next(const NeighbourSearch&
   take(points);
   shown_last_ = 1 - shown_last_;
   BlockSearch& shown = *shown_[shown_last_];
-  shown.clear(seen_.size(), points.organised_columns(), points.has_stiffness());
-  if (const double* stiffness = all_.view().stiffness; stiffness && points.has_stiffness())
-    for (std::size_t i = 0; i < all_.size(); ++i) shown.set_stiffness(all_.index()[i], stiffness[i]);
+  shown.clear(seen_.size(), points.organised_columns(), points.has_fixture_radius(), points.has_stiffness());
+  const PointsView view_of_all = all_.view();
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    if (points.has_fixture_radius()) shown.set_fixture_radius(all_.index()[i], view_of_all.radius[i]);
+    if (points.has_stiffness()) shown.set_stiffness(all_.index()[i], view_of_all.stiffness[i]);
+  }
   const ViewPoint view = view_point(points, s_.view_direction);
   for (std::size_t i = 0; i < seen_.size(); ++i)
     shown.set(i, s_.rule == AverageRule::mean ? mean(i) : exponential(i, view));

@@ -43,7 +43,8 @@ class FrameAverage {
   void reserve(std::size_t points);
   // The averaged points of a stream that goes on with this frame; valid until the next call but one. A frame
   // of another size begins anew, but one without points counts as one in which all are missing. Allocates
-  // only for a frame larger than reserved. Regions r_f are not taken over.
+  // only for a frame larger than reserved. r_f and k_s are those of the newest frame; a point that is missing
+  // there has neither.
   std::shared_ptr<const NeighbourSearch> next(const NeighbourSearch& points);
 
  private:

@@ -66,7 +66,7 @@ Parameters parameters(SensorFaults& s) {
        "standard deviation of the noise along the viewing direction at 1 m from the sensor; it grows with the square of the distance"},
       {"ray_noise_correlation_m", &s.ray_noise.correlation_m, 0, 10,
        "noise is interpolated between the nodes of a lattice of this pitch across the view, in images at a depth of 1 m; 0: independent in each point"},
-      {"ray_noise_memory", &s.ray_noise.memory, 0, 0.99,
+      {"ray_noise_memory_fraction", &s.ray_noise.memory, 0, 0.99,
        "correlation of the noise of successive frames, as behind a filter in time; 0: new noise in every frame"},
       {"sensor_distance_m", &s.sensor_distance_m, 0, 100,
        "distance of the sensor from the origin, against view_direction, for ray_noise_m; in images the distance of each point from the camera is used instead"},

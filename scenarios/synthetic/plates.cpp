@@ -21,7 +21,8 @@ Parameters parameters(Plates::Settings& s) {
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"plates",
-       Rows{{"x_m", "y_m", "z_m", "size_x_m", "size_z_m", "velocity_x", "velocity_y", "from_s", "until_s"},
+       Rows{{"x_m", "y_m", "z_m", "size_x_m", "size_z_m", "velocity_x_m_per_s", "velocity_y_m_per_s",
+             "from_s", "until_s"},
             &s.plates},
        -1000, 1000,
        "a row for each plate: centre at the start, size along x and z, velocity along x and y in m/s, when it starts and stops to move; the first is the true surface"},

@@ -102,16 +102,38 @@ TEST(FrameAverage, AnEmptyFrameIsOneInWhichAllAreMissing) {
   EXPECT_EQ(count(*average.next(*make_search(scenes::flat_grid(10)))), 100u);
 }
 
+TEST(FrameAverage, RegionsAndStiffnessAreThoseOfTheNewestFrame) {
+  FrameAverage average({}, scenes::kernels());
+  PointCloud cloud = scenes::flat_grid(20);
+  cloud.fixture_radius_m.assign(cloud.size(), 0.003);
+  cloud.stiffness_N_per_m.assign(cloud.size(), 50);
+  cloud.fixture_radius_m[7] = 0.01;
+  const auto points = average.next(*make_search(cloud));
+  EXPECT_TRUE(points->has_regions());
+  EXPECT_EQ(points->max_fixture_radius_m(), 0.01);
+  GatheredPoints all;
+  all.reserve(points->size(), true, true);
+  points->gather({Vec3::Zero(), 10}, scenes::kernels(), all);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all.view().radius[i], all.index()[i] == 7 ? 0.01 : 0.003);
+    EXPECT_EQ(all.view().stiffness[i], 50);
+  }
+}
+
 TEST(BlockSearch, FindsWhatBruteForceFinds) {
-  const PointCloud cloud = scenes::random_cloud(1000, 0.05, 4);
+  PointCloud cloud = scenes::random_cloud(1000, 0.05, 4);
+  for (int i = 0; i < 1000; ++i) cloud.fixture_radius_m.push_back(i % 50 == 0 ? 0.02 : 0);
   const BruteForceSearch oracle(cloud);
   BlockSearch search;
-  search.clear(1003, 0, false);
-  for (std::size_t i = 0; i < cloud.size(); ++i) search.set(i, cloud.point(i));
+  search.clear(1003, 0, true, false);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    search.set(i, cloud.point(i));
+    search.set_fixture_radius(i, cloud.fixture_radius_m[i]);
+  }
   search.finish();
   for (const double radius : {0.0, 0.004, 0.03, 0.2}) {
     GatheredPoints a, b;
-    a.reserve(1003, false, false), b.reserve(1003, false, false);
+    a.reserve(1003, true, false), b.reserve(1003, true, false);
     oracle.gather({Vec3(0.01, -0.02, 0.005), radius}, scenes::kernels(), a);
     search.gather({Vec3(0.01, -0.02, 0.005), radius}, scenes::kernels(), b);
     ASSERT_EQ(a.size(), b.size()) << radius;

@@ -122,7 +122,17 @@ bool carries_unit(const std::string& name) {
                                               "vanish_at_frame",
                                               "empty_frame",
                                               "view_direction",
-                                              "threshold"};
+                                              "threshold",
+                                              "normal_neighbours",
+                                              "friction",
+                                              "fused_frames",
+                                              "view",
+                                              "alpha",
+                                              "persistence_hits",
+                                              "persistence_frames",
+                                              "mean_frames",
+                                              "radius_ratio",
+                                              "neighbours"};
   static const char* const kUnits[] = {"_probability", "_fraction", "_m",          "_s",          "_hz",
                                        "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",
                                        "_Ns_per_m",    "_m_per_s",  "_m_per_s2",   "_N",          "_Nm",

@@ -103,7 +103,7 @@ TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("a b.json", "{}").string()}); }), "expected letters");
   EXPECT_HAS(refusal([&] { chosen_methods({folder.write("bad.json", "[").string()}); }), "expected JSON");
   EXPECT_HAS(refusal([] { chosen_scenes({"none.json"}); }), "none.json: cannot be read");
-  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected ");
+  EXPECT_HAS(refusal([] { chosen_methods({"nobody"}); }), "method nobody: unknown: expected finger-proxy, ");
   EXPECT_HAS(refusal([] { chosen_scenes({"nowhere"}); }), "scene nowhere: unknown: expected ");
   EXPECT_HAS(refusal([] { chosen_scenes({"flat-press", "flat-press"}); }), "comes twice");
 }
