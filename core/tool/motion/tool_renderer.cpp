@@ -15,7 +15,7 @@ constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each othe
 
 }  // namespace
 
-ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+ToolRenderer::ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                            const Kernels& kernels)
     : ToolRenderer(parameters, tool, kernels, make_tool_motion(parameters, *tool)) {}
 

@@ -17,7 +17,7 @@ namespace remote_touch {
 class ToolRenderer final : public Renderer {
  public:
   // pre: validate(parameters) is empty.
-  ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+  ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                const Kernels& kernels);
   // With a rule of its own instead of parameters.contact_rule, which then says how contacts are counted.
   ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
