@@ -6,14 +6,14 @@
 
 namespace remote_touch {
 
-// How far the rendered surface lies above the true one: mean difference of the centre's distance to the true
-// surface and to the nearest point, over the ticks that end in contact and have a known truth, m; and its
-// standard deviation over them, m. NaN without any.
+// How far the rendered surface lies above the true one: the distance from the centre of the proxy to the true
+// surface less that to the nearest point, m, as mean and standard deviation over the ticks that end in
+// contact and have a known truth. NaN if there is no such tick.
 double mean_height_m(const Trace& trace);
 double height_sd_m(const Trace& trace);
-// Distance of the centre to the true surface, over the ticks with a force and a known truth: mean and
-// standard deviation, m; NaN without any. Unlike the height it does not depend on the points, so it can
-// compare renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
+// Distance of the centre from the true surface, m: mean and standard deviation over the ticks with a force
+// and a known truth; NaN if there is no such tick. Unlike the height it does not depend on the points, so it
+// can compare renderers whose proxy lies on the surface with those whose proxy stays r_c above it.
 double mean_distance_m(const Trace& trace);
 double distance_sd_m(const Trace& trace);
 // Distance of the centre to the true surface in the last tick, m, negative behind it; NaN if it is not known.

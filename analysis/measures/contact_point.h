@@ -1,4 +1,5 @@
-// The contact point: the point on the sphere of radius r_c around the proxy that faces the surface.
+// The contact point of a ball: the point on the sphere of radius r_c around the proxy that faces the surface,
+// by the normal of the renderer. For all renderers, by the true normal: rendered_contact.h.
 #pragma once
 
 #include "analysis/trace/trace.h"

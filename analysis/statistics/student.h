@@ -7,16 +7,17 @@
 
 namespace remote_touch {
 
-// Probability that |t| is at least so large, with so many degrees of freedom (Abramowitz and Stegun, 26.7.3
-// and 26.7.4). pre: degrees >= 1.
+// Two-sided p value: the probability of a |t| at least as large, with this number of degrees of freedom
+// (Abramowitz and Stegun, 26.7.3 and 26.7.4). pre: degrees >= 1.
 double student_two_sided(double t, int degrees);
-// The t that is exceeded, on either side, with this probability in (0, 1].
+// Two-sided critical value: |t| is larger than this with the given probability in (0, 1].
 double student_quantile(double probability, int degrees);
 
 // Mean over all numbers and its 95 % interval, from the scatter within each group, such as a noise level: the
 // means of groups may differ. Degrees of freedom by F. Satterthwaite (Biometrics Bulletin 2 (1946), 110-114),
-// rounded down. A number that is alone in its group shows no scatter: all those are one group, except where
-// certain[i] says that group i has none (empty: nowhere). NaNs are skipped; NaN with too few.
+// rounded down. A single number in a group shows no scatter: all single numbers together form one group,
+// except where certain[i] says that group i has none (empty: false for all groups). NaNs are skipped; NaN
+// with too few.
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
                             const std::vector<bool>& certain = {});
 
@@ -25,11 +26,15 @@ MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
 // could give for so many pairs, 2^(1 - n): the largest of the three. 1 for fewer than two numbers, and where
 // both forms of t disagree about the sign. NaNs are skipped.
 //
-// The probability of p < 0.05 without a true difference is at most 0.05 where a difference is as likely as
-// its opposite, as of two equal methods, however skewed their values are. Of differences that are skewed
-// themselves around a mean of 0 it is 0.06 at 12 pairs and 0.05 at 20 if they are exponential, and 0.09 and
-// 0.07 if they are lognormal (sigma 1), where t alone gives 0.10 and 0.08, 0.15 and 0.13; no test of a mean
-// is exact for all of them.
+// Probability of a false p < 0.05 (no true difference): at most 0.05 if a difference is as likely as its
+// opposite, as for two equal methods, however skewed their values are. If the differences themselves are
+// skewed around a mean of 0, it is larger; in brackets that of t alone:
+//
+//                          12 pairs      20 pairs
+//   exponential            0.06 (0.10)   0.05 (0.08)
+//   lognormal (sigma 1)    0.09 (0.15)   0.07 (0.13)
+//
+// No test of a mean is exact for all distributions.
 double mean_test(const std::vector<double>& differences);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
 // The proxy of chapter 4 on points that are averaged over the last frames (frame_average.h): what a user gets
-// who turns on the temporal filter of the sensor.
+// who switches on the temporal filter of the depth camera.
 #pragma once
 
 #include <string>

@@ -6,9 +6,9 @@
 //   s = sqrt(pi (d_K^2 - d_1^2) / K),    r_c = f s,  from min_radius_m to max_radius_m,
 //
 // with the distances d_1 and d_K from the proxy to the nearest and the K-th nearest point: s is the spacing
-// of a square grid of that density. r_1 and r_2 stay as far from r_c as those of the nominal radius, r_3 = 2
-// r_c. The radius is measured in every tick and takes one of the values min_radius_m, 1.05 min_radius_m, ...,
-// so that it seldom changes.
+// of a square grid of that density and f is radius_ratio. r_1 and r_2 differ from r_c by as much as those of
+// the nominal radius; r_3 = 2 r_c. The radius is computed in every tick and takes one of the values
+// min_radius_m, 1.05 min_radius_m, 1.05^2 min_radius_m, ..., so that it seldom changes.
 //
 // The output's proxy is the centre of a ball of the nominal radius that touches the surface at the same
 // place, so that heights are comparable with those of other balls.
@@ -22,7 +22,7 @@
 namespace remote_touch {
 
 struct DensityProxyParameters {
-  ProxyParameters proxy;  // r_1 and r_2 are the nominal radius
+  ProxyParameters proxy;  // r_1 and r_2 give the nominal radius r_c
   double radius_ratio = 10.0 / 3;
   double min_radius_m = 0.002, max_radius_m = 0.02;
   int neighbours = 24;

@@ -1,13 +1,13 @@
-// Averages of each point over the last frames, the cheap way to less noise that sensors and programs offer. A
-// point is followed by its number: the pixel of an image, or the node of a synthetic grid. So a surface that
-// moves drags its old positions behind it.
+// Averages of each point over the last frames: a simple way to reduce noise, which sensors and programs
+// offer. A point is identified by its number: the pixel of an image, or the node of a simulated grid. So the
+// averaged surface lags behind a surface that moves.
 //
 //   exponential  the temporal filter of common depth cameras, from the public description of its settings
 //                (librealsense): along the ray, d_j' = alpha d_j + (1 - alpha) d_{j-1}', but d_j where both
-//                differ by step_threshold_m or more; a point that is missing keeps its last place while it
+//                differ by step_threshold_m or more; a missing point keeps its last position as long as it
 //                was measured in persistence_hits of the last persistence_frames frames
-//   mean         the mean place over the frames of the last mean_frames in which it was measured, the newest
-//                being one of them
+//   mean         the mean position over those of the last mean_frames frames in which it was measured; a
+//                point that is missing in the newest frame is left out
 #pragma once
 
 #include <array>

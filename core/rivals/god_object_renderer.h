@@ -3,7 +3,7 @@
 // before point clouds were touched directly ([82], [83] of the dissertation).
 //
 // The god-object is a point that never passes a triangle, from either side. In each round it goes straight to
-// the place nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
+// the position nearest to the HIP over the planes of the triangles met so far, up to the next triangle in the
 // way, whose plane then joins them; if there is none it has arrived, and the planes are searched for anew
 // from there, until it is at rest or the budget of rounds is used up. F = k_s (god-object - HIP).
 //

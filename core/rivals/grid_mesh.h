@@ -1,7 +1,7 @@
-// The triangles between neighbouring points of an organised frame, near a position. Four neighbours in two
-// rows and columns make two triangles, cut from the upper right to the lower left; where one of the four was
-// not measured, the other three make one. A triangle with an edge longer than a limit is left out: it would
-// bridge a depth edge, or join two sheets whose rows follow each other.
+// The triangle mesh between neighbouring points of an organised frame, near a position. Four neighbours in
+// two rows and columns make two triangles, cut from the upper right to the lower left; where one of the four
+// was not measured, the other three make one. A triangle with an edge longer than a limit is left out: it
+// would bridge a depth edge, or join two sheets whose rows follow each other.
 #pragma once
 
 #include <cstdint>

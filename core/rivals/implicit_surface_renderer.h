@@ -7,11 +7,11 @@
 //              -f grad f / |grad f|^2; a step that brings it no nearer to the HIP is halved
 //   released   when the HIP is outside of the tangent plane at the proxy
 //
-// and F = k_s (proxy - HIP). Clouds that vary with time: at the beginning of a tick a proxy that a new frame
-// has buried is brought back along the gradient. Limits: one that is buried deeper than the middle of the
-// expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at all; the
-// motion of the cloud is not tracked; surfels have no edges: a sheet goes on for R beyond its last points,
-// and an isolated point or line of points exerts no force. Forbidden regions r_f are ignored.
+// and F = k_s (proxy - HIP). Clouds that vary with time: at the beginning of a tick a proxy that is below
+// the surface of a new frame is brought back along the gradient. Limits: one that is deeper than the middle
+// of the expanded points (metaballs) or beyond their support (surfels) comes out on the far side or not at
+// all; the motion of the cloud is not tracked; surfels have no edges: a sheet goes on for R beyond its last
+// points, and an isolated point or line of points exerts no force. Forbidden regions r_f are ignored.
 //
 // Of the outputs: contact_count counts the points within R, steps the evaluations of f, and entrenched is
 // f < 0 at the end of a tick.

@@ -1,4 +1,4 @@
-// The nearest neighbours of a place in a frame: what methods that adapt to the density of the points need.
+// The nearest neighbours of a position in a frame: what methods that adapt to the density of the points need.
 #pragma once
 
 #include "core/geometry/vector.h"

@@ -1,7 +1,7 @@
-// ORACLE, no method: the proxy of chapter 4 that is told how the true surface moved. It shows what the proxy
-// would reach with a perfect estimate of the velocity, and what it loses otherwise: the points and their
-// noise are the same. Only a simulation knows the truth (Frame::truth); without it the proxy is that of
-// velocity_estimate = false.
+// ORACLE, not a method: the proxy of chapter 4 that is told how the true surface moved. It shows what the
+// proxy would reach with a perfect estimate of the velocity, and which failures have other causes: the points
+// and their noise are the same. Only a simulation knows the truth (Frame::truth); without it the proxy is
+// that of velocity_estimate = false.
 //
 // At a frame the displacement in (4.3) is that of the true surface since the frame before, along its true
 // normal at the proxy, and v_hat in (4.15) is its mean velocity in that time, of either sign. A frame whose

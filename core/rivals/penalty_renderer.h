@@ -1,15 +1,15 @@
-// Direct rendering (the penalty method), the oldest of the methods that the proxy is compared with, 2.1.1 of
-// the dissertation: no proxy at all. The HIP is a ball of radius r_c, and a spring pushes it out in
-// proportion to the depth of the nearest point in it,
+// The penalty method (direct rendering), 2.1.1 of the dissertation, the oldest of the methods that the proxy
+// is compared with: no proxy at all. The HIP is the centre of a ball of radius r_c, and a spring pushes it
+// out in proportion to the depth of the nearest point in the ball,
 //
 //   F = k_s (r_c - r_n) n,    r_n = |HIP - x| - r_f of the nearest region (5.5),
 //
 // along the unit normal n (4.1) of the points within r_3 of the HIP, with the weights of (4.2), r_1 = r_c.
 // With damping, k_d times the HIP's velocity along n is subtracted; the force never pulls.
 //
-// Known limits, which the comparison is to show: n reverses when the HIP passes the points, so that the force
-// then pushes to the far side (pop-through); the force is at most k_s r_c; it shows the pattern of the
-// points; and dF/dx is k_s along n only, because n itself turns fast where the HIP is near the points.
+// Known limits, which the comparison should show: n reverses when the HIP passes the points, so that the
+// force then pushes to the far side (pop-through); the force is at most k_s r_c; the pattern of the points
+// can be felt; and dF/dx is k_s only along n, because n itself turns fast where the HIP is near the points.
 //
 // Of the outputs: the proxy is the HIP; contact_count counts the points within r_c; contact is r_n < r_c.
 #pragma once

@@ -1,6 +1,6 @@
-// What the rivals of the chapter 4 proxy have in common: 3-DOF renderers written from other papers, to be
-// compared on the same scenes with the same noise. This class handles what is no part of any method: the
-// order of frames, a device that is lost, and the output before the first frame.
+// What the 3-DOF methods for comparison have in common: renderers written from other papers, to be compared
+// with the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of
+// any method: the order of frames, a device that is lost, and the output before the first frame.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ class RivalRenderer : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) final;
 
  protected:
-  // reach_m: distance of the farthest points that matter to the method.
+  // reach_m: greatest distance at which a point has an effect on the method.
   RivalRenderer(double reach_m, double stiffness_N_per_m, const Kernels& kernels)
       : near_(reach_m, kernels), kernels_(kernels), stiffness_N_per_m_(stiffness_N_per_m) {}
 

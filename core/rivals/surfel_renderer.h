@@ -1,10 +1,10 @@
-// The surfels of A. Leeper, S. Chan, K. Salisbury, ICRA 2012, [84] of the dissertation, as the authors'
-// program does it (README.md of this folder says what is known of it): every point has a normal of its own,
-// turned towards the sensor, and the surface is f = n . (p - a) = 0 with the weighted means a of the points
-// and n of their normals within R. So f < 0 is behind the surface, wherever the proxy came from.
+// The surfels of A. Leeper, S. Chan, K. Salisbury, ICRA 2012, [84] of the dissertation, after a description
+// of the authors' program (README.md of this folder says what is known of it): every point has a normal of
+// its own, turned towards the sensor, and the surface is f = n . (p - a) = 0 with the weighted means a of the
+// points and n of their normals within R. So f < 0 is behind the surface, wherever the proxy came from.
 //
-//   free      the proxy is the HIP. Contact begins wherever f < 0 on the HIP's way since the last tick, its
-//             end included; so also when a frame put the surface in front of the HIP
+//   free      the proxy is the HIP. Contact begins if f < 0 anywhere on the path of the HIP since the last
+//             tick, its end included; so also if a new frame puts the surface in front of the HIP
 //   contact   per tick one step in the tangent plane towards the HIP, less what friction holds back, and one
 //             projection onto f = 0 of at most R/2
 //   released  when the HIP is outside of the tangent plane, or nothing is within R of the proxy

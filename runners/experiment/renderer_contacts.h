@@ -1,5 +1,5 @@
-// The one place that says how far the position of each renderer rests off the surface that it touches, see
-// rendered_contact.h. A new renderer has one more function here; tests/runners/experiment/
+// The rest distance of each renderer: how far its position is from the surface that it touches, see
+// rendered_contact.h. A new renderer adds one function here; tests/runners/experiment/
 // renderer_contacts_test.cpp presses it on a flat cloud.
 #pragma once
 
@@ -18,9 +18,9 @@
 
 namespace remote_touch {
 
-// Spacing of the points of most scenes (Grid). The surface of metaballs depends on it: at this one their rest
-// distance is what it should be, and where points are closer or wider apart the difference is the method's
-// error.
+// Spacing of the points of most scenes (Grid). The surface of metaballs depends on the spacing: their rest
+// distance is computed for this one. Where points are closer or wider apart, the difference counts as an
+// error of the method.
 inline constexpr double kReferenceSpacing_m = 0.0015;
 
 inline RenderedContact rendered_contact(const ProxyParameters& p) {
@@ -48,9 +48,10 @@ inline RenderedContact rendered_contact(const PenaltyParameters& p) {
 inline RenderedContact rendered_contact(const GodObjectParameters& p) {
   return {p.surface_offset_m};
 }
-// Surfels lie in the plane of the points, metaballs around them: over a plane of density 1 / s^2 the sum of
-// weights is pi R^2 / s^2 times the integral of w over the square of the distance, in units of R, from that
-// of the height on. The height at which this is T, by bisection; 0 where even on the plane it is less.
+// Surfels lie in the plane of the points, metaballs around the points. At the height h R over a plane of
+// points of spacing s the sum of the weights is pi R^2 / s^2 times the integral of w(q) over q^2, from h^2
+// to 1. The rest distance is the height at which this sum is T, by bisection; 0 where the sum is less than T
+// even on the plane.
 RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 // A tool has a shape, not a radius: not known.
 RenderedContact rendered_contact(const LoadedTool::Settings&);

@@ -1,21 +1,24 @@
-// A rule for comparison: the point shell and the voxmap of McNeely, Puterbaugh and Troy, "Six
-// degree-of-freedom haptic rendering using voxel sampling", 1999. Nothing constrains the tool. Every point of
-// the cloud in it pushes, and the tool follows the device on the spring of (6.9):
+// A penalty method for comparison: the voxmap and pointshell of W. McNeely, K. Puterbaugh and J. Troy, "Six
+// degree-of-freedom haptic rendering using voxel sampling", SIGGRAPH 1999. There are no constraints. Every
+// point of the cloud that is inside the tool pushes it with the force
 //
-//   f_i = k_p d_i n_i at r_i,   d_i the depth of point i below the tool's surface, n_i its normal
+//   f_i = k_p d_i n_i at r_i,
 //
-// (without one: the direction in which the tool leaves it soonest), and where N > 10 points touch, all f_i
-// are multiplied by 10 / N, as there. In each step the tool moves towards the pose at which both wrenches
-// balance, linearised at the present one, by half a voxel at most.
+// where r_i is the point, d_i its depth below the tool's surface and n_i its normal (without a normal: the
+// direction in which the tool leaves the point soonest). Where N > 10 points touch, all f_i are multiplied by
+// 10 / N, as in the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool
+// moves towards the pose at which the wrench of the points and that of the coupling balance, linearised at
+// the present pose, by half a voxel at most.
 //
-// Where it differs from its source: the roles are exchanged (there the environment is voxels and the tool is
-// points); d_i is of the distance field and not of a plane through the middle of a voxel, so it is exact and
-// goes on growing inside; the tool has no mass, but rests where the wrenches balance, as in Wan and McNeely,
-// "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", 2003; nothing brakes it before
-// contact.
+// Differences from the source: the roles are exchanged (there the environment is voxels and the tool is
+// points); d_i is taken from the distance field, not from a plane through the middle of a voxel, so it is
+// exact and continues to grow inside; the tool has no mass, but rests where the wrenches balance, as in M.
+// Wan and W. McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", IEEE
+// Visualization 2003; nothing brakes the tool before contact.
 //
-// Known limits, which the comparison is to show: the tool sinks in proportion to the force, passes points
-// whose depth is beyond its middle, and is pushed out by all points at once where walls are close.
+// Known limits, which the comparison should show: the depth of the points in the tool is proportional to the
+// force; the tool passes through points that are deeper in it than its middle; where walls are close, the
+// points of all walls push at once.
 #pragma once
 
 #include "core/parameters/parameter.h"
@@ -50,7 +53,7 @@ class PenaltyMotion final : public ToolMotion {
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:
-  // What the points do to the tool: tool axes, about its centre of mass.
+  // Effect of the points on the tool: in tool axes, about its centre of mass.
   struct Push {
     int points = 0;
     Vector6 wrench_T = Vector6::Zero();  // N, N m
