@@ -62,7 +62,7 @@ ball the point that faces the surface, of a point the point itself, of direct re
 the place where its force would end. From 0.1 s after the HIP got below the true surface, this point must never be \
 farther from it than the tolerance, below or above, and there must be a force in 90 % of these ticks. The rule before \
 allowed a ball to sink three times as far as a point, did not count floating, and looked at the last tick only; its \
-fractions stand beside those of the new one. Where the truth is not known in a tenth of these ticks, a run is no \
+fractions stand beside those of the new one. Where the truth is not known in more than a tenth of these ticks, a run is no \
 success.</p>
 <p><b>Best and worst</b> are marked only where one method differs from all others by more than chance: fractions by the \
 exact sign test, other measures by Student's t with a correction for skewness, run by run over all levels with noise. \
