@@ -208,9 +208,9 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
                            {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
                rule, scene);
   add_measure(scene, "jump_fraction_10", Better::smaller);
-  for (const char* name :
+  for (const char* perceived :
        {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10", "packet_rate_20"})
-    add_measure(scene, name, Better::reported);
+    add_measure(scene, perceived, Better::reported);
   return scene;
 }
 

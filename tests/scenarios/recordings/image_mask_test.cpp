@@ -73,7 +73,7 @@ TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
 
 TEST_F(ImageMasks, OfAnotherSizeAreRefused) {
   const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
-  for (const std::pair<int, int> size : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
+  for (const std::pair<int, int>& size : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
     const std::string why = refusal([&] { weights(file, image(size.first, size.second)); });
     EXPECT_EQ(why, file.string() + ": 3 x 2 pixels: expected as many as the frames: " +
                        std::to_string(size.first) + " x " + std::to_string(size.second));

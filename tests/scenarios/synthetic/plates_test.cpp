@@ -59,8 +59,9 @@ TEST(Plates, BetweenPlatesThereIsNothing) {
   s.plates = {-0.05, 0, 0, 0.1, 0.2, -0.1, 0, 0, 0.2, 0.05, 0, 0, 0.1, 0.2, 0.1, 0, 0, 0.2};
   const PointCloud cloud = made(s).cloud(6);  // 0.2 s: a gap of 4 cm
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (std::abs(std::abs(cloud.x[i]) - 0.02) > 1e-9)
+    if (std::abs(std::abs(cloud.x[i]) - 0.02) > 1e-9) {
       EXPECT_EQ(cloud.is_measured(i), std::abs(cloud.x[i]) > 0.02);
+    }
   }
 }
 
