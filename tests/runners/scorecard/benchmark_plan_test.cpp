@@ -50,7 +50,7 @@ std::vector<Method> methods_for(const BenchmarkScene& scene) {
 
 class Scenes : public testing::TestWithParam<BenchmarkScene> {};
 
-TEST_P(Scenes, RunWithEveryContenderOverTheSameNoise) {
+TEST_P(Scenes, RunWithEveryMethodOverTheSameNoise) {
   look_for_recordings();
   const BenchmarkScene& scene = GetParam();
   std::vector<std::uint64_t> hashes;

@@ -118,7 +118,7 @@ TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
   EXPECT_EQ(score(kRules, {differ}, false).success[0].at_level[0].runs, 3);
 }
 
-TEST(ScorecardFigure, HasARowForEverySceneContenderAndLevel) {
+TEST(ScorecardFigure, HasARowForEverySceneMethodAndLevel) {
   const Figure figure = scorecard_figure(two_scenes());
   ASSERT_EQ(figure.tables.size(), 7u);
   EXPECT_EQ(figure.tables[0].columns[0].length(), 2u * 2 + 2u * 1);
