@@ -19,9 +19,9 @@ std::string problem_of(const Settings& s) {
   return tool.empty() ? validate(s.motion) : tool;
 }
 
-ToolRenderer renderer_of(const ToolParameters& motion, std::shared_ptr<const VoxelTool> tool,
+ToolRenderer renderer_of(const ToolParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
                          const Kernels& kernels) {
-  return {motion, std::move(tool), kernels};
+  return {motion, tool, kernels};
 }
 ToolRenderer renderer_of(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
                          const Kernels& kernels) {
