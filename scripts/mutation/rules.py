@@ -115,11 +115,14 @@ def extremes(node, text):
         yield "extreme", f"std::{other}{text.node(node)[found.end():]}", "value"
 
 
+SYMMETRIC = ("min", "max", "swap", "hypot")
+
+
 def arguments(node, text):
     """f(a, b) becomes f(b, a), where both have the same type."""
     if node.kind != Kind.CALL_EXPR or node.spelling.startswith("operator") or not node.referenced:
         return
-    if node.referenced.kind in (Kind.CONSTRUCTOR, Kind.CONVERSION_FUNCTION) or node.spelling in ("min", "max"):
+    if node.referenced.kind in (Kind.CONSTRUCTOR, Kind.CONVERSION_FUNCTION) or node.spelling in SYMMETRIC:
         return
     given = [a for a in node.get_arguments() if a]
     begin = node.extent.start.offset
