@@ -12,8 +12,8 @@ endfunction()
 # The method reads no files: libFuzzer need not count where it comes by, which takes half of the time of its tests.
 # What is precompiled for the other rooms counts, and clang++ refuses it here.
 function(without_coverage name path)
-  if(REMOTE_TOUCH_FUZZ AND path MATCHES "^core/")
-    target_compile_options(${name} PRIVATE -O2 -fno-sanitize=fuzzer-no-link)
+  if(REMOTE_TOUCH_FUZZ AND path MATCHES "^(core|tests)/")
+    target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
     set_target_properties(${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()

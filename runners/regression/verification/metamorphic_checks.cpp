@@ -127,13 +127,20 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop) {
+  return verify_renderer(entry, assignments, kernels, verification_scenes(kernels), stop);
+}
+
+std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::vector<MetamorphicScene>& scenes,
+                                         const std::atomic<bool>* stop) {
   if (entry.degrees_of_freedom == DegreesOfFreedom::six)
     throw InputError(
         entry.name,
         "renders six degrees of freedom, and the scenes are for a proxy: expected a 3-DOF renderer");
   const Subject subject(entry, assignments, kernels);
   std::vector<CheckResult> results;
-  for (const MetamorphicScene& scene : verification_scenes(kernels)) {
+  for (const MetamorphicScene& scene : scenes) {
     if (stop && *stop) throw Interrupted{};
     for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
   }

@@ -9,6 +9,7 @@
 
 #include "core/kernels/kernels.h"
 #include "runners/experiment/factory.h"
+#include "runners/regression/verification/metamorphic_scene.h"
 #include "runners/regression/verification/output_comparison.h"
 
 namespace remote_touch {
@@ -29,9 +30,14 @@ struct CheckResult {
 // most ticks, or in some if its contact model can lose contact (mesh or nothing): without it the other checks
 // would mean little. assignments: "r1_m=0.004". Throws InputError for a renderer of six degrees of freedom,
 // for an assignment that the renderer refuses, and for a parameter whose units cannot be changed (see
-// dimension.h). stop: when set, ends between two scenes with Interrupted.
+// dimension.h). stop: when set, ends between two scenes with Interrupted. Without scenes:
+// verification_scenes().
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::atomic<bool>* stop = nullptr);
+std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
+                                         const std::vector<std::string>& assignments, const Kernels& kernels,
+                                         const std::vector<MetamorphicScene>& scenes,
                                          const std::atomic<bool>* stop = nullptr);
 
 struct CheckName {

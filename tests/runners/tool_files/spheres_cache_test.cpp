@@ -43,7 +43,7 @@ class SpheresCacheTest : public testing::Test {
   }
 
   TestFolder folder_{"spheres_cache"};
-  const ToolSettings slab_{.mesh = "slab-20", .voxel_m = 1e-3};
+  const ToolSettings slab_{.mesh = "slab-20", .voxel_m = 2e-3};
 };
 
 TEST_F(SpheresCacheTest, FreshAndCachedAreTheSameBits) {
