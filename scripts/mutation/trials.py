@@ -54,6 +54,11 @@ def program_tests(root, build):
         yield Test(f"verify {renderer}", [program, "verify", renderer], "program")
     for subject in ("compare", "results", "live", "scorecard", "sweep"):
         yield Test(f"command_line_{subject}", [str(root / "tests/system/command_line" / subject), program], "program")
+    yield from stored_results(root, build)
+
+
+def stored_results(root, build):
+    program = str(build / "remote-touch")
     manifest = json.loads((root / "data/baselines/manifest.json").read_text())
     for name in [baseline["name"] for baseline in manifest["baselines"]]:
         yield Test(f"baseline {name}", [program, "-q", "baseline", "check", "--folder", str(root / "data/baselines"), name],
