@@ -9,8 +9,8 @@ from plotting.plot_error import PlotError
 from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
 from plotting.scorecard_plots import colours_css, level_text, noise_plot
-from plotting.scorecard_tables import (audit_table, behind_table, cost_table, level_heads, level_tables,
-                                       measure_table, overview_table, success_table)
+from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
+                                       level_tables, measure_table, overview_table, success_table)
 
 SCHEMA = "remote-touch-scorecard/2"
 OWN_CSS = """
@@ -37,7 +37,10 @@ def behind_section(card):
     parts = [f'<h2 id="behind">Where {method} is not the best</h2>']
     if shown:
         parts.append(f"<p>Another method is better by more than chance in {len(shown):d} comparison(s):</p>"
-                     f"{behind_table(card, shown)}")
+                     f"{behind_summary(card, shown)}"
+                     "<details><summary>each of them</summary><p>The numbers are means over the runs of each method; compared "
+                     "are the runs in pairs, so that the better of two means may be the other one.</p>"
+                     f"{behind_table(card, shown)}</details>")
     else:
         parts.append("<p>No other method is better by more than chance in any scene or measure.</p>")
     if others:
@@ -129,7 +132,7 @@ def scorecard_page(card, link=lambda file: file):
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Scorecard</title><style>{CSS}{OWN_CSS}{PLOT_CSS}{colours_css(len(card["methods"]))}</style></head><body>
-<h1>Scorecard of 3-DOF renderers</h1>
+<h1>Scorecard of {len(card["methods"]):d} methods, {len(card["scenes"]):d} scenes</h1>
 {behind_section(card)}
 <h2 id="overview">All scenes</h2>
 {overview_table(card)}

@@ -86,6 +86,18 @@ def behind_table(card, weaknesses):
     return table(heads, [row(one) for one in weaknesses])
 
 
+def behind_summary(card, weaknesses):
+    """In how many scenes a method is behind, for each measure; whom most often."""
+    rows = []
+    for what in dict.fromkeys(one["what"] for one in weaknesses):
+        others = [one["other"] for one in weaknesses if one["what"] == what]
+        most = max(dict.fromkeys(others), key=others.count)
+        rows.append((len(others), [f'<th class="name">{esc(what)}</th>', cell(f"{len(others):d} of {len(card['scenes']):d}"),
+                                   cell(f"{esc(most)} <small>in {others.count(most):d}</small>", "left")]))
+    rows.sort(key=lambda row: -row[0])
+    return table(["", "scenes with a better method", "most often"], [row for _, row in rows])
+
+
 def failure_text(failure, levels, link):
     if failure is None:
         return "none"
