@@ -129,6 +129,14 @@ TEST(HeightFit, WhereThereAreNoPointsNothingIsKnown) {
   EXPECT_NEAR(map.height(5, 0), tilted(5, 0), 0.01);
 }
 
+// One point in a window is enough where points are rare everywhere.
+TEST(HeightFit, FewPointsCoverToo) {
+  const HeightMap map = fitted(sampled(tilted, 0, 1, 1.9), 0);
+  int covered = 0;
+  for (int i = -3; i <= 3; ++i) covered += map.covers(1.9 * i + 0.4, 0.5) ? 1 : 0;
+  EXPECT_GE(covered, 5);
+}
+
 TEST(HeightMap, MovesAsAPlane) {
   HeightMap map = fitted(sampled(ball, 0, 1), 0);
   const double before = map.height(2, -3);

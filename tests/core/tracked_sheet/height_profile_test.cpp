@@ -60,6 +60,10 @@ TEST(HeightProfile, AValleyLiesBetweenTwoSheets) {
   EXPECT_EQ(p.valley_from(0, 1), 30);  // above there is none
 }
 
+TEST(HeightProfile, WithoutARangeThereIsNoValley) {
+  EXPECT_EQ(HeightProfile().valley_from(0, 1), 0);
+}
+
 // One sheet has no valleys that chance does not make, whatever its noise: 1 in 200 at most.
 TEST(HeightProfile, NoiseMakesNoValleys) {
   int wrong = 0;

@@ -81,6 +81,15 @@ TEST(MeshCheck, TrianglesWithoutAreaAreCounted) {
   EXPECT_EQ(check_mesh(flat).degenerate_triangles, 2);
 }
 
+TEST(MeshCheck, ANeedleHasNoArea) {
+  TriangleMesh needle = kBox;
+  const Vec3 edge = needle.vertices[1] - needle.vertices[0],
+             aside(0, 1e-12 * edge.norm(), 1e-12 * edge.norm());
+  needle.vertices.push_back(needle.vertices[1] + aside);
+  needle.triangles.push_back({0, 1, 8});
+  EXPECT_EQ(check_mesh(needle).degenerate_triangles, 1);
+}
+
 // Every triangle with corners of its own, one of them twice, every second one turned, two missing.
 TEST(MeshRepair, PutsABoxTogetherAgain) {
   TriangleMesh soup;
