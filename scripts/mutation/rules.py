@@ -115,14 +115,14 @@ def extremes(node, text):
         yield "extreme", f"std::{other}{text.node(node)[found.end():]}", "value"
 
 
-SYMMETRIC = ("min", "max", "swap", "hypot")
+SYMMETRIC = re.compile(r"min|max|swap|hypot|_mm\d*_(add|mul|and|or|xor)_\w+")
 
 
 def arguments(node, text):
     """f(a, b) becomes f(b, a), where both have the same type."""
     if node.kind != Kind.CALL_EXPR or node.spelling.startswith("operator") or not node.referenced:
         return
-    if node.referenced.kind in (Kind.CONSTRUCTOR, Kind.CONVERSION_FUNCTION) or node.spelling in SYMMETRIC:
+    if node.referenced.kind in (Kind.CONSTRUCTOR, Kind.CONVERSION_FUNCTION) or SYMMETRIC.fullmatch(node.spelling):
         return
     given = [a for a in node.get_arguments() if a]
     begin = node.extent.start.offset
@@ -141,7 +141,7 @@ def statements(node, text):
     if node.kind != Kind.COMPOUND_STMT:
         return
     for child in node.get_children():
-        plain = child.kind.is_expression() and child.kind != Kind.CXX_THROW_EXPR
+        plain = child.kind.is_expression() and not text.node(child).startswith("throw")
         if plain or child.kind in (Kind.BREAK_STMT, Kind.CONTINUE_STMT):
             yield "statement", "", ("statement", child)
 

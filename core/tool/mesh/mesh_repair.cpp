@@ -82,7 +82,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
     neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
   }
   std::vector<int> component(mesh.triangles.size(), -1);
-  std::vector<bool> flipped(mesh.triangles.size(), false);
+  std::vector<char> flipped(mesh.triangles.size(), 0);
   for (std::size_t start = 0; start < component.size(); ++start) {
     if (component[start] >= 0) continue;
     component[start] = static_cast<int>(start);
@@ -91,7 +91,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
       for (const auto& [other, opposed] : neighbours[open.front()])
         if (component[other] < 0) {
           component[other] = static_cast<int>(start);
-          flipped[other] = flipped[open.front()] != opposed;
+          flipped[other] = (flipped[open.front()] != 0) != opposed;
           open.push_back(other);
         }
   }

@@ -140,12 +140,14 @@ TEST(PlaneConstraints, OneTwoAndThreePlanes) {
 
 // The nearest of all: no random place that obeys the planes is nearer.
 TEST(PlaneConstraints, IsNearestAmongThoseThatObey) {
-  const PointCloud normals = scenes::random_cloud(6 * 40, 1, 9), places = scenes::random_cloud(2000, 2, 10);
+  constexpr std::size_t kPlanes = PlaneConstraints::kMaxCount;
+  const PointCloud normals = scenes::random_cloud(kPlanes * 40, 1, 9),
+                   places = scenes::random_cloud(2000, 2, 10);
   for (int run = 0; run < 40; ++run) {
     PlaneConstraints planes(1e-12);
     std::vector<Vec3> n;
-    for (int i = 0; i < 6; ++i) {
-      n.push_back(normals.point(static_cast<std::size_t>(6 * run + i)).normalized());
+    for (std::size_t i = 0; i < kPlanes; ++i) {
+      n.push_back(normals.point(kPlanes * static_cast<std::size_t>(run) + i).normalized());
       ASSERT_TRUE(planes.add(n.back(), Vec3::Zero(), -0.3));
     }
     const Vec3 goal = 2 * normals.point(static_cast<std::size_t>(run));

@@ -64,6 +64,32 @@ TEST(PatchPoints, AreThoseOfTheRegionAtTheirPlaces) {
   }
 }
 
+// What lies on the rim is outside for the kernels as for PatchRegion::holds().
+TEST(PatchPoints, TheRimIsOutside) {
+  const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), 1), 8, 6};
+  PointCloud cloud;
+  for (const double r : {8.0, 7.75, 8.25})
+    for (const Vec3& towards : {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(-1, 0, 0)}) cloud.append(r * towards);
+  GatheredPoints gathered;
+  gathered.reserve(cloud.size(), false, false);
+  BruteForceSearch(cloud).gather({Vec3::Zero(), 10}, scenes::kernels(), gathered);
+  gathered.finish();
+  for (const Kernels* kernels : supported_kernels()) {
+    PatchPoints points(*kernels);
+    points.reserve(gathered.size());
+    points.take(gathered, region);
+    ASSERT_EQ(points.size(), 3u) << kernels->isa;
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_TRUE(region.holds(points.place(i)));
+  }
+}
+
+TEST(PatchRegion, ItsBallHoldsItsRim) {
+  const Ball ball = kRegion.around();
+  const double corner_m = std::hypot(kRegion.radius, kRegion.half_height) * kUnit;
+  EXPECT_GE(ball.radius, corner_m);
+  EXPECT_LE(ball.radius, 1.000001 * corner_m);
+}
+
 TEST(PatchPoints, ResidualsAreHeightsAboveTheMap) {
   const GatheredPoints gathered = gathered_points();
   const HeightMap map = bumpy_map();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
 
 #include "tests/support/scenes.h"
 
@@ -63,6 +64,26 @@ TEST(SheetRegistration, NoiseMovesItByItsStandardErrorAlone) {
 // The lower sheet, three contact radii below, has moved into the place of the upper one.
 TEST(SheetRegistration, ASecondSheetInTheFirstOnesPlaceIsNotTakenForIt) {
   EXPECT_NEAR(shift_of(sheet(2.5, 0, 0, 0.1, 1, 3), 3, 0.1, 3).height, 2.5, 0.05);
+}
+
+// Points on a line say nothing of the slope across it, and few points nothing of any.
+TEST(SheetRegistration, PointsThatDetermineNoPlaneGiveNoSlope) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  PatchPoints line(scenes::kernels()), few(scenes::kernels());
+  line.reserve(100), few.reserve(100);
+  for (double u = -4; u <= 4; u += 0.1)
+    line.add(
+        {PatchFrame::rounded(u), PatchFrame::rounded(0.5 * u), PatchFrame::rounded(1 + 0.3 * normal(random))},
+        true);
+  for (const double u : {-3.0, 0.0, 3.0})
+    for (const double v : {-3.0, 0.0, 3.0}) few.add({u, v, PatchFrame::rounded(1 + 0.2 * u)}, true);
+  for (PatchPoints* points : {&line, &few}) {
+    const SheetShift shift = shift_of(std::move(*points), 3, 0.3);
+    EXPECT_NEAR(shift.height, 1, 0.3);
+    EXPECT_EQ(shift.slope_u, 0);
+    EXPECT_EQ(shift.slope_v, 0);
+  }
 }
 
 TEST(SheetRegistration, WithoutPointsNothingMoved) {

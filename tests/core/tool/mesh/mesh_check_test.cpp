@@ -125,6 +125,7 @@ TEST(MeshRepair, TurnsEachPartOutwardsForItself) {
 
 TEST(MeshRepair, LeavesAClosedMeshAlone) {
   MeshRepair done;
+  done.flipped_triangles = 7;  // of a mesh before
   const TriangleMesh same = repair_mesh(kBox, done);
   EXPECT_EQ(same.triangles, kBox.triangles);
   EXPECT_EQ(same.vertices, kBox.vertices);

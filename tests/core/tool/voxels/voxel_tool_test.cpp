@@ -44,6 +44,7 @@ TEST(VoxelTool, IsScaledByItsLongestSide) {
   EXPECT_LT((report.sides_m - Vec3(0.06, 0.04, 0.02)).norm(), 1e-12);
   EXPECT_NEAR(tool.volume_m3, 48e-6, 1e-14);
   EXPECT_HAS(text(report), "60.0 x 40.0 x 20.0 mm, closed (1 part, 12 triangles)");
+  EXPECT_EQ(text(report).find("outwards"), std::string::npos) << "its faces were so";
 }
 
 TEST(VoxelTool, TurnsFacesOutwards) {

@@ -198,6 +198,30 @@ TEST(Voxelisation, WindingNumbersFillAnOpenMesh) {
   EXPECT_GT(count, 18000);
 }
 
+// From the middle of the opening of a box one sees half of all directions: the node there is outside.
+TEST(Voxelisation, TheMiddleOfAnOpeningIsOutside) {
+  const TriangleMesh whole = box_mesh({0.02, 0.02, 0.02});
+  const VoxelGrid grid{Vec3::Constant(-0.02), 1e-3, {40, 40, 40}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-0.01, 0.01}) {
+      TriangleMesh box = whole;
+      std::erase_if(box.triangles, [&](const std::array<int, 3>& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(), [&](int corner) {
+          return whole.vertices[static_cast<std::size_t>(corner)][axis] == side;
+        });
+      });
+      ASSERT_EQ(box.triangles.size(), 10u);
+      const auto inside = inside_nodes_of_open(TriangleTree(box), grid, crossed_cells(box, grid));
+      const auto at = [&](double along) {
+        int node[3] = {20, 20, 20};
+        node[axis] += static_cast<int>(std::lround(along / grid.size_m));
+        return inside[static_cast<std::size_t>((node[2] * 41 + node[1]) * 41 + node[0])];
+      };
+      EXPECT_EQ(at(side), 0) << axis << " " << side;
+      EXPECT_EQ(at(0.9 * side), 1) << axis << " " << side;
+    }
+}
+
 TEST(Voxelisation, DoesNotDependOnTheNumberOfThreads) {
   const TriangleMesh body = meshes::any_body("husky");
   const VoxelGrid grid = grid_around(body, 1e-3);

@@ -5,10 +5,33 @@
 
 #include <cmath>
 
+#include "runners/live/loop/live_logger.h"
 #include "runners/live/loop/live_report.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::live_log_test {
 namespace {
+
+// A disk that takes nothing: the camera is told that its frame was not taken.
+TEST(LiveLogger, TakesNoMoreFramesThanCanWait) {
+  const TestFolder folder("live_logger");
+  SensorView view;
+  view.camera = {2, 2, 2, 2, 1, 1};
+  Ring<LiveTick> rows(4);
+  LiveLogger logger(rows, 1000,
+                    std::make_unique<SessionWriter>(folder / "session.h5", view, RigidTransform::Identity(),
+                                                    TextAttributes{{"config", "{}"}}));
+  SensorFrame frame;
+  frame.depth = {1000, 1000, 1000, 1000};
+  int taken = 0;
+  while (taken < 1000 && logger.record(frame, 0.03 * taken, 0)) ++taken;
+  EXPECT_EQ(taken, 90);
+  EXPECT_FALSE(logger.record(frame, 4, 0));
+  logger.step();
+  EXPECT_EQ(logger.failure(), "");
+  EXPECT_TRUE(logger.record(frame, 5, 0)) << "those that waited are on the disk";
+  logger.finish();
+}
 
 TEST(Samples, AllUpToTheirMaximum) {
   Samples samples;
