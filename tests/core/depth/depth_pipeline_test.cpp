@@ -34,7 +34,11 @@ TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
 }
 
 TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
-  const scenes::DepthScene scene = with_holes(noisy_waves(200, 150), 0.05);
+  scenes::DepthScene scene = with_holes(noisy_waves(200, 150), 0.05);
+  // Depths behind the image in memory, which must have no part in it.
+  const std::size_t pixels = scene.depth.z_m.size();
+  scene.depth.z_m.resize(2 * pixels, 0.5);
+  scene.depth.z_m.resize(pixels);
   const RigidTransform X_WC = some_pose();
   DepthPipeline pipeline({}, best());
   const PointCloud whole = pipeline.process(scene.depth, scene.camera, X_WC);

@@ -159,6 +159,31 @@ TEST(SurfelRenderer, FusesTheNewestFrames) {
   }
 }
 
+// (5.8) of the points around the proxy, those of both frames: stiff ones to the right, soft ones to the left.
+TEST(SurfelRenderer, PointsOfAllFramesGiveTheirStiffness) {
+  const PointCloud whole = scenes::flat_grid(60);
+  PointCloud halves[2];
+  const auto stiffness = [](const Vec3& p) { return p.x() > 0 ? 400.0 : 200.0; };
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    halves[i % 2].append(whole.point(i));
+    halves[i % 2].stiffness_N_per_m.push_back(stiffness(whole.point(i)));
+  }
+  SurfelParameters p = without_friction();
+  p.support_radius_m = 0.01, p.fused_frames = 2;
+  SurfelRenderer r = over(halves[0], p);
+  r.on_frame(scenes::frame(halves[1], 1));
+  for (double y = 0.02; y > -0.005; y -= 0.0005) r.step({Vec3(0.004, y, 0)}, 0);
+  const RenderOutput out = rest(r, {0.004, -0.005, 0});
+  double weights = 0, sum = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const double q = std::min((whole.point(i) - out.proxy_W).norm() / p.support_radius_m, 1.0);
+    const double weight = std::pow(1 - q, 4) * (4 * q + 1);
+    weights += weight, sum += weight * stiffness(whole.point(i));
+  }
+  ASSERT_GT(sum / weights, 350);
+  EXPECT_NEAR(out.force_N.norm() / (out.proxy_W - Vec3(0.004, -0.005, 0)).norm(), sum / weights, 0.01);
+}
+
 TEST(SurfelRenderer, LeavesWithoutAForceAndAnEmptyFrameLetsGo) {
   SurfelRenderer r = over(scenes::flat_grid(60), {});
   press(r, 0.01);
