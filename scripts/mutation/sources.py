@@ -107,7 +107,7 @@ def write_tree(root, tree, folders, files, mutations):
             write_file(source, target, by_file[str(path)], header)
         elif not target.exists() or not filecmp.cmp(source, target, shallow=False):
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source, target)
+            shutil.copy(source, target)  # not its time stamp: what was compiled from a mutated copy is out of date
     for path in [path for folder in folders for path in (tree / folder).rglob("*") if path.is_file()]:
         if path.relative_to(tree) not in wanted:
             path.unlink()
