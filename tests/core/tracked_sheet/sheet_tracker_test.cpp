@@ -1,0 +1,84 @@
+// What is shown of a sheet that is followed from frame to frame.
+#include "core/tracked_sheet/sheet_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/scenes.h"
+
+namespace remote_touch::sheet_tracker_test {
+namespace {
+
+constexpr double kUnit = 0.005;
+
+// A plane y = height, 1.5 mm between points, with noise of that standard deviation in contact radii.
+std::shared_ptr<const NeighbourSearch> plane(double height_m, double sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PointCloud cloud;
+  for (int j = -60; j <= 60; ++j)
+    for (int i = -60; i <= 60; ++i) {
+      const Vec3 off(normal(random), normal(random), normal(random));
+      cloud.append(Vec3(0.0015 * i, height_m, 0.0015 * j) + sigma * kUnit * off);
+    }
+  return std::make_shared<BruteForceSearch>(cloud);
+}
+
+struct Shown {
+  double count = 0, rms_m = 0;  // of the points within 3 r_c of the y axis; their height about the plane
+};
+
+Shown shown_of(const NeighbourSearch& points, double height_m, double max_height_m) {
+  GatheredPoints gathered;
+  gathered.reserve(20000, true, true);
+  points.gather({Vec3(0, height_m, 0), 0.1}, scenes::kernels(), gathered);
+  gathered.finish();
+  const PointsView all = gathered.view();
+  Shown shown;
+  for (std::size_t i = 0; i < gathered.size(); ++i) {
+    const double height = all.y[i] - height_m;
+    if (std::hypot(all.x[i], all.z[i]) > 3 * kUnit || std::abs(height) > max_height_m) continue;
+    ++shown.count, shown.rms_m += height * height;
+  }
+  shown.rms_m = std::sqrt(shown.rms_m / shown.count);
+  return shown;
+}
+
+// The points of a sheet are brought onto it, and however noisy they are, chance makes no second sheet of
+// some.
+TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
+  for (const double sigma : {0.2, 0.6, 1.0, 1.5, 2.0})
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      SheetTracker tracker({}, kUnit, scenes::kernels());
+      tracker.reserve(20000, false, false);
+      double height_m = 0;
+      std::shared_ptr<const NeighbourSearch> frame = plane(height_m, sigma, seed);
+      tracker.keep(frame);
+      SheetUpdate update = tracker.requery({Vec3(0, kUnit, 0), false});
+      for (unsigned k = 1; k <= 6; ++k) {
+        height_m = 0.001 * k;
+        frame = plane(height_m, sigma, 100 * k + seed);
+        update = tracker.on_frame(frame, {Vec3(0, height_m + kUnit, 0), true}, 1.0 / 30);
+      }
+      ASSERT_TRUE(update.points) << sigma;
+      const Shown raw = shown_of(*frame, height_m, 3 * sigma * kUnit),
+                  clean = shown_of(*update.points, height_m, 3 * sigma * kUnit);
+      EXPECT_GE(clean.count, 0.97 * raw.count) << sigma << ", seed " << seed;
+      EXPECT_LE(clean.rms_m, 0.35 * raw.rms_m) << sigma << ", seed " << seed;
+    }
+}
+
+TEST(SheetTracker, LeavesASheetWithoutNoiseAsItIs) {
+  SheetTracker tracker({}, kUnit, scenes::kernels());
+  tracker.reserve(20000, false, false);
+  tracker.keep(plane(0, 0, 1));
+  tracker.requery({Vec3(0, kUnit, 0), false});
+  const auto frame = plane(0.001, 0, 2);
+  EXPECT_EQ(tracker.on_frame(frame, {Vec3(0, kUnit, 0), true}, 1.0 / 30).points, frame);
+  EXPECT_FALSE(tracker.changes_points());
+}
+
+}  // namespace
+}  // namespace remote_touch::sheet_tracker_test
