@@ -141,7 +141,7 @@ def statements(node, text):
     if node.kind != Kind.COMPOUND_STMT:
         return
     for child in node.get_children():
-        plain = child.kind.is_expression() and not text.node(child).startswith("throw")
+        plain = child.kind.is_expression() and not text.node(child).startswith(("throw ", "throw;"))
         if plain or child.kind in (Kind.BREAK_STMT, Kind.CONTINUE_STMT):
             yield "statement", "", ("statement", child)
 

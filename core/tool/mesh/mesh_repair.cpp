@@ -82,7 +82,7 @@ std::vector<int> orient(TriangleMesh& mesh, MeshRepair& done) {
     neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
   }
   std::vector<int> component(mesh.triangles.size(), -1);
-  std::vector<char> flipped(mesh.triangles.size(), 0);
+  std::vector<char> flipped(mesh.triangles.size(), 0);  // the library checks no index of a vector of bool
   for (std::size_t start = 0; start < component.size(); ++start) {
     if (component[start] >= 0) continue;
     component[start] = static_cast<int>(start);
