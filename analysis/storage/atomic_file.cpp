@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -47,6 +48,71 @@ void flush_folder(const std::filesystem::path& target) {
                    std::string("cannot be written (") + std::strerror(error) + "): expected " + allowed);
 }
 
+[[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size) {
+  refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
+}
+
+// Its temporary file, flushed to the disk.
+std::filesystem::path write_temporary(const std::filesystem::path& target, const void* data,
+                                      std::size_t size) {
+  std::filesystem::path temporary = temporary_of(target);
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) refuse_size(target, errno, size);
+  int error = write_and_flush(file, static_cast<const char*>(data), size);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0) return temporary;
+  ::unlink(temporary.c_str());
+  refuse_size(target, error, size);
+}
+
+// One of the files that are replaced together: the new one and a copy of the old one wait beside it.
+class Replacement {
+ public:
+  explicit Replacement(const NewFile& file) : place_(resolved(file.target)), old_(temporary_of(file.target)) {
+    old_ += "-old";
+    std::error_code failure;
+    if (std::filesystem::exists(place_, failure)) {
+      copied_ = true;
+      if (!std::filesystem::copy_file(place_, old_, failure)) {
+        remove_copy();
+        refuse_size(file.target, failure.value(), file.content.size());
+      }
+    }
+    try {
+      new_ = write_temporary(file.target, file.content.data(), file.content.size());
+    } catch (...) {  // the destructor does not run for a constructor that throws
+      remove_copy();
+      throw;
+    }
+  }
+  ~Replacement() {
+    if (!renamed_) ::unlink(new_.c_str());
+    remove_copy();
+  }
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  // 0 or the errno of what failed.
+  int rename() {
+    renamed_ = ::rename(new_.c_str(), place_.c_str()) == 0;
+    return renamed_ ? 0 : errno;
+  }
+  void put_back() {
+    if (!renamed_) return;
+    if (!copied_)
+      ::unlink(place_.c_str());
+    else if (::rename(old_.c_str(), place_.c_str()) == 0)
+      copied_ = false;
+  }
+
+ private:
+  void remove_copy() {
+    if (copied_) ::unlink(old_.c_str());
+  }
+  std::filesystem::path place_, old_, new_;
+  bool copied_ = false, renamed_ = false;
+};
+
 }  // namespace
 
 void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input) {
@@ -78,32 +144,37 @@ void require_writable(const std::filesystem::path& target) {
 }
 
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size) {
-  const auto give_up = [&](int error) {
-    refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
-  };
   std::error_code unreachable;  // then opening it fails, and says why
   const auto there = std::filesystem::status(target, unreachable);
   if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
     // A device or pipe cannot be renamed over; a folder is a mistake.
-    if (std::filesystem::is_directory(there)) give_up(EISDIR);
+    if (std::filesystem::is_directory(there)) refuse_size(target, EISDIR, size);
     const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file < 0) give_up(errno);
+    if (file < 0) refuse_size(target, errno, size);
     const int error = write_and_flush(file, static_cast<const char*>(data), size);
     ::close(file);
-    if (error != 0) give_up(error);
+    if (error != 0) refuse_size(target, error, size);
     return;
   }
-  const std::filesystem::path place = resolved(target), temporary = temporary_of(target);
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) give_up(errno);
-  int error = write_and_flush(file, static_cast<const char*>(data), size);
-  if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), place.c_str()) != 0) error = errno;
-  if (error != 0) {
+  const std::filesystem::path place = resolved(target), temporary = write_temporary(target, data, size);
+  if (::rename(temporary.c_str(), place.c_str()) != 0) {
+    const int error = errno;
     ::unlink(temporary.c_str());
-    give_up(error);
+    refuse_size(target, error, size);
   }
   flush_folder(place);
+}
+
+void write_files_together(const std::vector<NewFile>& files) {
+  std::deque<Replacement> replacements;
+  for (const NewFile& file : files) replacements.emplace_back(file);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const int error = replacements[i].rename();
+    if (error == 0) continue;
+    for (Replacement& done : replacements) done.put_back();
+    refuse_size(files[i].target, error, files[i].content.size());
+  }
+  for (const NewFile& file : files) flush_folder(resolved(file.target));
 }
 
 std::filesystem::path temporary_of(const std::filesystem::path& target) {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace remote_touch {
 
@@ -10,6 +12,16 @@ namespace remote_touch {
 // what it links to. On failure (missing folder, no permission, full disk) throws InputError naming the
 // target, and leaves neither a partial nor a temporary file.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
+
+struct NewFile {
+  std::filesystem::path target;  // a regular file, or absent
+  std::string content;
+};
+// Replaces files that belong together. All are written beside their targets and flushed to the disk first;
+// then they are renamed, with nothing else to do in between. When one cannot be written or renamed, throws
+// InputError naming it, and all targets are as they were. Only a program that is killed between two renames
+// leaves the first files new and the others old.
+void write_files_together(const std::vector<NewFile>& files);
 
 // Throws as write_file_atomically would for a folder that is missing or not writable, before any work is done
 // for the file.

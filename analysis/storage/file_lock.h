@@ -24,4 +24,18 @@ class FileLock {
   int descriptor_ = -1;
 };
 
+// The right to write files in a folder, held from construction to destruction; it leaves no file, whatever
+// ends the process. Throws InputError naming the folder when another process holds it. No lock is taken where
+// the folder cannot be opened, or on a file system without locks.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace remote_touch

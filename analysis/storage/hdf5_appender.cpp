@@ -19,6 +19,8 @@ hid_t stored(Hdf5Appender::Number number) {
   switch (number) {
     case Hdf5Appender::Number::f64:
       return H5T_IEEE_F64LE;
+    case Hdf5Appender::Number::f32:
+      return H5T_IEEE_F32LE;
     case Hdf5Appender::Number::i32:
       return H5T_STD_I32LE;
     case Hdf5Appender::Number::u64:
@@ -37,6 +39,7 @@ hid_t stored(Hdf5Appender::Number number) {
 template <class Call>
 void Hdf5Appender::guarded(const Call& call) {
   try {
+    use_hdf5();
     call();
   } catch (const InputError&) {
     throw;
@@ -52,14 +55,25 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     : target_(target), temporary_(temporary_of(target)) {
   require_writable(target);
   remove_leftovers(target);
-  guarded([&] {
-    use_hdf5();
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    check(H5Pset_userblock(creation, kDigestBlockSize));
-    check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
-    file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
-    check(file_ < 0 ? -1 : 0);
-  });
+  try {
+    guarded([&] { begin(); });
+  } catch (...) {  // the destructor does not run for a constructor that throws
+    remove_temporary();
+    throw;
+  }
+}
+
+void Hdf5Appender::begin() {
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  check(H5Pset_userblock(creation, kDigestBlockSize));
+  check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));  // for attributes above 64 KiB
+  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+  check(file_ < 0 ? -1 : 0);
+}
+
+void Hdf5Appender::remove_temporary() {
+  std::error_code gone;
+  std::filesystem::remove(temporary_, gone);
 }
 
 // False where something could not be written.
@@ -74,8 +88,7 @@ bool Hdf5Appender::close() {
 Hdf5Appender::~Hdf5Appender() {
   if (finished_) return;
   close();
-  std::error_code gone;
-  std::filesystem::remove(temporary_, gone);
+  remove_temporary();
 }
 
 void Hdf5Appender::group(const std::string& path) {

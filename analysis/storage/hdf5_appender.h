@@ -17,7 +17,7 @@ namespace remote_touch {
 // naming the target when it cannot be written.
 class Hdf5Appender {
  public:
-  enum class Number { f64, i32, u64, u32, u16 };
+  enum class Number { f64, f32, i32, u64, u32, u16 };
 
   explicit Hdf5Appender(const std::filesystem::path& target);
   ~Hdf5Appender();
@@ -46,7 +46,9 @@ class Hdf5Appender {
   };
   template <class Call>
   void guarded(const Call& call);
+  void begin();
   bool close();
+  void remove_temporary();
 
   const Hdf5Work work_;
   const std::filesystem::path target_, temporary_;

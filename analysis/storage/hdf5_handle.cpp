@@ -69,12 +69,17 @@ void throw_refusal() {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take_error, &refusal);
   if (refusal.of_system[0] != '\0') throw std::runtime_error(refusal.of_system);
   if (refusal.lacks_memory || no_memory) throw std::bad_alloc();
-  throw std::runtime_error("the HDF5 library refused a call");
+  throw std::runtime_error("the HDF5 library failed: out of memory, or a damaged file");  // it says no more
 }
 
 void use_hdf5() {
   static std::once_flag once;
   std::call_once(once, begin);
+  // Built for threads, it prints the errors of each other thread until that one says so, too.
+  thread_local bool is_silent = false;
+  if (is_silent) return;
+  is_silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  if (!is_silent) throw std::bad_alloc();
 }
 
 }  // namespace remote_touch

@@ -13,7 +13,7 @@ namespace remote_touch {
 // std::runtime_error with the error of the system, if there is one.
 [[noreturn]] void throw_refusal();
 
-// Errors are exceptions, not printed. To be called before the library is used.
+// Errors are exceptions, not printed. To be called before the library is used, in every thread that does.
 void use_hdf5();
 
 // Closes the object that it holds. A negative identifier means that a call of the library failed.

@@ -1,5 +1,6 @@
 #include "analysis/storage/hdf5_source.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <new>
@@ -22,15 +23,6 @@ herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names
   return -1;
 }
 
-// Of a call that failed: what is wrong, unless there is no memory.
-[[noreturn]] void refuse_call(const std::string& wrong) {
-  try {
-    throw_refusal();
-  } catch (const std::runtime_error&) {
-    throw std::runtime_error(wrong);
-  }
-}
-
 std::string last_part(const std::string& path) {
   return path.substr(path.rfind('/') + 1);
 }
@@ -41,6 +33,7 @@ class LibrarySource final : public Hdf5Source {
       : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {}
 
   TextAttributes attributes() const override {
+    use_hdf5();
     TextAttributes found;
     H5O_info_t root;
     check(H5Oget_info2(file_, &root, H5O_INFO_NUM_ATTRS));
@@ -54,6 +47,7 @@ class LibrarySource final : public Hdf5Source {
     return found;
   }
   std::vector<std::string> datasets() const override {
+    use_hdf5();
     std::vector<std::string> names;
     check(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names, H5O_INFO_BASIC));
     return names;
@@ -73,9 +67,24 @@ class LibrarySource final : public Hdf5Source {
 
  private:
   Handle opened(const std::string& dataset) const {
+    use_hdf5();
     const hid_t found = H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT);
-    if (found < 0) refuse_call(dataset + " is missing");
-    return Handle(found, H5Dclose);
+    if (found >= 0) return Handle(found, H5Dclose);
+    try {
+      throw_refusal();
+    } catch (const std::runtime_error&) {
+      if (!is_missing(dataset)) throw;
+    }
+    throw std::runtime_error(dataset + " is missing");
+  }
+  // One of its groups or itself is surely not there.
+  bool is_missing(const std::string& dataset) const {
+    for (std::size_t end = 0; end < dataset.size();) {
+      end = std::min(dataset.find('/', end + 1), dataset.size());
+      const htri_t found = H5Lexists(file_, dataset.substr(0, end).c_str(), H5P_DEFAULT);
+      if (found <= 0) return found == 0;
+    }
+    return false;
   }
 
   const Hdf5Work work_;

@@ -19,22 +19,28 @@ namespace remote_touch {
 
 namespace {
 
+// For the error of the system.
+[[noreturn]] void refuse_unreadable(const std::filesystem::path& file) {
+  throw InputError(file.string(),
+                   std::string("cannot be read (") + std::strerror(errno) + "): expected a readable file");
+}
+
 class OpenFile {
  public:
-  explicit OpenFile(const std::filesystem::path& file) : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (file_ >= 0) ::close(file_);
+  explicit OpenFile(const std::filesystem::path& file) : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ < 0) refuse_unreadable(file);
   }
+  ~OpenFile() { ::close(file_); }
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
   // How many bytes there are from there, at most size; 0 at the end, -1 with errno set when it cannot be
   // read.
   ssize_t read(char* to, std::size_t size, off_t at) const {
-    ssize_t found = -1;
+    ssize_t found;
     do {
-      found = file_ < 0 ? -1 : ::pread(file_, to, size, at);
-    } while (file_ >= 0 && found < 0 && errno == EINTR);
+      found = ::pread(file_, to, size, at);
+    } while (found < 0 && errno == EINTR);
     return found;
   }
 
@@ -71,9 +77,7 @@ std::string sha256_of_file(const std::filesystem::path& file, std::size_t from) 
   for (auto at = static_cast<off_t>(from);;) {
     const ssize_t size = open.read(part.data(), part.size(), at);
     if (size == 0) return hash.hex();
-    if (size < 0)
-      throw InputError(file.string(), std::string("cannot be read (") + std::strerror(errno) +
-                                          "): expected a readable file");
+    if (size < 0) refuse_unreadable(file);
     hash.add(part.data(), static_cast<std::size_t>(size));
     at += size;
   }

@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
@@ -95,6 +96,9 @@ int main(int argc, char** argv) {
     complain("out of memory");
   } catch (const std::length_error&) {
     complain("out of memory");
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    complain(no_thread ? "a thread cannot be started: out of memory, or of threads" : error.what());
   } catch (const std::exception& error) {
     complain(error.what());
   }

@@ -1,11 +1,11 @@
 #include "runners/regression/baselines/baseline_bless.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -14,11 +14,12 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/file_lock.h"
 #include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/regression/baselines/program_run.h"
+#include "runners/regression/baselines/scratch_folder.h"
 #include "runners/regression/baselines/spread.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/sweep/sweep.h"
@@ -26,31 +27,6 @@
 namespace remote_touch {
 
 namespace {
-
-// A folder for the runs, gone afterwards.
-class Scratch {
- public:
-  Scratch() {
-    std::error_code failure;
-    const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
-    if (failure) throw InputError("TMPDIR", failure.message() + ": expected a writable folder");
-    std::string name = folder / "remote-touch-bless-XXXXXX";
-    if (!::mkdtemp(name.data()))
-      throw InputError(
-          name, std::string("cannot be made (") + std::strerror(errno) + "): expected a writable folder");
-    path_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // JSON holds no other text.
 void require_utf8(const std::string& option, const std::string& text) {
@@ -86,13 +62,13 @@ void require_sense(const Blessing& blessing) {
 
 Manifest manifest_or_new(const std::filesystem::path& folder) {
   std::error_code unreachable;
-  return std::filesystem::exists(folder / "manifest.json", unreachable) ? read_manifest(folder) : Manifest{};
+  return std::filesystem::exists(manifest_file(folder), unreachable) ? read_manifest(folder) : Manifest{};
 }
 
 // Before anything is run.
 void require_places(const std::filesystem::path& folder) {
   std::error_code unreachable;
-  if (std::filesystem::exists(folder, unreachable)) require_writable(folder / "manifest.json");
+  if (std::filesystem::exists(folder, unreachable)) require_writable(manifest_file(folder));
 }
 void require_runnable(const std::filesystem::path& folder, const Baseline& baseline) {
   if (baseline.command == "sweep")
@@ -141,38 +117,6 @@ void store(const std::filesystem::path& file, const std::string& command, const 
   }
 }
 
-// A file as it was: unless the new one is kept, it is put back. So a result is never without its entry in the
-// manifest.
-class Replaced {
- public:
-  explicit Replaced(const std::filesystem::path& file) : file_(file) {
-    std::error_code absent;
-    const auto size = std::filesystem::file_size(file, absent);
-    if (!absent) before_ = opening_of(file, size);
-  }
-  ~Replaced() {
-    if (is_kept_) return;
-    std::error_code unreachable;
-    if (!before_)
-      std::filesystem::remove(file_, unreachable);
-    else
-      put_back();
-  }
-  Replaced(const Replaced&) = delete;
-  Replaced& operator=(const Replaced&) = delete;
-  void keep_new() { is_kept_ = true; }
-
- private:
-  void put_back() try {
-    if (opening_of(file_, before_->size() + 1) == *before_ + '\0') return;
-    write_file_atomically(file_, before_->data(), before_->size());
-  } catch (const std::exception&) {  // what led here will be told
-  }
-  const std::filesystem::path file_;
-  std::optional<std::string> before_;
-  bool is_kept_ = false;
-};
-
 std::string attribute_of(const std::filesystem::path& file, const char* name) {
   return attribute(Hdf5Reader(file).attributes(), name);
 }
@@ -194,12 +138,31 @@ bool same_definition(const Baseline& a, const Baseline& b) {
   return a.command == b.command && a.subject == b.subject && a.overrides == b.overrides;
 }
 
+std::string content_of(const std::filesystem::path& file) {
+  std::string content(std::filesystem::file_size(file), '\0');
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!in || std::fread(content.data(), 1, content.size(), in.get()) != content.size())
+    throw InputError(file.string(), std::string("cannot be read (") + std::strerror(errno) +
+                                        "): expected what was written a moment ago");
+  return content;
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
     throw InputError(folder.string(),
                      "cannot be made (" + failure.message() + "): expected a writable folder");
+}
+
+// A result is never without its entry in the manifest.
+void keep(const std::filesystem::path& folder, const Manifest& manifest, const std::filesystem::path& file,
+          std::optional<std::string> content) {
+  make_folder(folder);
+  std::vector<NewFile> files;
+  if (content) files.push_back({file, std::move(*content)});
+  files.push_back({manifest_file(folder), text_of(manifest)});
+  write_files_together(files);
 }
 
 void enter(const Baseline& baseline, Manifest& manifest) {
@@ -266,13 +229,15 @@ Measured measured_over_builds(const Blessing& blessing, const Baseline& baseline
 
 std::string bless(const Blessing& blessing) {
   require_sense(blessing);
+  const FolderLock alone(blessing.folder);
   Manifest manifest = manifest_or_new(blessing.folder);
   Baseline baseline = definition(blessing, manifest);
   require_places(blessing.folder);
   require_runnable(blessing.folder, baseline);
-  const Scratch scratch;
-  const Measured measured = measured_over_builds(blessing, baseline, scratch.path());
   const std::filesystem::path file = file_of(blessing.folder, baseline);
+  for (const auto& target : {file, manifest_file(blessing.folder)}) remove_leftovers(target);
+  const ScratchFolder scratch;
+  const Measured measured = measured_over_builds(blessing, baseline, scratch.path());
   const std::vector<Column> old = old_columns(file, baseline, measured.reference);
   std::vector<Column> now = judged_columns(measured.reference, baseline.command);
   if (!old.empty()) now = keep_old_bits(old, std::move(now), baseline.tolerances);
@@ -282,10 +247,9 @@ std::string bless(const Blessing& blessing) {
       sha256_of_file(file) == baseline.sha256)
     return baseline.name + ": nothing to store, every number is within the spread of the stored one";
   const std::string what_moved = is_new && !old.empty() ? moved(old, now) : "";
-  if (is_new) make_folder(blessing.folder);
-  Replaced replaced(file);
-  if (is_new) store(file, baseline.command, measured.reference, std::move(now));
-  const std::string sha256 = sha256_of_file(file);
+  const std::filesystem::path made = is_new ? scratch.path() / "stored.h5" : file;
+  if (is_new) store(made, baseline.command, measured.reference, std::move(now));
+  const std::string sha256 = sha256_of_file(made);
   // The file that was stored, made once more in the place of a damaged one, keeps its reason.
   if (!stored || sha256 != stored->sha256 || !same_definition(*stored, baseline)) {
     if (stored) baseline.history.push_back(stored->revision);
@@ -293,8 +257,7 @@ std::string bless(const Blessing& blessing) {
   }
   baseline.sha256 = sha256, baseline.builds = measured.over, baseline.tolerances = measured.spread;
   enter(baseline, manifest);
-  write_manifest(blessing.folder, manifest);
-  replaced.keep_new();
+  keep(blessing.folder, manifest, file, is_new ? std::make_optional(content_of(made)) : std::nullopt);
   return baseline.name + ": " + (is_new ? "stored" : "the manifest is new, the numbers are kept") + ", " +
          spread_text(baseline.tolerances) + (what_moved.empty() ? "" : "; moved: " + what_moved);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
 #include "scenarios/text_files/text_file.h"
@@ -11,10 +10,6 @@
 namespace remote_touch {
 
 namespace {
-
-std::filesystem::path manifest_file(const std::filesystem::path& folder) {
-  return folder / "manifest.json";
-}
 
 Revision revision_of(const Json& json) {
   return {json.at("reason"), json.value("moved", "")};
@@ -68,6 +63,10 @@ const Baseline* Manifest::find(const std::string& name) const {
   return found == baselines.end() ? nullptr : &*found;
 }
 
+std::filesystem::path manifest_file(const std::filesystem::path& folder) {
+  return folder / "manifest.json";
+}
+
 Manifest read_manifest(const std::filesystem::path& folder) {
   const std::filesystem::path file = manifest_file(folder);
   const Json json = parse_json(
@@ -85,11 +84,10 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   }
 }
 
-void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+std::string text_of(const Manifest& manifest) {
   Json list = Json::array();
   for (const Baseline& baseline : manifest.baselines) list.push_back(json_of(baseline));
-  const std::string text = Json({{"complete", manifest.complete}, {"baselines", list}}).dump(2) + "\n";
-  write_file_atomically(manifest_file(folder), text.data(), text.size());
+  return Json({{"complete", manifest.complete}, {"baselines", list}}).dump(2) + "\n";
 }
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline) {

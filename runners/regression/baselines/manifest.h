@@ -37,9 +37,10 @@ struct Manifest {
   const Baseline* find(const std::string& name) const;
 };
 
-// FOLDER/manifest.json. Throws InputError when it cannot be read or written, or is not as expected.
+// FOLDER/manifest.json. Throws InputError when it cannot be read or is not as expected.
 Manifest read_manifest(const std::filesystem::path& folder);
-void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
+std::filesystem::path manifest_file(const std::filesystem::path& folder);
+std::string text_of(const Manifest& manifest);  // as read_manifest() reads it
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const Baseline& baseline);
 // The baseline's subject as the commands take it: its name, or the path of its JSON file.

@@ -1,15 +1,17 @@
 #include "runners/regression/baselines/program_run.h"
 
 #include <fcntl.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <new>
+#include <string_view>
 #include <thread>
 
 #include "core/parameters/input_error.h"
@@ -19,25 +21,61 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kCannotStart = 127;
+// A spawned program's output: none but its errors, which go to a file.
+class OutputTo {
+ public:
+  explicit OutputTo(const std::filesystem::path& errors) : errors_(errors) {
+    const int error =
+        ::posix_spawn_file_actions_init(&actions_) != 0
+            ? ENOMEM
+            : first_of(::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0),
+                       ::posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, errors_.c_str(),
+                                                          O_WRONLY | O_CREAT | O_TRUNC, 0666));
+    if (error != 0) throw std::bad_alloc();
+  }
+  ~OutputTo() { ::posix_spawn_file_actions_destroy(&actions_); }
+  OutputTo(const OutputTo&) = delete;
+  OutputTo& operator=(const OutputTo&) = delete;
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
 
-void redirect(int stream, const char* file) {
-  const int to = ::open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (to >= 0) ::dup2(to, stream);
+ private:
+  static int first_of(int a, int b) { return a != 0 ? a : b; }
+  const std::string errors_;
+  posix_spawn_file_actions_t actions_{};
+};
+
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> all;
+  for (std::string& text : texts) all.push_back(text.data());
+  all.push_back(nullptr);
+  return all;
 }
 
-// In the child.
-[[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments,
-                         const std::map<std::string, std::string>& environment,
-                         const std::filesystem::path& errors) {
-  for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
-  redirect(STDOUT_FILENO, "/dev/null");
-  redirect(STDERR_FILENO, errors.c_str());
-  std::vector<char*> words = {const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
-  words.push_back(nullptr);
-  ::execv(program.c_str(), words.data());
-  ::_exit(kCannotStart);
+// This process's environment, which its programs inherit, with some variables set in addition: "NAME=value".
+std::vector<std::string> environment_with(const std::map<std::string, std::string>& more) {
+  std::vector<std::string> all;
+  for (char** one = environ; *one; ++one) {
+    const std::string_view text = *one;
+    if (!more.contains(std::string(text.substr(0, text.find('='))))) all.emplace_back(text);
+  }
+  for (const auto& [name, value] : more) all.push_back(name + "=" + value);
+  return all;
+}
+
+// Spawned, not forked: what finds no memory between fork and exec would go on as a second copy of this
+// program.
+pid_t start(const std::string& program, std::vector<std::string> arguments,
+            const std::map<std::string, std::string>& environment, const std::filesystem::path& errors) {
+  arguments.insert(arguments.begin(), program);
+  std::vector<std::string> variables = environment_with(environment);
+  const OutputTo output(errors);
+  pid_t child = 0;
+  const int error = ::posix_spawn(&child, program.c_str(), output.actions(), nullptr,
+                                  pointers(arguments).data(), pointers(variables).data());
+  if (error != 0)
+    throw InputError(program, std::string("cannot be started (") + std::strerror(error) +
+                                  "): expected a build of remote-touch");
+  return child;
 }
 
 // Its status. Signals that this program gets are handed on.
@@ -70,13 +108,9 @@ std::string this_program() {
 void run_program(const std::string& program, const std::vector<std::string>& arguments,
                  const std::map<std::string, std::string>& environment, const std::filesystem::path& errors,
                  const std::atomic<bool>* stop) {
-  const pid_t child = ::fork();
-  if (child < 0) throw InputError(program, std::string("cannot be started (") + std::strerror(errno) + ")");
-  if (child == 0) become(program, arguments, environment, errors);
+  const pid_t child = start(program, arguments, environment, errors);
   const int status = end_of(child, stop);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kCannotStart)
-    throw InputError(program, "cannot be started: expected a build of remote-touch");
   throw InputError(program, "failed with " +
                                 (WIFEXITED(status) ? "exit code " + std::to_string(WEXITSTATUS(status))
                                                    : "signal " + std::to_string(WTERMSIG(status))) +

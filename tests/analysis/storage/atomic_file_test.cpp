@@ -8,12 +8,14 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "analysis/figures/result_file.h"
+#include "tests/analysis/storage/system_answers.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
@@ -117,6 +119,75 @@ TEST(WriteWholeFile, ALinkInARingIsRefused) {
   fs::create_symlink("b", folder / "a");
   EXPECT_HAS(refusal([&] { write_file_atomically(folder / "a", "x", 1); }), "a: cannot be written (");
   EXPECT_TRUE(fs::is_symlink(folder / "a"));
+}
+
+TEST(WriteFilesTogether, ReplacesAllOrNone) {
+  const TestFolder folder("atomic_file_test");
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/b", folder / "b");
+  folder.write("a", "old a"), folder.write("there/b", "old b");
+  const std::vector<NewFile> files = {{folder / "a", "new a"}, {folder / "new", ""}, {folder / "b", "new b"}};
+  const auto all = [&] { return bytes_of(folder / "a") + ", " + bytes_of(folder / "b"); };
+  const std::vector<std::string> before = {"a", "b", "there"};
+
+  for (const int done : {0, 1, 2}) {
+    const FailedRename failed(done, EDQUOT);
+    EXPECT_HAS(
+        refusal([&] { write_files_together(files); }),
+        files[static_cast<std::size_t>(done)].target.string() + ": cannot be written (Disk quota exceeded)");
+    EXPECT_EQ(all(), "old a, old b");
+    EXPECT_EQ(files_in(folder.path()), before);
+    EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
+  }
+  auto impossible = files;
+  for (const char* name : {"nowhere/c", "there"}) {
+    impossible[2].target = folder / name;
+    EXPECT_HAS(refusal([&] { write_files_together(impossible); }),
+               std::string(name) + ": cannot be written (");
+    EXPECT_EQ(all(), "old a, old b");
+    EXPECT_EQ(files_in(folder.path()), before);
+  }
+  {
+    const AnswersOfWrite full{{5, 0}, {-1, ENOSPC}};
+    EXPECT_HAS(refusal([&] { write_files_together(files); }),
+               "b: cannot be written (No space left on device)");
+    EXPECT_EQ(files_in(folder.path()), before);
+  }
+  write_files_together(files);
+  EXPECT_EQ(all(), "new a, new b");
+  EXPECT_TRUE(fs::is_symlink(folder / "b"));
+  EXPECT_EQ(bytes_of(folder / "new"), "");
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"a", "b", "new", "there"}));
+  EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"b"});
+}
+
+TEST(MoveIntoPlace, WhatCannotBeMovedIsRemoved) {
+  const TestFolder folder("atomic_file_test");
+  fs::create_directory(folder / "taken");
+  const fs::path temporary = temporary_of(folder / "taken");
+  folder.write(temporary.filename(), "whole");
+  EXPECT_HAS(refusal([&] { move_into_place(temporary, folder / "taken"); }), "taken: cannot be written (");
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"taken"});
+  EXPECT_HAS(refusal([&] { move_into_place(temporary, folder / "new"); }), "new: cannot be written (No such");
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"taken"});
+}
+
+// As the system may answer, but seldom does: a call that is interrupted is repeated, and what takes no byte
+// is full.
+TEST(WriteWholeFile, CallsThatWriteNothing) {
+  const TestFolder folder("atomic_file_test");
+  {
+    const AnswersOfWrite once{{-1, EINTR}, {-1, EINTR}};
+    write_file_atomically(folder / "file", "text", 4);
+  }
+  EXPECT_EQ(bytes_of(folder / "file"), "text");
+  for (const int earlier : {0, EINTR}) {
+    const AnswersOfWrite none{{0, earlier}};
+    EXPECT_HAS(refusal([&] { write_file_atomically(folder / "file", "other", 5); }),
+               "file: cannot be written (No space left on device)");
+  }
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"file"});
+  EXPECT_EQ(bytes_of(folder / "file"), "text");
 }
 
 TEST(RemoveLeftovers, BesideTheFileThatALinkLeadsTo) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <string>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/child_process.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/sha256.h"
 #include "tests/support/result_files.h"
@@ -63,7 +65,17 @@ TEST(Sha256, KnownValues) {
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256_of_file(folder.write("xyabc", "xyabc"), 2),
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_HAS(refusal([&] { sha256_of_file(folder / "missing"); }), "cannot be read");
+  EXPECT_HAS(refusal([&] { sha256_of_file(folder / "missing"); }),
+             "missing: cannot be read (No such file or directory): expected a readable file");
+  EXPECT_HAS(refusal([&] { sha256_of_file(folder.path()); }), "cannot be read (Is a directory)");
+}
+
+// The end of a file is no interruption, whatever call was interrupted before.
+TEST(Sha256, AnEarlierInterruptionDoesNotCount) {
+  const TestFolder folder("file_digest_test");
+  const auto file = folder.write("abc", "abc");
+  EXPECT_EQ(in_child({256u << 20, 5}, [&] { return errno = EINTR, sha256_of_file(file); }),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "analysis/storage/hdf5_appender.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_reader.h"
@@ -81,6 +84,17 @@ TEST(Hdf5Appender, TellsWhereItCannotWrite) {
   const TestFolder folder("hdf5_appender");
   EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
   EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");
+  // As on a full disk: the file is made, and its first bytes find no room.
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const rlimit none{0, old.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+  const std::string message = refusal([&] { Hdf5Appender out(folder / "x.h5"); });
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_HAS(message, "x.h5: cannot be written (File too large)");
+  EXPECT_EQ(files_in(folder), 0u);
 }
 
 }  // namespace

@@ -14,11 +14,14 @@ from commands import EMPTY, KINDS, done_runs, read, restore, state_of
 FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library refused|libgomp|terminate|what\(\)|"
                      r"vector::|malloc")
 # The C library says so by itself, before the program's line, where the HDF5 library damaged the heap after it found no
-# memory. It cannot be told not to.
+# memory, and so does that of OpenMP, which ends the program. They cannot be told not to.
 DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\))[^\n]*\n"
-                          r"(?=remote-touch: the HDF5 library failed: out of memory)")
+                          r"(?=remote-touch: the HDF5 library failed: out of memory)"
+                          r"|\A\nlibgomp: Out of memory allocating \d+ bytes\n(?=remote-touch: )")
 # OpenMP ends the program by itself where it finds no memory for its threads, and its library has no call to prevent it.
 ENDED_BY_OPENMP = re.compile(r"\A\nlibgomp: Out of memory allocating \d+ bytes\n\Z")
+# It ended the program at once, as did a lack of memory where no exception may leave, such as in the destructor of JSON.
+ENDED_AT_ONCE = re.compile(r"the HDF5 library failed|\Aremote-touch: out of memory\n\Z")
 # What the message of each failure has to say.
 REASON = {"ENOSPC": "No space left on device", "EIO": "Input/output error", "ENOMEM": "memory"}
 
@@ -59,6 +62,8 @@ def new_counts(folder):
 
 class Trials:
     """Of one scene, in a folder of its own; for one thread at a time."""
+
+    scratch = os.path.join("tmp", "remote-touch-bless-")
 
     def __init__(self, scene, trace=None):
         self.scene, self.tools, self.command = scene, scene.tools, scene.command
@@ -119,7 +124,7 @@ class Trials:
         if failure.how == "KILL":
             if done.returncode != -9 and failure.process == 0 and not message:
                 return f"exit {done.returncode} after a kill"
-            return self.lost(state)
+            return self.lost(state, killed=True)
         if done.returncode == 1 and ENDED_BY_OPENMP.match(message):
             return self.lost(state) or self.litter(failure, state)
         if done.returncode not in (0, 2):
@@ -131,12 +136,12 @@ class Trials:
                 return f"a message of a library: {message[:300]!r}"
             if REASON[failure.how] not in message:
                 return f"no word of {REASON[failure.how]!r}: {message[:300]!r}"
-            return self.lost(state) or self.litter(failure, state)
+            return self.lost(state) or self.litter(failure, state, message)
         if message:
             return f"exit 0, but it says {message[:300]!r}"
         return self.incomplete(failure, state)
 
-    def lost(self, state):
+    def lost(self, state, killed=False):
         """What was complete before is so afterwards."""
         before, after = self.scene.before, self.scene.after
         for name, content in before.items():
@@ -152,18 +157,20 @@ class Trials:
                     return f"{name} lost runs"
             elif self.command.same_bytes and state[name] != after[name]:
                 return f"{name} is neither the earlier nor the new result"
-        return self.half(state)
+        return self.half(state, killed)
 
-    def half(self, state):
-        """Of files that belong together none is new while the other is old."""
-        if self.command.name != "bless":
+    def half(self, state, killed):
+        """Of files that belong together none is new while the other is old; but a kill may come between two renames."""
+        if self.command.name != "bless" or killed and state["stored/manifest.json"] == self.scene.before["stored/manifest.json"]:
             return ""
         news = {name: state[name] == self.scene.after[name] for name in ("stored/lift.h5", "stored/manifest.json")}
         return "" if len(set(news.values())) == 1 else f"one of two is new: {news}"
 
-    def litter(self, failure, state):
+    def litter(self, failure, state, message=""):
         extra = set(state) - set(self.scene.before) - set(self.scene.after)
         extra = {name for name in extra if not name.endswith(".lock")}  # that nobody holds: the next command takes it
+        if ENDED_AT_ONCE.search(message):  # nothing could be removed; the next command does
+            extra = {name for name in extra if not name.startswith(self.scratch) and ".partial-" not in name}
         return "" if failure.kind == "remove" or not extra else f"left {sorted(extra)}"
 
     def incomplete(self, failure, state):

@@ -249,7 +249,8 @@ TEST_F(MeasureSpread, ProgramsThatAreNone) {
     programs[1] = second;
     EXPECT_EQ(refused(programs).find(second + ": " + why), 0u) << refused(programs);
   };
-  refused_second(folder_ / "nowhere", "cannot be started: expected a build of remote-touch");
+  refused_second(folder_ / "nowhere",
+                 "cannot be started (No such file or directory): expected a build of remote-touch");
   refused_second(folder_.path(), "cannot be started");
   refused_second(folder_.write("plain.txt", "a text"), "cannot be started");
   refused_second(program("failing", "echo first >&2; echo why not >&2; exit 7"),
@@ -334,7 +335,7 @@ TEST(Bless, RefusesWhatMakesNoSense) {
   EXPECT_HAS(refused([](auto& b) { b.folder /= "mine.json"; }), "mine.json/manifest.json: cannot be written");
   EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"mine.json"});
 
-  write_manifest(folder.path(), {false, {{"x", "run", "fig4.11"}}});
+  folder.write("manifest.json", text_of(Manifest{false, {{"x", "run", "fig4.11"}}}));
   EXPECT_HAS(refused([](auto& b) { b.run = "", b.overrides = {"seed=1"}; }),
              "--set: without --run or --sweep");
   folder.write("manifest.json", "damaged");
