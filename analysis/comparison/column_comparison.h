@@ -14,8 +14,8 @@ namespace remote_touch {
 // inside when it is at most absolute + relative * |the baseline's row|.
 //
 // Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are equal or outside.
-// Different kinds, widths, units, value names or lengths are a problem, and so are no rows at all; the rows
-// that both have are compared all the same.
+// Different kinds, widths, units, value names or lengths are a problem; the rows that both have are compared
+// all the same. Two columns without rows are the same.
 struct ColumnComparison {
   std::string name, units;
   Tolerance tolerance;
@@ -27,7 +27,7 @@ struct ColumnComparison {
   double max = 0, rms = 0;      // of the finite deviations, in units; 0 for names, texts and hashes
   std::optional<std::size_t> first_difference = {}, first_outside = {};
 
-  bool is_same() const { return problem.empty() && rows > 0 && outside == 0; }
+  bool is_same() const { return problem.empty() && outside == 0; }
 };
 
 ColumnComparison compare_columns(const Column& baseline, const Column& candidate, const Tolerance& tolerance);

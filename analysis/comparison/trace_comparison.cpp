@@ -178,8 +178,10 @@ const char* name_of(Cause cause) {
 }
 
 bool TraceComparison::is_same() const {
-  return !columns.empty() &&
-         std::all_of(columns.begin(), columns.end(), [](const ColumnComparison& c) { return c.is_same(); });
+  const auto has_rows = [](const ColumnComparison& c) { return c.rows > 0; };
+  const auto is_same = [](const ColumnComparison& c) { return c.is_same(); };
+  return std::any_of(columns.begin(), columns.end(), has_rows) &&
+         std::all_of(columns.begin(), columns.end(), is_same);
 }
 
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,

@@ -41,7 +41,7 @@ struct TraceComparison {
   std::vector<ColumnComparison> columns;  // of the baseline, in its order
   std::vector<std::string> added;         // columns that only the candidate has: not compared
   std::optional<Divergence> divergence;   // set when a column has a row outside
-  bool is_same() const;
+  bool is_same() const;                   // and something was compared
 };
 
 // Compares the columns of two sources by name; does not search for a divergence.

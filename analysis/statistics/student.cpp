@@ -62,7 +62,7 @@ double student_two_sided(double t, int degrees) {
   double term = is_odd ? cosine : 1, sum = degrees == 1 ? 0 : term;
   for (int k = is_odd ? 3 : 2; k <= degrees - 2; k += 2) term *= cosine * cosine * (k - 1) / k, sum += term;
   const double within = is_odd ? 2 / std::numbers::pi * (angle + sine * sum) : sine * sum;
-  return std::clamp(1 - within, 0.0, 1.0);
+  return std::max(1 - within, 0.0);
 }
 
 double student_quantile(double probability, int degrees) {

@@ -171,14 +171,20 @@ class SweepReader {
   bool has(const std::string& name) const {
     return std::find(datasets_.begin(), datasets_.end(), "/sweep/" + name) != datasets_.end();
   }
+  // Each of its values has a name, if any has one.
   Column axis(const std::string& name) const {
-    if (!has(name)) damaged("/sweep/" + name + " is missing");
-    return hdf5_.column("/sweep/" + name);
+    Column column = hdf5_.column("/sweep/" + name);
+    const auto* numbers = std::get_if<std::vector<std::int32_t>>(&column.values);
+    if (column.value_names.empty() || numbers == nullptr) return column;
+    for (const std::int32_t number : *numbers)
+      if (number < 0 || static_cast<std::size_t>(number) >= column.value_names.size())
+        damaged("/sweep/" + name + " has a value without a name");
+    return column;
   }
   // The column of that name, length and kind.
   template <class Value>
   Column column(const std::string& name, std::size_t length) const {
-    Column column = axis(name);
+    Column column = hdf5_.column("/sweep/" + name);
     const auto* values = std::get_if<std::vector<Value>>(&column.values);
     if (values == nullptr || values->size() != length) damaged("/sweep/" + name + " has another shape");
     column.width = 1;  // a second dimension is an axis

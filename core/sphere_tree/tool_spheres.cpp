@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <unordered_set>
 
 #include "core/geometry/bounding_box.h"
 #include "core/parameters/input_error.h"
 #include "core/sphere_tree/sphere_cover.h"
-#include "core/tool/contact/contact_thinning.h"
+#include "core/sphere_tree/surface_samples.h"
 #include "core/tool/mesh/triangle_tree.h"
 
 namespace remote_touch {
@@ -23,50 +22,6 @@ constexpr double kDominated = 0.85;  // see inscribed_balls()
 constexpr int kBisections = 12;      // of the growth
 constexpr int kPlacesOfLeaf = 200;   // at which a leaf's distance from the mesh is measured
 constexpr std::size_t kLeavesOfNode = 8;
-
-Vec3 corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
-  return mesh.vertices[static_cast<std::size_t>(mesh.triangles[triangle][i])];
-}
-
-// Places of every triangle no farther apart than spacing_m, its corners among them: rows along its longest
-// side up to the corner above. Of a fine mesh they are many more than one for every square of that side.
-std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m) {
-  std::vector<Vec3> samples;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    std::size_t first = 0;
-    const auto side = [&](std::size_t i) { return Vec3(corner(mesh, t, (i + 1) % 3) - corner(mesh, t, i)); };
-    for (std::size_t i = 1; i < 3; ++i)
-      if (side(i).norm() > side(first).norm()) first = i;
-    const Vec3 a = corner(mesh, t, first), base = side(first), up = corner(mesh, t, (first + 2) % 3) - a;
-    const double length = base.norm(), height = length > 0 ? base.cross(up).norm() / length : 0;
-    const int columns = std::max(1, static_cast<int>(std::ceil(length / spacing_m))),
-              rows = std::max(1, static_cast<int>(std::ceil(height / spacing_m)));
-    for (int j = 0; j <= rows; ++j)
-      for (int i = 0; i <= columns; ++i) {
-        const double above = double(j) / rows, along = double(i) / columns;
-        samples.push_back(a + above * up + (1 - above) * along * base);
-      }
-  }
-  return samples;
-}
-
-// Of the places in every cube of side spacing_m the first.
-std::vector<Vec3> thinned(const std::vector<Vec3>& places, double spacing_m) {
-  std::unordered_set<std::uint64_t> seen;
-  std::vector<Vec3> kept;
-  for (const Vec3& place : places)
-    if (seen.insert(cell_number(place, 1 / spacing_m)).second) kept.push_back(place);
-  return kept;
-}
-
-double area_of(const TriangleMesh& mesh) {
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 a = corner(mesh, t, 0);
-    area += 0.5 * (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a).norm();
-  }
-  return area;
-}
 
 // The largest balls inscribed in the tool: those around nodes of the field near its medial axis. From any
 // other place the distance to the surface grows by nearly the whole way to one of the neighbours, and the
@@ -184,7 +139,8 @@ ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves) {
   std::vector<Sphere> balls = inscribed_balls(tool, triangles);
   if (balls.empty())
     throw InputError("tool", "no place of its grid is inside: expected a smaller renderer.tool_voxel_m");
-  const double spacing_m = std::sqrt(2 * area_of(tool.mesh) / (kSamples + kSamplesOfLeaf * max_leaves));
+  const double spacing_m =
+      std::sqrt(2 * surface_area_m2(tool.mesh) / (kSamples + kSamplesOfLeaf * max_leaves));
   const SphereCover cover(thinned(surface_samples(tool.mesh, spacing_m), spacing_m), std::move(balls),
                           2 * spacing_m);
   ToolSpheres made;

@@ -13,7 +13,7 @@ void read_as(const std::string& bytes, Unpack unpack) {
   try {
     require(packed(unpack(bytes)) == bytes, "an answer is packed as it was");
   } catch (const std::runtime_error& refusal) {
-    require_one_line(refusal.what());
+    require_one_line(refusal.what(), bytes);
   }
 }
 

@@ -9,7 +9,7 @@ namespace remote_touch::fuzz::device_address {
 namespace {
 
 void read(std::string_view bytes) {
-  accepts([&] {
+  accepts(bytes, [&] {
     const Uri uri = parse_uri("--device", std::string(bytes));
     const DeviceAddress address(uri.scheme, uri.address, {"force", "rate", "device", "handle", "check"});
     address.word("device", ""), address.choice("force", {"vector", "values"});

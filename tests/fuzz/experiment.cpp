@@ -7,7 +7,7 @@ namespace remote_touch::fuzz::experiment {
 namespace {
 
 void read(std::string_view bytes) {
-  accepts([&] {
+  accepts(bytes, [&] {
     const std::string complete = Experiment::from_json(std::string(bytes), "experiment").to_json();
     const Experiment again = Experiment::from_json(complete, "complete experiment");
     require(again.to_json() == complete, "an experiment survives writing and reading");

@@ -25,17 +25,18 @@ struct Registered {
 
 // Throws std::logic_error unless what has to be true of a reader is.
 void require(bool is_true, const char* what);
-void require_one_line(const std::string& message);
+// And that no library speaks to the user, unless the message quotes it from the bytes.
+void require_one_line(const std::string& message, std::string_view bytes);
 
 // An InputError in one line is what a reader may answer. All other exceptions pass through: a message of a
-// library, or std::bad_alloc, is a finding.
+// library, or std::bad_alloc, is a finding. bytes: what is read.
 template <class Read>
-bool accepts(Read&& read) {
+bool accepts(std::string_view bytes, Read&& read) {
   try {
     read();
     return true;
   } catch (const InputError& refusal) {
-    require_one_line(refusal.what());
+    require_one_line(refusal.what(), bytes);
     return false;
   }
 }

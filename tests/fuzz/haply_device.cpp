@@ -30,7 +30,7 @@ class AnyService final : public HaplyLink {
 
 void read(std::string_view bytes) {
   SimulatedClock clock;
-  accepts([&] {
+  accepts(bytes, [&] {
     const auto device = open_haply("", clock, [&](const DeviceAddress&, const Clock&, double) {
       return std::make_unique<AnyService>(bytes, clock);
     });

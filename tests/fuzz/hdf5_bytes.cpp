@@ -1,5 +1,6 @@
 // Damaged and foreign HDF5 files. All that the HDF5 library may do with them happens in a child process with
 // limits.
+#include "analysis/storage/hdf5_handle.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/scratch_file.h"
@@ -8,8 +9,9 @@ namespace remote_touch::fuzz::hdf5_bytes {
 namespace {
 
 void read(std::string_view bytes) {
+  use_hdf5();  // begun before, not in each child
   const auto file = scratch_file("file.h5", bytes);
-  accepts([&] {
+  accepts(bytes, [&] {
     const Hdf5Reader reader(file);
     if (reader.has("/sweep/checksum")) read_sweep(reader);
     for (const std::string& dataset : reader.datasets()) reader.column(dataset);

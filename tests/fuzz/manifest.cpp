@@ -8,7 +8,7 @@ namespace remote_touch::fuzz::manifest {
 namespace {
 
 void read(std::string_view bytes) {
-  accepts([&] {
+  accepts(bytes, [&] {
     const auto folder = scratch_file("baselines/manifest.json", bytes).parent_path();
     for (const Baseline& baseline : read_manifest(folder).baselines) subject_of(folder, baseline);
   });

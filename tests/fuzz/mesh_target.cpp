@@ -9,7 +9,7 @@ namespace remote_touch::fuzz {
 
 void read_as_mesh(const std::string& name, std::string_view bytes) {
   const auto file = scratch_file(name, bytes);
-  accepts([&] {
+  accepts(bytes, [&] {
     const TriangleMesh mesh = read_mesh(file);
     require(has_its_vertices(mesh), "a corner is a vertex");
   });

@@ -8,7 +8,7 @@ namespace {
 
 void read(std::string_view bytes) {
   const auto file = scratch_file("cloud.pcd", bytes);
-  accepts([&] {
+  accepts(bytes, [&] {
     const PcdCloud image = read_pcd(file);
     const PointCloud& cloud = image.cloud;
     require(cloud.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),

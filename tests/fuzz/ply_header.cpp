@@ -9,7 +9,7 @@ namespace {
 
 void read(std::string_view bytes) {
   const std::string problem = ply_problem(scratch_file("header.ply", bytes));
-  if (!problem.empty()) accepts([&] { throw InputError("header.ply", problem); });
+  if (!problem.empty()) accepts(bytes, [&] { throw InputError("header.ply", problem); });
 }
 
 const Registered registered("ply_header", read);

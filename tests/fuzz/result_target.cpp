@@ -9,8 +9,8 @@ namespace remote_touch::fuzz {
 void compare_as_results(std::string_view bytes) {
   const auto [first, second] = two_parts(bytes);
   const Content a = content_of(first), b = content_of(second);
-  accepts([&] { comparison_json(compare_results(reader_of(a), reader_of(b), {})); });
-  accepts([&] {
+  accepts(bytes, [&] { comparison_json(compare_results(reader_of(a), reader_of(b), {})); });
+  accepts(bytes, [&] {
     require(compare_results(reader_of(a), reader_of(a), {}).outcome != Outcome::regressed,
             "a result does not differ from itself");
   });

@@ -8,7 +8,7 @@ namespace {
 void read(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::string text(bytes.substr(1));
-  accepts([&] {
+  accepts(bytes, [&] {
     if (bytes.front() == 'm') {
       const Method method = read_method("fuzz", text);
       configuration({method}, {}, 2);

@@ -10,7 +10,7 @@ namespace remote_touch::fuzz::session_file {
 namespace {
 
 void read(std::string_view bytes) {
-  accepts([&] {
+  accepts(bytes, [&] {
     const SessionReader session(reader_of(content_of(bytes)));
     const CameraIntrinsics& camera = session.view().camera;
     require(camera.width > 0 && camera.height > 0 && session.haptic_rate_hz() > 0, "a session has a view");

@@ -14,7 +14,7 @@ void read(std::string_view bytes) {
   std::istringstream lines{std::string(bytes)};
   std::vector<std::string> settings;
   for (std::string line; std::getline(lines, line);) settings.push_back(line);
-  accepts([&] {
+  accepts(bytes, [&] {
     const std::string complete = Experiment::from_json(kExperiment, "experiment", settings).to_json();
     require(Experiment::from_json(complete, "complete experiment").to_json() == complete,
             "an experiment survives writing and reading");

@@ -54,7 +54,7 @@ bool reads_no_file(const Json& json) {
 void read(std::string_view bytes) {
   const std::string text(bytes);
   omp_set_num_threads(1);
-  accepts([&] {
+  accepts(bytes, [&] {
     const Json json = parse_json(text, "sweep");
     if (!is_small(json) || !reads_no_file(json)) return;
     const Sweep sweep = Sweep::from_json(text, "sweep");

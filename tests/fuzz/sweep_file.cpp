@@ -59,7 +59,7 @@ Content with_right_digests(Content content) {
 void read(std::string_view bytes) {
   const auto [first, second] = two_parts(bytes);
   const Content a = with_right_digests(content_of(first)), b = with_right_digests(content_of(second));
-  accepts([&] {
+  accepts(bytes, [&] {
     const StoredSweep stored = read_sweep(reader_of(a));
     const std::size_t runs = stored.result.run_count();
     require(stored.result.state.size() == runs && stored.result.error.size() == runs,
@@ -71,7 +71,7 @@ void read(std::string_view bytes) {
   ComparisonRules rules;
   for (const bool paired : {false, true}) {
     rules.paired = paired;
-    accepts([&] { comparison_json(compare_results(reader_of(a), reader_of(b), rules)); });
+    accepts(bytes, [&] { comparison_json(compare_results(reader_of(a), reader_of(b), rules)); });
   }
 }
 

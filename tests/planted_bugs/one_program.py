@@ -20,6 +20,22 @@ inline bool is_chosen(std::string_view name) {
 #define PLANTED(name) ([] { static const bool chosen = planted_bugs::is_chosen(name); return chosen; }())
 """
 
+def patched_copies(patches, root, copies):
+    """Copies into the folder copies what the patches change, and patches it. Returns the files, as paths from root."""
+    files = sorted({file for patch in patches for file in re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(), re.MULTILINE)})
+    for file in files:
+        (copies / file).parent.mkdir(parents=True, exist_ok=True)
+        if not (root / file).is_file():
+            raise Failure(f"there is no {file} to patch")
+        shutil.copyfile(root / file, copies / file)
+    for patch in patches:
+        try:
+            output_of(["patch", "--strip=1", "--fuzz=0", "--batch", "--forward", "--input", patch], copies)
+        except Failure as failure:
+            raise Failure(f"{patch.name} does not apply, the source has moved on: {' '.join(str(failure).split())}")
+    return files
+
+
 class Build:
     """The commands that BUILD_FOLDER makes the program with."""
 
@@ -73,17 +89,7 @@ class Build:
         """The program with all patches. A member of an archive is not used where an object has all of it."""
         shutil.rmtree(scratch, ignore_errors=True)
         copies = scratch / "patched"
-        files = sorted({file for patch in patches for file in re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(), re.MULTILINE)})
-        for file in files:
-            (copies / file).parent.mkdir(parents=True, exist_ok=True)
-            if not (self.root / file).is_file():
-                raise Failure(f"there is no {file} to patch")
-            shutil.copyfile(self.root / file, copies / file)
-        for patch in patches:
-            try:
-                output_of(["patch", "--strip=1", "--fuzz=0", "--batch", "--forward", "--input", patch], copies)
-            except Failure as failure:
-                raise Failure(f"{patch.name} does not apply, the source has moved on: {' '.join(str(failure).split())}")
+        files = patched_copies(patches, self.root, copies)
         header = scratch / "planted_bugs.h"
         header.write_text(CHOICE)
         for file in files:

@@ -84,6 +84,10 @@ TEST(CompareColumns, TheSmallestVectorsAreToldApart) {
   EXPECT_EQ(c.outside, 1u);
   EXPECT_DOUBLE_EQ(c.max, 1e-170);
   EXPECT_EQ(compare_columns(numbers({0, 5e-324, 0}, 3), numbers({0, 0, 0}, 3), {}).outside, 1u);
+  // Whatever the next row is.
+  const auto two =
+      compare_columns(numbers({0, 1e-170, 0, 7, 0, 0}, 3), numbers({0, 2e-170, 0, 8, 0, 0}, 3), {});
+  EXPECT_EQ(two.outside, 2u);
 }
 
 // Nor do the largest let anything pass.
@@ -101,6 +105,9 @@ TEST(CompareColumns, NoNumberIsNeverAPassAgainstANumber) {
     EXPECT_EQ(c.outside, 1u);
     EXPECT_EQ(c.not_numbers, 1u);
     EXPECT_EQ(c.max, 0);
+    const auto alone = compare_columns(numbers({none}), numbers({0}), {});
+    EXPECT_EQ(alone.max, 0);
+    EXPECT_EQ(alone.rms, 0);  // of no finite deviation
     EXPECT_FALSE(compare_columns(numbers({0, 1}), numbers({none, 1}), {1e9, 1e9}).is_same());
     EXPECT_TRUE(compare_columns(numbers({none, 1}), numbers({none, 1}), {}).is_same());
   }
@@ -119,9 +126,15 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({1, 2, 3}, 3)), "3 rows of 1 against 1 rows of 3");
   EXPECT_EQ(problem(numbers({1, 2, 3}, 1, "mm")), "units m against mm");
   EXPECT_EQ(problem({"x", "m", "", std::vector<std::int32_t>{1, 2, 3}, 1, {}}), "another kind of values");
-  EXPECT_EQ(compare_columns(numbers({}), numbers({}), {}).problem, "no rows");
+  EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
   // What both have is compared all the same.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
+}
+
+// A table of a figure may be empty: of events that did not happen.
+TEST(CompareColumns, TwoWithoutRowsAreTheSame) {
+  EXPECT_TRUE(compare_columns(numbers({}), numbers({}), {}).is_same());
+  EXPECT_FALSE(compare_columns(numbers({}, 3), numbers({}), {}).is_same());
 }
 
 TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {

@@ -53,6 +53,17 @@ TEST(CompareSweeps, NamesTheFirstDifference) {
   EXPECT_EQ(c.measures[0].first_outside, 25u);
 }
 
+TEST(CompareSweeps, OfSeveralMeasuresOfARunTheFirstIsNamed) {
+  SweepResult a = row(8), b = a;
+  flip(a, b, 5, true);
+  depth(b)[5] = 2;
+  const SweepComparison c = compare(a, b);
+  ASSERT_TRUE(c.first);
+  EXPECT_EQ(c.first->run, 5u);
+  EXPECT_EQ(c.first->measure, "event");
+  EXPECT_EQ(c.first->candidate, 1);
+}
+
 TEST(CompareSweeps, EveryMeasureHasItsTolerance) {
   SweepResult a = row(8), b = a;
   depth(a)[1] = 1e-20, depth(b)[1] = 2e-20;
@@ -275,6 +286,7 @@ TEST(RegionComparison, MeasuresOtherNumbers) {
   EXPECT_EQ(r.mean.pairs, 4);
   EXPECT_EQ(r.mean.mean, 0.75);  // also what is within the tolerance
   EXPECT_EQ(r.mean.low, mean_difference({1, 2, -0.5, 0.5}).low);
+  EXPECT_NEAR(r.baseline_spread, std::sqrt(5.0) / 2, 1e-15);  // of 1, 2, 3, 4: sqrt((9 + 1 + 1 + 9) / 4 / 4)
   EXPECT_EQ(r.sign_p, 0.5);
   EXPECT_EQ(r.symmetry_p, symmetry_test({1, 2}));
 }

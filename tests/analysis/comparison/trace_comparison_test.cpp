@@ -217,7 +217,6 @@ TEST(CompareTraces, NoRowsAreNotTheSame) {
     const TraceComparison comparison = compare(baseline, candidate);
     EXPECT_FALSE(comparison.is_same());
     EXPECT_FALSE(comparison.divergence);
-    for (const ColumnComparison& column : comparison.columns) EXPECT_FALSE(column.problem.empty());
   }
   EXPECT_FALSE(compare(Columns{}, Columns{}).is_same());
   EXPECT_FALSE(compare(Columns{}, lift()).is_same());

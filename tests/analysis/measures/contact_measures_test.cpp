@@ -67,6 +67,14 @@ TEST(ContactMeasures, DistanceAsksForForceAndNotForPoints) {
   EXPECT_TRUE(std::isnan(distance_sd_m(trace_of({silent, dark}))));
 }
 
+// The mean of three times 0.1 is not 0.1 to the last bit: nothing but that may be left.
+TEST(ContactMeasures, WhatIsTheSameEverywhereHasNoScatter) {
+  Tick same{0.1, 0};
+  same.force_N = {0, 1, 0};
+  EXPECT_NEAR(height_sd_m(trace_of({same, same, same})), 0, 1e-15);
+  EXPECT_NEAR(distance_sd_m(trace_of({same, same, same})), 0, 1e-15);
+}
+
 TEST(ContactMeasures, TheEndIsTheLastTick) {
   EXPECT_EQ(end_distance_m(trace_of({{-0.01, 0.005}, {0.004, 0.005}})), 0.004);
   EXPECT_EQ(end_distance_m(trace_of({{0.01, 0.005}, {-0.004, 0.005}})), -0.004);

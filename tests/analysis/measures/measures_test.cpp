@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include "analysis/measures/no_value.h"
 
 namespace remote_touch::measures_test {
 namespace {
@@ -47,6 +51,23 @@ TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {unknown}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
   EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{unknown}}))));
+}
+
+// Results are compared bit by bit, and the NaN of 0 / 0 has another sign.
+TEST(Measures, NoValueHasTheSameBitsEverywhere) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (const Trace& trace : {Trace(), trace_of({{unknown}, {unknown}})})
+    for (const auto measure :
+         {max_penetration_m, min_slave_distance_m, wrong_side_fraction, rms_surface_error_m})
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(measure(trace)), std::bit_cast<std::uint64_t>(kNoValue));
+}
+
+TEST(Measures, OfNoTicksNoneIsUnconvergedOrNotFinite) {
+  EXPECT_EQ(unconverged_fraction(Trace()), 0);
+  EXPECT_EQ(non_finite_fraction(Trace()), 0);
+  EXPECT_EQ(mean_steps(Trace()), 0);
+  EXPECT_EQ(max_steps(Trace()), 0);
+  EXPECT_EQ(max_force_N(Trace()), 0);
 }
 
 TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {

@@ -4,41 +4,12 @@
 
 #include <cmath>
 
+#include "tests/analysis/scorecard/example_cards.h"
+
 namespace remote_touch::overview_test {
 namespace {
 
-// 20 runs without noise, which are one, and 20 with noise: of these so many succeed. `steps` is 1 plus a
-// scatter that all methods have in common.
-SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
-  SweepResult result;
-  result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}, 1, {}}};
-  result.replicates = 20;
-  result.measures = {{"held", "1", "", {}, 1, {}}, {"steps", "1", "", {}, 1, {}}};
-  result.start(false);
-  std::vector<double> held(40, without_noise ? 1.0 : 0.0), count(40, 1);
-  for (int i = 0; i < 20; ++i) {
-    held[static_cast<std::size_t>(20 + i)] = i < with_noise ? 1 : 0;
-    count[static_cast<std::size_t>(20 + i)] = 1 + steps * (1 + 0.1 * (i % 3)) + i;
-  }
-  result.measures[0].values = held, result.measures[1].values = count;
-  for (RunState& state : result.state) state = RunState::done;
-  return result;
-}
-
-Bound held() {
-  return {"held", 1};
-}
-
-Scorecard card_of(const std::vector<std::vector<SweepResult>>& scenes) {
-  Scorecard card{{kOwnMethod, "proxy", "penalty"}, {"", "", ""}, {}};
-  for (const auto& sweeps : scenes) {
-    const std::string name = "scene " + std::to_string(card.scenes.size());
-    card.scenes.push_back(
-        score({name, "", "", {held()}, {{"steps", Better::smaller}}, {{"steps", -1000}}}, sweeps, false));
-  }
-  correct(card);
-  return card;
-}
+using namespace made_cards;
 
 TEST(Overview, NoiseFreeRunsAreAColumnOfTheirOwn) {
   const Scorecard card = card_of({{sweep_of(false, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
@@ -89,6 +60,16 @@ TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
   EXPECT_EQ(list[1].own_mean, 0);
   EXPECT_EQ(list[1].other_mean, 1);
   EXPECT_TRUE(weaknesses(card, "nobody").empty());
+}
+
+TEST(Weaknesses, OfSeveralThatAreAheadTheFirstIsNamed) {
+  const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].ahead, 2);
+  EXPECT_EQ(list[0].other, "penalty");
+  EXPECT_EQ(list[0].other_mean, 1);
+  EXPECT_EQ(list[0].p, card.scenes[0].ranking.against[2][0].p);
 }
 
 TEST(Weaknesses, WhatMayBeChanceIsListedApart) {

@@ -76,6 +76,21 @@ TEST(NextRound, AsksHalfWayAndAgainWhereACellIsUncertain) {
   EXPECT_EQ(next_round(result, rule({4})), expected);
 }
 
+// Of 200 runs 80 are certainly less than half, and 120 certainly more: their intervals are +-0.07 wide.
+TEST(NextRound, CellsDisagreeAboutOneHalf) {
+  const auto half_way = [](int events, int others) {
+    SweepResult result = empty_grid({3}, 200);
+    sample(result, 0, events, 200), sample(result, 2, others, 200);
+    const Runs runs = next_round(result, rule({2}));
+    EXPECT_TRUE(runs.empty() || runs == Runs{result.run(1, 0)});
+    return !runs.empty();
+  };
+  EXPECT_FALSE(half_way(80, 0));
+  EXPECT_FALSE(half_way(120, 200));
+  EXPECT_TRUE(half_way(80, 120));
+  EXPECT_TRUE(half_way(120, 80));
+}
+
 TEST(NextRound, AnUncertainCellGetsReplicatesUpToItsRoom) {
   SweepResult result = empty_grid({1}, 6);
   sample(result, 0, 1, 2);

@@ -11,8 +11,9 @@
 #include <numeric>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
@@ -168,24 +169,6 @@ TEST(SweepInProgress, DamageAsksForNoRuns) {
   EXPECT_EQ(read_sweep(folder.write("torn.h5", torn)).result.state[4], RunState::not_sampled);
 }
 
-TEST(FileLock, OneHolderAtATime) {
-  const TestFolder folder("sweep_file_test");
-  const auto file = folder / "x.h5";
-  folder.write("x.h5.partial-123", "left by a killed program");
-  {
-    const FileLock first(file);
-    EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.partial-123"));
-    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing it");
-    EXPECT_NO_THROW(FileLock(folder / "y.h5"));
-    write_sweep(file, awkward(), kAttributes);  // the file may be replaced under the lock
-    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing it");
-  }
-  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.lock"));
-  folder.write("x.h5.lock", "");  // of a killed process
-  EXPECT_NO_THROW(FileLock{file});
-  EXPECT_HAS(refusal([&] { FileLock lock(folder / "nowhere" / "x.h5"); }), "x.h5: cannot be written");
-}
-
 TEST(SweepInProgress, NoticesThatItsFileIsGone) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";
@@ -227,6 +210,21 @@ TEST(SweepFile, DamageIsRefused) {
   EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/2");
 }
 
+// As a program would leave it that seals what it changed.
+TEST(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  write_sweep(file, awkward(), kAttributes);
+  const std::string seal = sha256_of_file(file, kDigestBlockSize), value = raw(1.0 / 3);
+  std::string bytes = bytes_of(file);
+  bytes.replace(bytes.rfind(value), value.size(), raw(0.25));
+  folder.write("x.h5", bytes);
+  bytes.replace(bytes.find(seal), seal.size(), sha256_of_file(file, kDigestBlockSize));
+  folder.write("x.h5", bytes);
+  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_HAS(refusal([&] { read_sweep(file); }), "x.h5: damaged (its digest is another)");
+}
+
 // 2^64 runs are none for a computer that counts with 64 bits.
 TEST(SweepFile, AxesNamedMoreOftenThanTheyAreThereAreRefused) {
   const TestFolder folder("sweep_file_test");
@@ -242,6 +240,33 @@ TEST(SweepFile, AxesNamedMoreOftenThanTheyAreThereAreRefused) {
   };
   EXPECT_HAS(why(64, {0, 1}), "damaged (its axes have too many values)");
   EXPECT_HAS(why(1, {}), "damaged (it has no runs)");
+}
+
+TEST(SweepFile, AnAxisWithAValueThatHasNoNameIsRefused) {
+  const TestFolder folder("sweep_file_test");
+  for (const std::int32_t unnamed : {-1, 2}) {
+    const Column axis{"a", "1", "", std::vector<std::int32_t>{0, unnamed}, 1, {"fixed", "variable"}};
+    Hdf5Writer hdf5;
+    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", "a"}, {"measures", "m"}});
+    hdf5.group("/sweep");
+    hdf5.columns("/sweep", {axis}, "");
+    hdf5.save(folder / "x.h5");
+    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }),
+               "damaged (/sweep/a has a value without a name)");
+  }
+}
+
+TEST(SweepFile, AnAxisThatIsNotThereIsNamed) {
+  const TestFolder folder("sweep_file_test");
+  for (const auto finished : {Hdf5Writer::Finished::yes, Hdf5Writer::Finished::no}) {
+    Hdf5Writer hdf5(finished);
+    hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"}, {"axes", "a,b"}, {"measures", "m"}});
+    hdf5.group("/sweep");
+    const std::vector<double> two{1, 2};
+    hdf5.columns("/sweep", {{"a", "1", "", two, 1, {}}, {"checksum", "1", "", two, 1, {}}}, "");
+    hdf5.save(folder / "x.h5");
+    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }), "x.h5: damaged (/sweep/b is missing)");
+  }
 }
 
 }  // namespace

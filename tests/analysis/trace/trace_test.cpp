@@ -62,6 +62,14 @@ TEST(TraceColumns, AreThoseOfTheTableInItsOrder) {
   EXPECT_STREQ(trace_columns().back().name, "tick_hash");
 }
 
+TEST(TraceColumns, AreAsWideAsTheirValues) {
+  const std::vector<Column> columns = one_tick(true, true, true).columns();
+  for (const char* one : {"time", "state", "contact_count", "tick_hash"})
+    EXPECT_EQ(find(columns, one).width, 1);
+  for (const char* three : {"proxy_position", "force"}) EXPECT_EQ(find(columns, three).width, 3);
+  EXPECT_EQ(find(columns, "tool_orientation").width, 4);
+}
+
 TEST(TraceColumns, ARunHasThoseOfItsParts) {
   const std::size_t always = names(one_tick(false, false, false).columns()).size();
   EXPECT_EQ(always, 19u);

@@ -35,9 +35,10 @@ TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
 
 TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
   scenes::DepthScene scene = with_holes(noisy_waves(200, 150), 0.05);
-  // Depths behind the image in memory, which must have no part in it.
+  // Rows behind the image in memory, which continue its surface, must have no part in it.
   const std::size_t pixels = scene.depth.z_m.size();
-  scene.depth.z_m.resize(2 * pixels, 0.5);
+  scene.depth.z_m.reserve(2 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) scene.depth.z_m.push_back(scene.depth.z_m[pixels - 200 + i % 200]);
   scene.depth.z_m.resize(pixels);
   const RigidTransform X_WC = some_pose();
   DepthPipeline pipeline({}, best());

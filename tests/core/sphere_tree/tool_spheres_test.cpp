@@ -129,6 +129,19 @@ TEST(ToolSpheres, ABallIsNearlyOneSphere) {
   EXPECT_LT(made.inside_m, 1e-4);
 }
 
+// Two layers of nodes lie inside, each next to an end of the field. Balls of one of them alone would have to
+// grow by a voxel to cover the other side.
+TEST(ToolSpheres, OfAPlateOfAFewVoxels) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 half_m(0.53, 0.53, 0.53);
+    half_m[axis] = 0.13;
+    ToolReport report;
+    const VoxelTool tool = make_voxel_tool(scenes::box_mesh(half_m), {.voxel_m = 0.1}, report);
+    ASSERT_EQ(tool.grid.cells[static_cast<std::size_t>(axis)], 3);
+    EXPECT_LT(outside_of_cover_m(tool, 400), 0.07) << axis;
+  }
+}
+
 TEST(ToolSpheres, AToolWithoutInsideIsRefused) {
   VoxelTool tool = *scenes::box_tool({0.002, 0.002, 0.002});
   for (float& distance : tool.distance_m) distance = std::abs(distance) + 1e-6f;

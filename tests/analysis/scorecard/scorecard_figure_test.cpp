@@ -1,0 +1,87 @@
+// The tables of a scorecard's figure: what stands in them, and with which units.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analysis/scorecard/card_numbers.h"
+#include "analysis/scorecard/scorecard.h"
+#include "tests/analysis/scorecard/example_cards.h"
+
+namespace remote_touch::scorecard_figure_test {
+namespace {
+
+using namespace made_cards;
+using Texts = std::vector<std::string>;
+using Counts = std::vector<std::int32_t>;
+using Numbers = std::vector<double>;
+
+const Table& table_of(const Figure& figure, const std::string& name) {
+  for (const Table& table : figure.tables)
+    if (table.name == name) return table;
+  throw std::out_of_range(name);
+}
+
+// Scene 0: told apart by success. Scene 1: all succeed, and each takes more steps than the one before.
+Scorecard two_orders() {
+  return card_of({{sweep_of(true, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
+                  {sweep_of(true, 20, 1), sweep_of(true, 20, 2), sweep_of(true, 20, 3)}},
+                 {{"steps", Better::smaller}, {"held", Better::reported}});
+}
+
+TEST(ScorecardFigure, StandingsHaveSuccessAndEveryJudgedMeasure) {
+  const Figure figure = scorecard_figure(two_orders());
+  const Table& standings = table_of(figure, "standings");
+  const auto& scene = values_of<Texts>(standings, "scene");
+  EXPECT_EQ(scene, (Texts{"scene 0", "scene 0", "scene 0", "scene 0", "scene 0", "scene 0",  //
+                          "scene 1", "scene 1", "scene 1", "scene 1", "scene 1", "scene 1"}));
+  EXPECT_EQ(values_of<Texts>(standings, "measure"),
+            (Texts{"success", "success", "success", "steps", "steps", "steps",  //
+                   "success", "success", "success", "steps", "steps", "steps"}));
+  ASSERT_EQ(values_of<Counts>(standings, "place"), (Counts{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}));
+  const auto& method = values_of<Texts>(standings, "method");
+  const auto &mark = values_of<Counts>(standings, "mark"), &top = values_of<Counts>(standings, "top_group");
+  for (const std::size_t first : {0, 9}) {  // success of scene 0, steps of scene 1
+    EXPECT_EQ(Texts(method.begin() + first, method.begin() + first + 3),
+              (Texts{kOwnMethod, "proxy", "penalty"}));
+    EXPECT_EQ(Counts(mark.begin() + first, mark.begin() + first + 3), (Counts{1, 0, -1}));
+    EXPECT_EQ(Counts(top.begin() + first, top.begin() + first + 3), (Counts{1, 0, 0}));
+  }
+  // Who succeeds as often as all others is neither best nor worst, and first with them.
+  EXPECT_EQ(Counts(mark.begin() + 6, mark.begin() + 9), (Counts{0, 0, 0}));
+  EXPECT_EQ(Counts(top.begin() + 6, top.begin() + 9), (Counts{1, 1, 1}));
+}
+
+TEST(ScorecardFigure, PanelsShowTheShareOfSuccessesOverNoise) {
+  const Figure figure = scorecard_figure(two_orders());
+  const Table& panel = table_of(figure, "panel_0");
+  EXPECT_EQ(values_of<Numbers>(panel, "noise"), (Numbers{0, 5}));
+  EXPECT_EQ(values_of<Numbers>(panel, "proxy"), (Numbers{1, 0.5}));
+  EXPECT_EQ(values_of<Numbers>(panel, "penalty"), (Numbers{1, 0}));
+  for (const Column& column : panel.columns) {
+    EXPECT_EQ(column.units, column.name == "noise" ? "mm" : "1") << column.name;
+    EXPECT_GT(column.long_name.size(), 10u) << column.name;
+  }
+  EXPECT_EQ(panel.columns.size(), 1u + 3 * 3);
+}
+
+// Counts, shares and names have no unit, and every column says what it is.
+TEST(ScorecardFigure, ColumnsOfTheOverviewAreExplained) {
+  const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
+  for (const Table& table : {overview_table(card), behind_table(card)})
+    for (const Column& column : table.columns) {
+      EXPECT_EQ(column.units, "1") << column.name;
+      EXPECT_NE(column.long_name, "1") << column.name;
+    }
+  const Table behind = behind_table(card);
+  EXPECT_EQ(values_of<Texts>(behind, "what"), Texts{"success"});
+  EXPECT_EQ(values_of<Texts>(behind, "other"), Texts{"penalty"});
+  EXPECT_EQ(values_of<Counts>(behind, "ahead"), Counts{2});
+  EXPECT_EQ(values_of<Counts>(behind, "shown"), Counts{1});
+  EXPECT_EQ(values_of<Numbers>(behind, "own_mean"), Numbers{0});
+  EXPECT_EQ(values_of<Numbers>(behind, "other_mean"), Numbers{1});
+}
+
+}  // namespace
+}  // namespace remote_touch::scorecard_figure_test
