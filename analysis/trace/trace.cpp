@@ -1,5 +1,6 @@
 #include "analysis/trace/trace.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "analysis/columns/hash64.h"
@@ -66,7 +67,7 @@ std::vector<TraceColumn> make_table() {
   const auto add = [&table](const char* name, const char* unit, TracePart part, std::size_t row_bytes,
                             Values (*values)(const Trace&), const Meaning& meaning,
                             std::vector<std::string> value_names = {}) {
-    const int width = row_bytes > 8 ? static_cast<int>(row_bytes / 8) : 1;
+    const int width = std::max(1, static_cast<int>(row_bytes / 8));
     table.push_back(
         {name, unit, meaning.without_tool, meaning.with_tool, part, width, std::move(value_names), values});
   };

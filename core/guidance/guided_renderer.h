@@ -32,6 +32,8 @@ class GuidedRenderer final : public Renderer {
   void prepare(Frame& frame) const override { inner_->prepare(frame); }
   void reserve(std::size_t points) override { inner_->reserve(points); }
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override { return inner_->live_parameters(); }
+  void parameters_changed() override { inner_->parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:

@@ -30,10 +30,19 @@ struct Parameter {
   std::variant<double*, int*, std::uint64_t*, bool*, std::string*, Vec3*, Choice, Rows> value;
   double low = 0;  // allowed range of a number, ends included
   double high = 0;
-  std::string help;  // one line; names the equation when there is one
+  std::string help;      // one line; names the equation when there is one
+  bool is_live = false;  // may change during a run
 };
 
 using Parameters = std::vector<Parameter>;
+
+inline constexpr bool kLive = true;
+
+// Those of a list that may change during a run.
+inline Parameters live_ones(Parameters list) {
+  std::erase_if(list, [](const Parameter& parameter) { return !parameter.is_live; });
+  return list;
+}
 
 // A choice held in any enumeration whose values are 0, 1, 2, ... in the order of names.
 template <class Enumeration>

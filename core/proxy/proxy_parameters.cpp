@@ -7,21 +7,23 @@ namespace remote_touch {
 Parameters parameters(ProxyParameters& p) {
   return {
       {"r1_m", &p.r1_m, 1e-6, 1,
-       "the proxy is entrenched where the distance r_n (5.5) is below this, Fig 4.2, 5.3"},
+       "the proxy is entrenched where the distance r_n (5.5) is below this, Fig 4.2, 5.3", kLive},
       {"r2_m", &p.r2_m, 1e-6, 1,
-       "the proxy is in contact where the distance is from r1 to this; the contact radius r_c is (r1 + r2) / 2"},
-      {"r3_m", &p.r3_m, 1e-6, 1, "radius of the points that are averaged to the normal (4.1)"},
+       "the proxy is in contact where the distance is from r1 to this; the contact radius r_c is (r1 + r2) / 2",
+       kLive},
+      {"r3_m", &p.r3_m, 1e-6, 1, "radius of the points that are averaged to the normal (4.1)", kLive},
       {"theta_deg", &p.theta_deg, 0, 90,
        "convergence angle: a contact has converged when -u and the normal differ by less (4.8)"},
       {"gamma", &p.gamma, 1e-3, 1, "near the goal: step length as a fraction of the distance to it (4.11)"},
       {"xi", &p.xi, 1e-3, 0.999, "far from the goal: step length in units of r1 (4.12)"},
-      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s of the virtual coupling (4.16)"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s of the virtual coupling (4.16)",
+       kLive},
       {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper k_d of the virtual coupling (4.16)"},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000, "maximum number of proxy steps in a haptic tick"},
       {"max_exit_steps", &p.max_exit_steps, 0, 1000,
        "maximum number of extra steps (5.11) when a tick would end inside a forbidden region; 0: as printed"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
-       "estimate the velocity of the cloud (4.13) and move the proxy with it at each frame (4.3)"},
+       "estimate the velocity of the cloud (4.13) and move the proxy with it at each frame (4.3)", kLive},
       {"max_prediction_s", &p.max_prediction_s, 0, 10,
        "maximum time after a frame for which (4.3) and (4.15) extrapolate its motion; at least one frame interval"},
       {"step_rule", choice(p.step_rule, {"variable", "fixed"}), 0, 0,
@@ -44,6 +46,11 @@ Parameters parameters(ProxyParameters& p) {
       {"slave_prediction", &p.slave_prediction, 0, 1,
        "in contact: add velocity estimate times age of the frame to the position of the slave"},
   };
+}
+
+Parameters with_fixed_radii(Parameters list) {
+  for (Parameter& p : list) p.is_live &= p.name != "r1_m" && p.name != "r2_m" && p.name != "r3_m";
+  return list;
 }
 
 std::string validate(const ProxyParameters& p) {

@@ -47,6 +47,9 @@ struct ProxyParameters {
 Parameters parameters(ProxyParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ProxyParameters& p);
+// The same list where the radii r1, r2 and r3 may not change during a run: for methods that derive lengths
+// from them.
+Parameters with_fixed_radii(Parameters list);
 // Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {
   return p.stiffness_N_per_m;

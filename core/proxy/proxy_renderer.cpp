@@ -59,6 +59,17 @@ void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
   has_local_query_ = false;
 }
 
+// Without the estimate the surface is taken to be at rest, in (4.15) too; switched on again, it starts anew.
+void ProxyRenderer::parameters_changed() {
+  set_radii(p_.r1_m, p_.r2_m, p_.r3_m);
+  is_clear_ = false;
+  coupling_.release();  // the next finite difference would be one of settings
+  if (contact_stiffness_N_per_m_ == own_stiffness_N_per_m_)  // the points have none
+    contact_stiffness_N_per_m_ = p_.stiffness_N_per_m;
+  own_stiffness_N_per_m_ = p_.stiffness_N_per_m;
+  if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
+}
+
 RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
   const Vec3& hip_W = device.position_W;
   RenderOutput out;

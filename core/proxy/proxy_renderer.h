@@ -38,6 +38,8 @@ class ProxyRenderer final : public Renderer {
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
   // r1, r2 and r3 of Table 4.2 from now on, as the constructor's: for methods that adapt them to the points.
   void set_radii(double r1_m, double r2_m, double r3_m);
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override;
   bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
   const Vec3& proxy_W() const { return proxy_W_; }
   bool in_contact() const { return in_contact_; }
@@ -79,6 +81,7 @@ class ProxyRenderer final : public Renderer {
   bool in_contact_ = false;                // until the proxy is free and nothing holds it back
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
+  double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // before the newest change
   FrameOrder order_;
   double frame_arrived_s_ = 0;
   Vec3 frame_correction_m_ = Vec3::Zero();  // by (4.3) since the last tick

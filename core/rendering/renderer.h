@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch {
@@ -77,7 +78,8 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
   // The slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers of
-  // the same kind and settings. May run in parallel to on_frame() and step(). Results do not depend on it.
+  // the same kind and settings. May run in parallel to on_frame() and step(), so it reads no live parameter.
+  // Results do not depend on it.
   virtual void prepare(Frame& /*frame*/) const {}
   // Reserves memory for frames of so many points, or for images of so many pixels, both sides rounded up to
   // multiples of 16; then on_frame() of a prepared frame allocates nothing. It releases the frame before: the
@@ -86,6 +88,11 @@ class Renderer {
   // A new cloud, prepared or not. A frame that is not newer than the last one is dropped, and the status of
   // the next output reports it.
   virtual void on_frame(const Frame& frame) = 0;
+  // Those of its settings that are marked live, with pointers to its own values. Between two steps the thread
+  // of step() may set these to others that its validate() allows; parameters_changed() then takes them,
+  // without an allocation.
+  virtual Parameters live_parameters() { return {}; }
+  virtual void parameters_changed() {}
   // One haptic tick at time_s, which never decreases. No allocation, no lock, no exception: errors are
   // reported as a status.
   virtual RenderOutput step(const DeviceState& device, double time_s) = 0;

@@ -29,6 +29,8 @@ class AveragedProxyRenderer final : public Renderer {
       : proxy_(parameters.proxy, haptic_rate_hz, kernels), average_(parameters.average, kernels) {}
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override { return proxy_.live_parameters(); }
+  void parameters_changed() override { proxy_.parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override { return proxy_.step(device, time_s); }
 
  private:

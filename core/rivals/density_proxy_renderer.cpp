@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 Parameters parameters(DensityProxyParameters& p) {
-  Parameters list = parameters(p.proxy);
+  Parameters list = with_fixed_radii(parameters(p.proxy));
   const Parameters more = {
       {"radius_ratio", &p.radius_ratio, 0.1, 100,
        "contact radius r_c in units of the local spacing of the points"},
@@ -42,6 +42,10 @@ DensityProxyRenderer::DensityProxyRenderer(const DensityProxyParameters& paramet
 void DensityProxyRenderer::reserve(std::size_t points) {
   proxy_.reserve(points);
   nearest_.reserve(points);
+}
+
+Parameters DensityProxyRenderer::live_parameters() {
+  return live_ones(with_fixed_radii(proxy_.live_parameters()));
 }
 
 void DensityProxyRenderer::on_frame(const Frame& frame) {

@@ -22,7 +22,7 @@ Parameters parameters(GodObjectParameters& p) {
       {"surface_offset_m", &p.surface_offset_m, 1e-9, 0.01,
        "distance that the god-object keeps from constraint planes, so that its side is unambiguous"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
-       "spring k_s between HIP and god-object, Zilles and Salisbury 1995"},
+       "spring k_s between HIP and god-object, Zilles and Salisbury 1995", kLive},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000, "maximum number of iterations in a haptic tick"},
   };
 }

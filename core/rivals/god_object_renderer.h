@@ -51,6 +51,8 @@ class GodObjectRenderer final : public RivalRenderer {
   // pre: validate(parameters) is empty. haptic_rate_hz has no effect: the method does not depend on time.
   GodObjectRenderer(const GodObjectParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   bool take(const NeighbourSearch& points) override;
@@ -60,7 +62,7 @@ class GodObjectRenderer final : public RivalRenderer {
   bool go(const Vec3& goal);
   void report(const Vec3& hip_W, RenderOutput& out);
 
-  const GodObjectParameters p_;
+  GodObjectParameters p_;
   GridMesh mesh_;
   Vec3 meshed_W_ = Vec3::Zero();  // centre of the ball in which mesh_ is valid, if is_meshed_
   bool is_meshed_ = false;

@@ -41,7 +41,7 @@ Parameters parameters(ImplicitSurfaceParameters& p) {
        "R of [84]: points at a larger distance have weight 0"},
       {"threshold", &p.threshold, 1e-3, 1000,
        "T of the metaballs [84]; with T below 1 a single point is solid"},
-      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy", kLive},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000, "maximum number of evaluations of f in a haptic tick"},
   };
 }

@@ -49,6 +49,8 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
   // haptic_rate_hz has no effect: the method does not depend on time.
   ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double haptic_rate_hz,
                           const Kernels& kernels);
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   struct Place {
@@ -64,7 +66,7 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
   void stop_at_surface(Place& outside, Place inside);
   void report(const Place& here, const Vec3& hip_W, RenderOutput& out);
 
-  const ImplicitSurfaceParameters p_;
+  ImplicitSurfaceParameters p_;
   const PointSurface surface_;
   Vec3 side_ = Vec3::Zero();  // the normal at the proxy, which gives surfels their side; zero away from them
   int steps_ = 0;             // of this tick

@@ -19,10 +19,20 @@ Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
 
 }  // namespace
 
-Parameters parameters(OracleProxyParameters& p) {
-  Parameters list = parameters(p.proxy);
-  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });  // it is told
+namespace {
+// The motion is told.
+Parameters without_estimate(Parameters list) {
+  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
   return list;
+}
+}  // namespace
+
+Parameters parameters(OracleProxyParameters& p) {
+  return without_estimate(parameters(p.proxy));
+}
+
+Parameters OracleProxyRenderer::live_parameters() {
+  return without_estimate(proxy_.live_parameters());
 }
 
 SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s) {

@@ -38,6 +38,8 @@ class OracleProxyRenderer final : public Renderer {
       : proxy_(parameters.proxy, haptic_rate_hz, kernels) {}
   void reserve(std::size_t points) override { proxy_.reserve(points); }
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override { proxy_.parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override { return proxy_.step(device, time_s); }
 
  private:

@@ -41,12 +41,14 @@ class PenaltyRenderer final : public RivalRenderer {
  public:
   // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
   PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   void touch(const Vec3& hip_W, RenderOutput& out) override;
   void reset_motion() override { has_previous_ = false; }
 
-  const PenaltyParameters p_;
+  PenaltyParameters p_;
   double haptic_rate_hz_;
   Vec3 previous_hip_W_ = Vec3::Zero();
   bool has_previous_ = false;

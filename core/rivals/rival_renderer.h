@@ -43,7 +43,7 @@ class RivalRenderer : public Renderer {
 
   Neighbourhood near_;
   const Kernels& kernels_;
-  const double stiffness_N_per_m_;
+  double stiffness_N_per_m_;
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
 

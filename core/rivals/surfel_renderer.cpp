@@ -48,7 +48,7 @@ Parameters parameters(SurfelParameters& p) {
       {"fused_frames", &p.fused_frames, 1, 4, "number of the newest frames that are joined to one cloud"},
       {"view", &p.view_direction, -1, 1,
        "viewing direction of the sensor, to which normals are turned; for images the ray of each pixel is used instead"},
-      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "spring k_s between HIP and proxy", kLive},
   };
 }
 
@@ -157,7 +157,6 @@ void SurfelRenderer::follow(const Vec3& hip_W) {
 void SurfelRenderer::report(const Vec3& hip_W, RenderOutput& out) {
   out.nearest_distance_m = std::numeric_limits<double>::infinity();
   out.steps = samples_;
-  if (radius_m_ == 0) return;
   const GatheredPoints& near = near_.within(proxy_W_, radius_m_);
   PointsView points = near.view();
   points.radius = nullptr;

@@ -51,6 +51,8 @@ class SurfelRenderer final : public RivalRenderer {
   // pre: validate(parameters) is empty. haptic_rate_hz has no effect: the method does not depend on time.
   SurfelRenderer(const SurfelParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) override;
@@ -64,7 +66,7 @@ class SurfelRenderer final : public RivalRenderer {
   void release(const Vec3& hip_W);
   void report(const Vec3& hip_W, RenderOutput& out);
 
-  const SurfelParameters p_;
+  SurfelParameters p_;
   double radius_m_;  // R; 0 until it is known
   PointNormals normals_;
   PointCloud buffer_;

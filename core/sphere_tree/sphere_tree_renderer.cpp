@@ -37,6 +37,10 @@ Parameters region_parameters(ToolParameters& p) {
   return all;
 }
 
+Parameters SphereTreeRenderer::live_parameters() {
+  return live_ones(region_parameters(p_));
+}
+
 SphereTreeRenderer::SphereTreeRenderer(const ToolParameters& parameters,
                                        std::shared_ptr<const VoxelTool> tool,
                                        const std::shared_ptr<const SphereTree>& spheres,

@@ -29,12 +29,13 @@ class SphereTreeRenderer final : public Renderer {
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
   void follow(const ToolPose& device, RenderOutput& out);
 
-  const ToolParameters p_;
+  ToolParameters p_;
   const std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   RegionContacts contacts_;

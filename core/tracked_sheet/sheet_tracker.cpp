@@ -102,12 +102,11 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   const Vec3 normal_W = steep < kTooSteep ? before.normal_W(slopes.u, slopes.v) : before.normal_W();
   region_.frame = PatchFrame(before.world({p.u, p.v, height}), normal_W, unit_m_);
   points_.clear();
-  for (const PatchPlace& q : sheet_) {
-    const PatchPlace moved = patch().place(before.world(q));
-    if (moved.u * moved.u + moved.v * moved.v < region_.radius * region_.radius) points_.add(moved, true);
-  }
-  sheet_.clear();
-  for (std::size_t i = 0; i < points_.size(); ++i) sheet_.push_back(points_.place(i));
+  for (PatchPlace& q : sheet_) q = patch().place(before.world(q));
+  std::erase_if(sheet_, [&](const PatchPlace& q) {
+    return !(q.u * q.u + q.v * q.v < region_.radius * region_.radius);
+  });
+  for (const PatchPlace& q : sheet_) points_.add(q, true);
   fit_.take(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
   fit_.fit(0.3 * sigma_, map_);
 }

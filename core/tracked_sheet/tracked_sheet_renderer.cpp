@@ -6,9 +6,16 @@
 
 namespace remote_touch {
 
+namespace {
+// The velocity is measured, and r_c is the tracker's unit of length.
+Parameters of_a_sheet(Parameters list) {
+  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });
+  return with_fixed_radii(std::move(list));
+}
+}  // namespace
+
 Parameters parameters(TrackedSheetParameters& p) {
-  Parameters list = parameters(p.proxy);
-  std::erase_if(list, [](const Parameter& q) { return q.name == "velocity_estimate"; });  // it is measured
+  Parameters list = of_a_sheet(parameters(p.proxy));
   SheetSettings& s = p.sheet;
   const Parameters more = {
       {"gate_m", &s.gate_m, 1e-4, 1, "search range around the predicted position of the sheet"},
@@ -40,6 +47,10 @@ TrackedSheetRenderer::TrackedSheetRenderer(const TrackedSheetParameters& p, doub
     : max_hold_frames_(p.sheet.max_missed_frames),
       proxy_(p.proxy, haptic_rate_hz, kernels),
       tracker_(p.sheet, p.proxy.contact_radius_m(), kernels) {}
+
+Parameters TrackedSheetRenderer::live_parameters() {
+  return live_ones(of_a_sheet(proxy_.live_parameters()));
+}
 
 void TrackedSheetRenderer::reserve(std::size_t points) {
   proxy_.reserve(points);

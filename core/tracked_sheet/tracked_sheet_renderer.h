@@ -34,6 +34,8 @@ class TrackedSheetRenderer final : public Renderer {
                        const Kernels& kernels);
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override { proxy_.parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:

@@ -73,6 +73,21 @@ void add_lists(Subcommands& commands) {
       "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",
       command_describe);
   describe->add_option("name", described->name, "a name from `remote-touch list`, or trace")->required();
+  auto [view, viewed] = commands.add(
+      "view", "make a page that shows a trace, two of them, or a sweep, in 3-D and over time", command_view);
+  view->add_option("results", viewed->results, "a trace, two traces to compare, or a sweep")
+      ->required()
+      ->expected(1, 2);
+  view->add_option("-o,--output", viewed->output, "the HTML page to write")->required();
+  view->add_option("--cells", viewed->cells,
+                   "cells of a sweep to show, 3,4 or noise_sigma_m=0.003,..., one for each --cells "
+                   "(default: failures nearest to the limit)")
+      ->allow_extra_args(false);
+  view->add_option("--max-mb", viewed->max_MB, "largest size of the page, MB; points are left out for it")
+      ->check(between(1.0, 1000.0));
+  view->add_option(
+      "--claims", viewed->claims,
+      "claims.json of `remote-touch figure`: the page of a figure's run shows the figure's claims");
   auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
   inspect->add_option("file", inspected->file, "an HDF5 file")->required();
 }
@@ -161,6 +176,8 @@ void add_scorecard(Subcommands& commands) {
       command_scorecard);
   add_scorecard_options(command, *scorecard, "all");
   add_seeds(command, *scorecard);
+  command->add_flag("--view", scorecard->view,
+                    "also make a page of each typical failure, as `remote-touch view` does");
   Subcommands below{*command, commands.line, commands.act};
   auto [check_command, check] = below.add(
       "check", "compare with the stored scorecard; exit code 0: agrees, 1: differs, 2: not comparable",
@@ -207,6 +224,7 @@ void add_compare(Subcommands& commands) {
   command->add_option("--junit", compare->junit, "also write a report in JUnit's XML format");
   command->add_option("--plot", compare->plot,
                       "also write a figure of the deviation over time (HDF5, for scripts/plot)");
+  command->add_option("--view", compare->view, "also write a page that shows both traces in 3-D (HTML)");
 
   auto [hash, hashes] = commands.add(
       "hashes", "extract the running hash of a trace, to find the first tick that differs on another machine",
@@ -265,7 +283,12 @@ void add_live(Subcommands& commands) {
                    "a name from `remote-touch list`, a JSON file, or a recorded live session")
       ->required();
   add_set(command, live->overrides, "parameter=value, for example safety.max_force_N=3");
-  command->add_option("--device", live->device, "haptic device, SCHEME:ADDRESS; see remote-touch devices")
+  command->add_option(
+      "--device", live->device,
+      "haptic device, SCHEME:ADDRESS; see remote-touch devices (default: sim:, with --view browser:)");
+  command->add_flag("--view", live->view, "show the run in a browser, where the mouse moves the hand");
+  command->add_option("--view-port", live->view_port, "its port on 127.0.0.1; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
       ->capture_default_str();
   command->add_option("--depth", live->depth, "depth sensor, SCHEME:ADDRESS; see remote-touch devices")
       ->capture_default_str();

@@ -61,7 +61,8 @@ struct ScorecardRequest {
   std::vector<std::string> methods, scenes;  // empty: all
   std::string folder;
   int seeds = 10;
-  int threads = 0;  // 0: as OpenMP decides
+  int threads = 0;    // 0: as OpenMP decides
+  bool view = false;  // also make pages of the failures
 };
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request);
 
@@ -104,7 +105,7 @@ struct CompareRequest {
   std::vector<std::string> tolerances;  // "force=1e-9,1e-6"
   bool paired = false;
   double margin = 0.02, shift_margin = 0.1, alpha = 0.01;
-  std::string json, junit, plot;  // files to write; empty: none
+  std::string json, junit, plot, view;  // files to write; empty: none
 };
 int command_compare(const CommandLine& line, const CompareRequest& request);
 
@@ -149,9 +150,11 @@ int command_hashes(const CommandLine& line, const HashesRequest& request);
 struct LiveRequest {
   std::string experiment;
   std::vector<std::string> overrides;
-  std::string device = "sim:", depth = "sim:";
+  std::string device, depth = "sim:";  // device empty: browser: with view, else sim:
   std::string record, output, report;  // files to write; empty: none
   std::optional<double> duration_s;    // none: until a signal comes
+  bool view = false;                   // in a browser
+  int view_port = 0;
 };
 int command_live(const CommandLine& line, const LiveRequest& request);
 
@@ -167,6 +170,16 @@ struct JitterRequest {
   double duration_s = 10, rate_hz = 1000;
 };
 int command_jitter(const CommandLine& line, const JitterRequest& request);
+
+struct ViewRequest {
+  std::vector<std::string> results;  // a trace, two to compare, or a sweep
+  std::vector<std::string> cells;    // of a sweep; empty: as sweep_page() chooses
+  std::string output;
+  double max_MB = 20;
+  std::string claims = {};  // claims.json of figures; empty: none
+};
+void write_view(const CommandLine& line, const ViewRequest& request);
+int command_view(const CommandLine& line, const ViewRequest& request);
 
 struct InspectRequest {
   std::string file;

@@ -46,9 +46,12 @@ Recipe recipe(const CompareRequest& request) {
   return recipe;
 }
 
-void require_plot_of_traces(const CompareRequest& request, const ResultComparison& comparison) {
-  if (!request.plot.empty() && comparison.kind != "trace")
+void require_traces_to_draw(const CompareRequest& request, const ResultComparison& comparison) {
+  if (comparison.kind == "trace") return;
+  if (!request.plot.empty())
     throw InputError("--plot " + request.plot, "of " + comparison.kind + ": expected with two traces");
+  if (!request.view.empty())
+    throw InputError("--view " + request.view, "of " + comparison.kind + ": expected with two traces");
 }
 
 void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {
@@ -69,14 +72,17 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   const std::vector<std::string> inputs{request.baseline, request.candidate};
   if (!request.json.empty()) require_report(line, request.json, inputs, kJsonReport);
   if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
+  const ViewRequest view{inputs, {}, request.view};
+  if (!request.view.empty()) require_report(line, request.view, inputs, kPage);
   std::optional<FileLock> lock;
   if (!request.plot.empty()) lock.emplace(lock_output(line, request.plot, inputs));
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
-  require_plot_of_traces(request, comparison);
+  require_traces_to_draw(request, comparison);
   print_comparison(comparison);
   if (!request.json.empty()) write_report(request.json, comparison_json(comparison));
   if (!request.junit.empty()) write_report(request.junit, junit({suite_of(comparison, request.baseline)}));
   if (!request.plot.empty()) write_plot(line, request, comparison);
+  if (!request.view.empty()) write_view(line, view);
   return static_cast<int>(comparison.outcome);
 }
 

@@ -22,8 +22,8 @@ namespace {
 
 void print(const Parameters& parameters) {
   for (const Parameter& p : parameters)
-    std::printf("  %-24s %s\n  %-24s default %s; allowed %s\n", p.name.c_str(), p.help.c_str(), "",
-                value_text(p).c_str(), allowed(p).c_str());
+    std::printf("  %-24s %s\n  %-24s default %s; allowed %s%s\n", p.name.c_str(), p.help.c_str(), "",
+                value_text(p).c_str(), allowed(p).c_str(), p.is_live ? "; live" : "");
 }
 
 // What a section takes: the entries of its catalog, or its parameters.

@@ -1,14 +1,20 @@
 #include "runners/live/loop/live_run.h"
 
+#include <spawn.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
+#include "runners/live/view/live_view.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
 #include "runners/provenance/shell_command.h"
@@ -17,9 +23,14 @@ namespace remote_touch {
 
 namespace {
 
+std::string device_of(const LiveRequest& request) {
+  if (!request.device.empty()) return request.device;
+  return request.view ? "browser:" : "sim:";
+}
+
 std::string normalised(const LiveRequest& request) {
-  std::vector<std::string> words = {"remote-touch", "live",    request.experiment, "--device",
-                                    request.device, "--depth", request.depth};
+  std::vector<std::string> words = {"remote-touch",     "live",    request.experiment, "--device",
+                                    device_of(request), "--depth", request.depth};
   for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
   return shell_command(words);
 }
@@ -36,6 +47,59 @@ void see_to_every_end() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTSTP, SIG_IGN);
 }
+
+// A page that leads to the address. The address itself would be in the list of all processes, and whoever has
+// it can move the hand.
+std::string page_that_leads_to(const std::string& address) {
+  std::string file = (std::filesystem::temp_directory_path() / "remote-touch-XXXXXX.html").string();
+  const int descriptor = mkstemps(file.data(), 5);  // only this user can read it
+  if (descriptor < 0) return {};
+  const std::string text =
+      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
+  const bool written = write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  close(descriptor);
+  return written ? file : std::string();
+}
+
+// Where there is a desktop, its browser, which Ctrl-C does not end. Whoever has none reads the address.
+// Returns a file to be removed at the end, or none.
+std::string show_in_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return {};
+  std::string program = "xdg-open", place = page_that_leads_to(address);
+  if (place.empty()) return {};
+  char* const arguments[] = {program.data(), place.data(), nullptr};
+  posix_spawnattr_t own_session;
+  posix_spawnattr_init(&own_session);
+  posix_spawnattr_setflags(&own_session, POSIX_SPAWN_SETSID);
+  pid_t child = 0;
+  posix_spawnp(&child, program.c_str(), nullptr, &own_session, arguments, environ);
+  posix_spawnattr_destroy(&own_session);
+  return place;
+}
+
+std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& request,
+                                    const Experiment& experiment, LiveOptions& options) {
+  auto view = std::make_unique<LiveView>(experiment,
+                                         LiveViewSource{normalised(request), options.device, options.depth},
+                                         *line.kernels, request.view_port);
+  view->connect(options);
+  return view;
+}
+
+// Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
+std::string lead_to(const LiveView& view) {
+  std::printf("look at it, and touch it: %s\n", view.address().c_str());
+  std::fflush(stdout);
+  return show_in_browser(view.address());
+}
+
+// Removed with the run.
+struct LeadingPage {
+  std::string file;
+  ~LeadingPage() {
+    if (!file.empty()) unlink(file.c_str());
+  }
+};
 
 // While it runs: a file that cannot be written does not end it.
 void report_now(const LiveReport& report, const std::string& file, const TextAttributes& origin) try {
@@ -66,7 +130,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
     if (!file.empty())
       locks.push_back(lock_output(line, file, with_parts(request.experiment, experiment.inputs())));
   LiveOptions options;
-  options.device = request.device, options.depth = request.depth;
+  options.device = device_of(request), options.depth = request.depth;
   options.duration_s = request.duration_s.value_or(0);
   options.record = request.record;
   options.kernels = line.kernels;
@@ -77,6 +141,9 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.on_report = [&](const LiveReport& report) {
     report_now(report, request.report, options.provenance);
   };
+  const auto view = request.view ? open_view(line, request, experiment, options) : nullptr;
+  LeadingPage leading;
+  if (view) options.on_start = [&] { leading.file = lead_to(*view); };
   see_to_every_end();
   const LiveResult result = run_live(experiment, options);
 

@@ -25,6 +25,7 @@ inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
 inline constexpr const char* kConfiguration = "{\"title\":";  // as written, in one line
 inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+inline constexpr const char* kPage = "<!DOCTYPE html>\n<!-- remote-touch view -->";
 
 // The files of an experiment: its own and those that it reads.
 std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts);

@@ -91,9 +91,11 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
   try {
     do_scorecard_runs(line, sweeps);
     Progress after("traces and results", line.quiet);
-    const ScorecardReport report =
-        evaluate(plan, *line.kernels, line.stop,
-                 [&](std::size_t done, std::size_t all) { after.update(done, all, 0, "scenes"); });
+    ScorecardReport report = evaluate(plan, *line.kernels, line.stop, [&](std::size_t done, std::size_t all) {
+      after.update(done, all, 0, "scenes");
+    });
+    after.clear();
+    if (request.view) make_failure_pages(line, request.folder, report);
     const std::string sum = write_results(request, plan, report);
     print(report);
     std::printf("%s: %zu scenes, %zu methods, digest %s\n",

@@ -3,10 +3,18 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/progress.h"
+#include "runners/view/trace_page.h"
 
 namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes: there may be hundreds
+
+}  // namespace
 
 void make_scorecard_folder(const std::string& folder) {
   for (const char* part : {"runs", "traces"}) {
@@ -24,6 +32,25 @@ void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep
   do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {
     progress.update((static_cast<double>(done) + fraction) / static_cast<double>(all));
   });
+}
+
+void make_failure_pages(const CommandLine& line, const std::string& folder, ScorecardReport& report) {
+  std::vector<FailureTrace*> failures;
+  for (auto& of_scene : report.failures)
+    for (auto& one : of_scene)
+      if (one && !one->file.empty()) failures.push_back(&*one);
+  Progress progress("pages", line.quiet);
+  ViewOptions options;
+  options.max_bytes = kPageOfFailure;
+  options.kernels = line.kernels, options.stop = line.stop;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    std::filesystem::path page = failures[i]->file;
+    page.replace_extension(".html");
+    const std::string html = trace_page({folder / std::filesystem::path(failures[i]->file)}, options).html;
+    write_file_atomically(folder / page, html.data(), html.size());
+    failures[i]->page = page.string();
+    progress.update(i + 1, failures.size(), 0, "pages");
+  }
 }
 
 int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {

@@ -6,6 +6,7 @@
 
 #include "runners/cli/commands.h"
 #include "runners/scorecard/benchmark_run.h"
+#include "runners/scorecard/report.h"
 
 namespace remote_touch {
 
@@ -13,6 +14,9 @@ namespace remote_touch {
 void make_scorecard_folder(const std::string& folder);
 // Does the runs that are left, with a line of progress. Throws Interrupted.
 void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps);
+// Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted, and
+// InputError in a program without the viewer.
+void make_failure_pages(const CommandLine& line, const std::string& folder, ScorecardReport& report);
 // Prints how many runs ended with an error, and the first one; they count as no success. Returns kDone, or
 // kCheckFailed if there are any.
 int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps);

@@ -9,6 +9,7 @@
 #include "core/guidance/guided_renderer.h"
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/frame_stream.h"
+#include "runners/experiment/renderer_changes.h"
 #include "runners/operator/simulated_hand.h"
 #include "runners/sessions/live_settings.h"
 #include "runners/sessions/safety_limits.h"
@@ -46,6 +47,7 @@ struct ExperimentConfiguration {
   std::optional<GuidanceSettings> guidance;
   std::vector<SequenceStep> sequence;
   Part<RendererEntry> renderer;
+  std::vector<RendererChange> changes;
   Part<TrajectoryEntry> trajectory;
   std::optional<OperatorSettings> operator_settings;
   std::optional<MotorSettings> device;

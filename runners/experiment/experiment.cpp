@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/storage/file_digest.h"
+#include "runners/experiment/section_rules.h"
 #include "runners/experiment/sections.h"
 #include "runners/sessions/session_scene.h"
 #include "runners/settings/embedded_data.h"
@@ -83,8 +84,22 @@ SimulatedHand Experiment::build_hand() const {
   return {configuration_.operator_settings, configuration_.device, 1 / configuration_.run.haptic_rate_hz};
 }
 
+std::vector<LiveParameter> Experiment::live_parameters() const {
+  std::vector<LiveParameter> list;
+  const auto add = [&](const char* section, LiveParameter::Of of, Configurable& settings) {
+    for (const Parameter& p : live_ones(settings.settings())) {
+      const bool is_switch = std::holds_alternative<bool*>(p.value);
+      list.push_back({std::string(section) + "." + p.name, p.help, number_of(p), is_switch ? 0 : p.low,
+                      is_switch ? 1 : p.high, is_switch, of});
+    }
+  };
+  add("renderer", LiveParameter::Of::renderer, *configuration_.renderer.factory);
+  add("scenario", LiveParameter::Of::scenario, *configuration_.scenario.factory);
+  return list;
+}
+
 double Experiment::max_stiffness_N_per_m() const {
-  double holds = configuration_.renderer.factory->stiffness_N_per_m(), pulls = 0;
+  double holds = max_renderer_stiffness(configuration_), pulls = 0;
   for (const FixtureValues& v : configuration_.fixture_values()) {
     if (v.role == FixtureRole::forbidden)
       holds = std::max(holds, v.stiffness_N_per_m);

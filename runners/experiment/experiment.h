@@ -11,6 +11,17 @@
 
 namespace remote_touch {
 
+// A setting that may change while the experiment runs live.
+struct LiveParameter {
+  enum class Of { renderer, scenario };
+  std::string name;  // as in --set: renderer.stiffness_N_per_m
+  std::string help;
+  double value = 0;  // of the experiment; of a switch 0 or 1
+  double low = 0, high = 0;
+  bool is_switch = false;
+  Of of = Of::renderer;
+};
+
 class Experiment {
  public:
   // From JSON text; label names the source in errors. Overrides are "key=value" and come last. Throws
@@ -24,6 +35,7 @@ class Experiment {
 
   const RunSettings& settings() const { return configuration_.run; }
   const std::vector<SequenceStep>& sequence() const { return configuration_.sequence; }
+  const std::vector<RendererChange>& changes() const { return configuration_.changes; }
   std::string to_json() const;  // complete: every parameter, one line
   // The recordings that a run reads, as named in the configuration, not yet searched for.
   std::vector<RecordingPart> inputs() const;
@@ -43,6 +55,8 @@ class Experiment {
   // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
   // renderer or of a forbidden region, plus those of all guidance.
   double max_stiffness_N_per_m() const;
+  // Those of the renderer in the order of Renderer::live_parameters(), then those of the scenario.
+  std::vector<LiveParameter> live_parameters() const;
   // Where the point of the renderer lies that touches.
   RenderedContact rendered_contact() const { return configuration_.renderer.factory->contact(); }
   // For the live loop; offline runs ignore them.

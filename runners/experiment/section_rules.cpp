@@ -1,6 +1,9 @@
 #include "runners/experiment/section_rules.h"
 
+#include <algorithm>
+
 #include "core/parameters/input_error.h"
+#include "runners/settings/json_parameters.h"
 
 namespace remote_touch {
 
@@ -19,7 +22,68 @@ bool can_be_pressed(const ExperimentConfiguration& configuration, const Sequence
   return false;
 }
 
+using RendererFactory = decltype(Part<RendererEntry>::factory);
+
+RendererFactory copy_of(const Part<RendererEntry>& renderer) {
+  RendererFactory copy = find_entry(renderers(), renderer.name, "renderer.name").make();
+  Json values = Json::object();
+  write_parameters(renderer.factory->settings(), values);
+  read_parameters(values, copy->settings(), "renderer");
+  return copy;
+}
+
+[[noreturn]] void refuse(const std::string& where, const Parameters& live, const std::string& given) {
+  std::string known;
+  for (const Parameter& parameter : live) known += (known.empty() ? "" : ", ") + name_in_changes(parameter);
+  throw InputError(where + ".parameter = " + given,
+                   known.empty() ? "this renderer has no live parameters" : "expected one of " + known);
+}
+
+void make(const RendererChange& change, const Parameters& live, const std::string& where) {
+  const Parameter* const found = find_in_changes(live, change.parameter);
+  if (found == nullptr) refuse(where, live, change.parameter);
+  const bool is_switch = std::holds_alternative<bool*>(found->value);
+  if (!(change.value >= found->low && change.value <= found->high) ||
+      (is_switch && change.value != 0 && change.value != 1))
+    throw InputError(where + ".value = " + shown(change.value),
+                     "expected " + (is_switch ? std::string("0 or 1") : allowed(*found)) + ", the range of " +
+                         change.parameter);
+  set_number(*found, change.value);
+}
+
+// Calls visit(factory, where) with the settings after each time at which some change.
+template <class Visit>
+void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
+  const std::vector<RendererChange>& changes = configuration.changes;
+  if (changes.empty()) return;
+  const RendererFactory factory = copy_of(configuration.renderer);
+  const Parameters live = live_ones(factory->settings());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const std::string where = "changes." + std::to_string(i);
+    if (i > 0 && changes[i].time_s < changes[i - 1].time_s)
+      throw InputError(where + ".time_s = " + shown(changes[i].time_s),
+                       "expected the time of the change before it or later");
+    make(changes[i], live, where);
+    if (i + 1 == changes.size() || changes[i + 1].time_s > changes[i].time_s) visit(*factory, where);
+  }
+}
+
 }  // namespace
+
+void check_changes(ExperimentConfiguration& configuration) {
+  after_changes(configuration, [](const auto& factory, const std::string& where) {
+    const std::string problem = factory.validate();
+    if (!problem.empty()) throw InputError(where, "then renderer." + problem);
+  });
+}
+
+double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
+  double max = configuration.renderer.factory->stiffness_N_per_m();
+  after_changes(configuration, [&](const auto& factory, const std::string&) {
+    max = std::max(max, factory.stiffness_N_per_m());
+  });
+  return max;
+}
 
 void check_fixtures(ExperimentConfiguration& configuration) {
   const std::string problem = validate(configuration.fixture_values(), configuration.sequence);

@@ -10,6 +10,10 @@ void check_fixtures(ExperimentConfiguration& configuration);
 // If a fixture needs guidance and the section is missing, adds it with default values, so that results store
 // the settings used.
 void complete_guidance(ExperimentConfiguration& configuration);
+void check_changes(ExperimentConfiguration& configuration);
 void check_sequence(ExperimentConfiguration& configuration);
+
+// The greatest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
+double max_renderer_stiffness(const ExperimentConfiguration& configuration);
 
 }  // namespace remote_touch

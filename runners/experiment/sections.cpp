@@ -267,6 +267,8 @@ const Section kSections[] = {
     optional_list<&C::sequence>(
         "sequence", "a list of the steps of a task, which enable and disable fixtures", check_sequence),
     required<&C::renderer, renderers>("renderer", "renderers", "what computes the force"),
+    optional_list<&C::changes>("changes", "a list of settings of the renderer that change during the run",
+                               check_changes),
     required<&C::trajectory, trajectories>("trajectory", "trajectories", "how the hand moves"),
     optional<&C::operator_settings>(
         "operator", "a simulated hand with mass that follows the trajectory and feels the force"),

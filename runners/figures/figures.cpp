@@ -9,6 +9,7 @@ namespace {
 
 // Seconds of one core of an AMD EPYC with AVX-512, tools in the cache.
 constexpr FigureEntry kFigures[] = {
+    {"4.10", "the proxy on a flat grid, in 3-D", figure_4_10, 0.05},
     {"4.11", "a flat grid touched from above: proxy height, and the ripple of the contact point", figure_4_11,
      0.03},
     {"4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12, 1.3},
@@ -30,6 +31,7 @@ constexpr FigureEntry kFigures[] = {
     {"5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8, 10},
     {"5.8-recorded", "the fixture of 5.8 on recorded depth images, camera at rest and moving",
      figure_5_8_recorded, 15},
+    {"5.9", "the proxy at the distance of a forbidden region from a beating organ, in 3-D", figure_5_9, 4},
     {"6.2", "a recorded hand as points with normals, and what the filter does to a step", figure_6_2, 0.2},
     {"6.3", "a tool turned in a narrow box of points: displacement, rotation, counts of contacts", figure_6_3,
      4},

@@ -98,6 +98,7 @@ struct FigureEntry {
 };
 std::span<const FigureEntry> figures();
 
+Figure figure_4_10(const FigureContext& context);
 Figure figure_4_11(const FigureContext& context);
 Figure figure_4_12(const FigureContext& context);
 Figure figure_4_13(const FigureContext& context);
@@ -111,6 +112,7 @@ Figure figure_5_6(const FigureContext& context);
 Figure figure_latency(const FigureContext& context);
 Figure figure_5_8(const FigureContext& context);
 Figure figure_5_8_recorded(const FigureContext& context);
+Figure figure_5_9(const FigureContext& context);
 Figure figure_6_2(const FigureContext& context);
 Figure figure_6_3(const FigureContext& context);
 Figure figure_6_3_angles(const FigureContext& context);

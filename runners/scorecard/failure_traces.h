@@ -17,6 +17,7 @@ struct FailureTrace {
   std::string file;     // relative to the scorecard's folder; empty: the run ended with an error, no trace
   std::string command;  // to be run in that folder
   std::string error = {};
+  std::string page = {};  // that shows the trace, relative to the folder; empty: none was asked for
 };
 
 // The typical failure, see typical_failure(), at the lowest noise level that has failures, replayed into

@@ -56,6 +56,7 @@ Json failure_json(const std::optional<FailureTrace>& failure) {
     json["error"] = failure->error;
   else
     json["file"] = failure->file, json["command"] = failure->command;
+  if (!failure->page.empty()) json["page"] = failure->page;
   return json;
 }
 

@@ -1,12 +1,23 @@
-// The data of a depth camera: its view (intrinsics and pose) and its frames.
+// The data of a depth camera: its view (intrinsics and pose) and its frames. A simulated sensor may send
+// clouds of points in place of images.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/cloud/point_cloud.h"
 
 namespace remote_touch {
+
+// Of a sensor that sends clouds.
+struct CloudLayout {
+  bool has_normals = false;
+  int grid_columns = 0;             // as PointCloud::grid_columns
+  std::size_t expected_points = 0;  // of a frame; more are possible
+
+  std::size_t numbers_per_point() const { return has_normals ? 6 : 3; }
+};
 
 struct SensorView {
   CameraIntrinsics camera;  // optical frame: x right, y down, z forward
@@ -14,14 +25,17 @@ struct SensorView {
   double frame_rate_hz = 30;
   bool has_colour = false;
   RigidTransform X_WC = RigidTransform::Identity();  // pose of the camera, if the source knows it
+  std::optional<CloudLayout> cloud = {};             // set: clouds, and camera has no meaning
 };
 
-// Pixel (u, v) is number v * width + u.
+// Pixel (u, v) is number v * width + u. Of a cloud depth is empty, and colour has one number for each point.
 struct SensorFrame {
   int number = 0;                     // as the sensor counts, so that gaps are visible
   double captured_s = 0;              // of the host's clock, seconds
   std::vector<std::uint16_t> depth;   // along the optical axis, in units of the view; 0: nothing measured
   std::vector<std::uint32_t> colour;  // 0xRRGGBB, registered to the depth image; empty: none
+  std::vector<float> points =
+      {};  // of a cloud, camera frame: x y z [nx ny nz] of each, metres; NaN: not measured
 };
 
 }  // namespace remote_touch

@@ -30,18 +30,22 @@ std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
                          {"has_colour", view.has_colour}};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) json["X_WC"].push_back(X_WC(row, column));
+  if (view.cloud)
+    json["cloud"] = {{"has_normals", view.cloud->has_normals}, {"grid_columns", view.cloud->grid_columns}};
   return json.dump();
 }
 
 }  // namespace
 
 SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorView& view,
-                             const RigidTransform& registered, const TextAttributes& provenance)
-    : file_(target), has_colour_(view.has_colour) {
+                             const RigidTransform& registered, const TextAttributes& provenance,
+                             const std::vector<std::string>& live_parameters)
+    : file_(target), view_(view) {
   using Number = Hdf5Appender::Number;
   file_.attributes("/", {{"schema", schema_name("session")}, {"view", view_text(view, registered)}});
   file_.attributes("/", provenance);
-  file_.group("/ticks"), file_.group("/frames");
+  file_.attributes("/", {{"live_parameters", nlohmann::json(live_parameters).dump()}});
+  file_.group("/ticks"), file_.group("/frames"), file_.group("/changes");
   file_.dataset({"/ticks/number", "1", "number of the tick: its time times the haptic rate", Number::u64});
   file_.dataset({"/ticks/position", "m", "of the device, world frame", Number::f64, {3}});
   file_.dataset({"/ticks/orientation", "1", "of the device, quaternion w x y z", Number::f64, {4}});
@@ -53,10 +57,35 @@ SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorVi
   file_.dataset({"/frames/number", "1", "as the sensor counts", Number::i32});
   file_.dataset({"/frames/captured", "s", "since the start, by the sensor's time stamp", Number::f64});
   file_.dataset({"/frames/fixtures_off", "1", "fixtures that were off, a bit each", Number::u64});
+  file_.dataset({"/changes/tick", "1", "number of the first tick with the new value", Number::u64});
+  file_.dataset({"/changes/parameter", "1", "its place in live_parameters, from 0", Number::i32});
+  file_.dataset({"/changes/value", "1", "in the parameter's own unit; of a switch 0 or 1", Number::f64});
+  if (view.cloud) {
+    add_cloud_datasets();
+    return;
+  }
   const auto height = static_cast<unsigned long long>(view.camera.height),
              width = static_cast<unsigned long long>(view.camera.width);
   file_.dataset({"/frames/depth", "1", "units of metres_per_unit, 0: none", Number::u16, {height, width}, 1});
-  if (has_colour_) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
+  if (view.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
+}
+
+// The points of all frames, one after the other.
+void SessionWriter::add_cloud_datasets() {
+  using Number = Hdf5Appender::Number;
+  file_.dataset({"/frames/point_count", "1", "number of points of the frame", Number::u32});
+  file_.dataset({"/frames/points",
+                 "m",
+                 "x y z, and the normal if there are normals, camera frame",
+                 Number::f32,
+                 {view_.cloud->numbers_per_point()}});
+  if (view_.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB of each point", Number::u32});
+}
+
+void SessionWriter::append(const SessionChange& change) {
+  file_.append("/changes/tick", &change.tick, 1);
+  file_.append("/changes/parameter", &change.parameter, 1);
+  file_.append("/changes/value", &change.value, 1);
 }
 
 void SessionWriter::append(const SessionTick& tick) {
@@ -93,8 +122,15 @@ void SessionWriter::append(const SensorFrame& frame, double captured_s, std::uin
   file_.append("/frames/number", &number, 1);
   file_.append("/frames/captured", &captured_s, 1);
   file_.append("/frames/fixtures_off", &fixtures_off, 1);
-  file_.append("/frames/depth", frame.depth.data(), 1);
-  if (has_colour_) file_.append("/frames/colour", frame.colour.data(), 1);
+  if (!view_.cloud) {
+    file_.append("/frames/depth", frame.depth.data(), 1);
+    if (view_.has_colour) file_.append("/frames/colour", frame.colour.data(), 1);
+    return;
+  }
+  const auto points = static_cast<std::uint32_t>(frame.points.size() / view_.cloud->numbers_per_point());
+  file_.append("/frames/point_count", &points, 1);
+  file_.append("/frames/points", frame.points.data(), points);
+  if (view_.has_colour) file_.append("/frames/colour", frame.colour.data(), points);
 }
 
 void SessionWriter::finish() {
@@ -114,10 +150,29 @@ SessionReader::SessionReader(Hdf5Reader file) : file_(std::move(file)) {
   buttons_ = file_.values<double>("/ticks/buttons");
   taken_ = file_.values<std::int32_t>("/ticks/taken");
   const std::size_t ticks = number_.size(), frames = captured_s_.size();
+  if (view_.cloud) read_point_counts();
   if (position_.size() != 3 * ticks || orientation_.size() != 4 * ticks || buttons_.size() != ticks ||
       taken_.size() != ticks || fixtures_off_.size() != frames || frame_number_.size() != frames)
     file_.damaged("its columns differ in length");
   require_order();
+  if (file_.has("/changes/tick")) read_changes();  // older recordings have none
+}
+
+void SessionReader::read_changes() try {
+  live_parameters_ = nlohmann::json::parse(attribute(file_.attributes(), "live_parameters"));
+  const auto tick = file_.values<std::uint64_t>("/changes/tick");
+  const auto parameter = file_.values<std::int32_t>("/changes/parameter");
+  const auto value = file_.values<double>("/changes/value");
+  if (parameter.size() != tick.size() || value.size() != tick.size())
+    file_.damaged("its columns differ in length");
+  for (std::size_t i = 0; i < tick.size(); ++i) {
+    if (tick[i] > kMaxTick || (i > 0 && tick[i] < tick[i - 1]) || parameter[i] < 0 ||
+        static_cast<std::size_t>(parameter[i]) >= live_parameters_.size() || !std::isfinite(value[i]))
+      file_.damaged("its changes of parameters cannot be");
+    changes_.push_back({tick[i], parameter[i], value[i]});
+  }
+} catch (const nlohmann::json::exception&) {
+  file_.damaged("its attribute live_parameters");
 }
 
 // What a recording cannot be: frames and ticks come one after the other, and each frame is taken once at
@@ -148,10 +203,16 @@ void SessionReader::read_view() try {
     return value;
   };
   constexpr double kAboveZero = std::numeric_limits<double>::min(), kMax = 1e9;
+  if (json.contains("cloud")) {
+    const nlohmann::json& cloud = json.at("cloud");
+    view_.cloud = {cloud.at("has_normals"), static_cast<int>(number(cloud, "grid_columns", 0, kMaxSide_px)),
+                   0};
+  }
+  const double min_side = view_.cloud ? 0 : 1, min_focal = view_.cloud ? 0 : kAboveZero;
   CameraIntrinsics& c = view_.camera;
-  c.width = static_cast<int>(number(json, "width", 1, kMaxSide_px));
-  c.height = static_cast<int>(number(json, "height", 1, kMaxSide_px));
-  c.fx = number(json, "fx", kAboveZero, kMax), c.fy = number(json, "fy", kAboveZero, kMax);
+  c.width = static_cast<int>(number(json, "width", min_side, kMaxSide_px));
+  c.height = static_cast<int>(number(json, "height", min_side, kMaxSide_px));
+  c.fx = number(json, "fx", min_focal, kMax), c.fy = number(json, "fy", min_focal, kMax);
   c.cx = number(json, "cx", -kMax, kMax), c.cy = number(json, "cy", -kMax, kMax);
   view_.metres_per_unit = number(json, "metres_per_unit", kAboveZero, kMax);
   view_.frame_rate_hz = number(json, "frame_rate_hz", kAboveZero, kMax);
@@ -177,25 +238,51 @@ DeviceState SessionReader::device(std::size_t i) const {
           static_cast<std::uint32_t>(buttons_[i])};
 }
 
-template <class Stored, class Pixel>
-void SessionReader::read_pixels(const char* dataset, std::size_t row, std::vector<Pixel>& pixels) const {
-  const Column column = file_.rows(dataset, row, 1);
+template <class Stored, class Number>
+void SessionReader::read_numbers(const char* dataset, Rows rows, std::size_t expected,
+                                 std::vector<Number>& numbers) const {
+  const Column column = file_.rows(dataset, rows.first, rows.count);
   const auto* stored = std::get_if<std::vector<Stored>>(&column.values);
-  const auto count =
-      static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
-  if (!stored || stored->size() != count) file_.damaged(std::string(dataset) + " is of another size");
-  const auto fits = [](Stored value) { return value >= 0 && value <= std::numeric_limits<Pixel>::max(); };
-  if (!std::all_of(stored->begin(), stored->end(), fits))
+  if (!stored || stored->size() != expected) file_.damaged(std::string(dataset) + " is of another size");
+  const auto fits = [](Stored value) { return value >= 0 && value <= std::numeric_limits<Number>::max(); };
+  if (std::is_integral_v<Number> && !std::all_of(stored->begin(), stored->end(), fits))
     file_.damaged(std::string(dataset) + " has values that no pixel has");
-  pixels.assign(stored->begin(), stored->end());
+  numbers.resize(expected);
+  std::transform(stored->begin(), stored->end(), numbers.begin(),
+                 [](Stored value) { return static_cast<Number>(value); });
+}
+
+void SessionReader::read_point_counts() {
+  std::size_t sum = 0;
+  for (const double count : file_.values<double>("/frames/point_count")) {
+    if (!(count >= 0 && count <= std::numeric_limits<std::uint32_t>::max()))
+      file_.damaged("a frame has a number of points that cannot be");
+    first_point_.push_back(sum);
+    sum += static_cast<std::size_t>(count);
+  }
+  if (first_point_.size() != captured_s_.size()) file_.damaged("its columns differ in length");
+  first_point_.push_back(sum);
+}
+
+void SessionReader::read_points(std::size_t i, SensorFrame& frame) const {
+  const Rows rows{first_point_[i], first_point_[i + 1] - first_point_[i]};
+  if (rows.count == 0) return;
+  read_numbers<double>("/frames/points", rows, rows.count * view_.cloud->numbers_per_point(), frame.points);
+  if (view_.has_colour) read_numbers<double>("/frames/colour", rows, rows.count, frame.colour);
 }
 
 SensorFrame SessionReader::frame(std::size_t i) const {
   SensorFrame frame;
   frame.number = frame_number_[i];
   frame.captured_s = captured_s_[i];
-  read_pixels<std::int32_t>("/frames/depth", i, frame.depth);
-  if (view_.has_colour) read_pixels<double>("/frames/colour", i, frame.colour);
+  if (view_.cloud) {
+    read_points(i, frame);
+  } else {
+    const auto pixels =
+        static_cast<std::size_t>(view_.camera.width) * static_cast<std::size_t>(view_.camera.height);
+    read_numbers<std::int32_t>("/frames/depth", {i, 1}, pixels, frame.depth);
+    if (view_.has_colour) read_numbers<double>("/frames/colour", {i, 1}, pixels, frame.colour);
+  }
   return frame;
 }
 

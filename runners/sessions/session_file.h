@@ -24,25 +24,36 @@ struct SessionTick {
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
+// A live parameter that was changed. tick: number of the first tick with the new value; of a scenario's
+// parameter, of the tick at which it was asked for (frames with the new noise come later).
+struct SessionChange {
+  std::uint64_t tick = 0;
+  std::int32_t parameter = 0;  // its place in the list of names
+  double value = 0;
+};
+
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
-// written to the device, gate. /frames: number, captured, fixtures_off, depth, colour. The root's attributes:
-// config, view, haptic rate and the provenance.
+// written to the device, gate. /frames: number, captured, fixtures_off, depth, colour; of clouds point_count,
+// points, colour. /changes: tick, parameter, value. The root's attributes: config, view, haptic rate,
+// live_parameters (their names) and the provenance.
 class SessionWriter {
  public:
   // registered: X_WC of the camera, including its registration.
   SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
-                const TextAttributes& provenance);
+                const TextAttributes& provenance, const std::vector<std::string>& live_parameters = {});
 
+  void append(const SessionChange& change);
   void append(const SessionTick& tick);  // written to the disk a thousand at a time
-  // pre: as many pixels as the view has, with colour if the view has colour.
+  // pre: is_complete(frame, view).
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   void finish();
 
  private:
+  void add_cloud_datasets();
   void flush_ticks();
 
   Hdf5Appender file_;
-  const bool has_colour_;
+  const SensorView view_;
   struct {
     std::vector<std::uint64_t> number;
     std::vector<double> position, orientation, force, torque;
@@ -71,11 +82,23 @@ class SessionReader {
   DeviceState device(std::size_t i) const;
   std::int32_t taken(std::size_t i) const { return taken_[i]; }
 
+  // In the order of their ticks.
+  const std::vector<SessionChange>& changes() const { return changes_; }
+  const std::string& live_parameter(const SessionChange& change) const {
+    return live_parameters_[static_cast<std::size_t>(change.parameter)];
+  }
+
  private:
   void read_view();
+  void read_changes();
   void require_order() const;
-  template <class Stored, class Pixel>
-  void read_pixels(const char* dataset, std::size_t row, std::vector<Pixel>& pixels) const;
+  void read_point_counts();
+  void read_points(std::size_t i, SensorFrame& frame) const;
+  struct Rows {
+    std::size_t first, count;
+  };
+  template <class Stored, class Number>
+  void read_numbers(const char* dataset, Rows rows, std::size_t expected, std::vector<Number>& numbers) const;
 
   Hdf5Reader file_;
   SensorView view_;
@@ -83,6 +106,9 @@ class SessionReader {
   std::vector<double> captured_s_, position_, orientation_, buttons_;
   std::vector<std::uint64_t> fixtures_off_, number_;
   std::vector<std::int32_t> frame_number_, taken_;
+  std::vector<std::size_t> first_point_;  // of each frame of a cloud, and after the last
+  std::vector<SessionChange> changes_;
+  std::vector<std::string> live_parameters_;
 };
 
 }  // namespace remote_touch

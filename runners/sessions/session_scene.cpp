@@ -95,6 +95,29 @@ double SessionHand::duration_s() const {
   return static_cast<double>(session_.tick_number(session_.tick_count() - 1) + 1) / session_.haptic_rate_hz();
 }
 
+namespace {
+
+// Those of the scenario are in the recorded frames.
+void add_changes(const SessionReader& session, Json& experiment) {
+  Json changes = experiment.contains("changes") ? experiment["changes"] : Json::array();
+  if (!changes.is_array()) return;  // the reader of the experiment says so
+  for (const SessionChange& change : session.changes())
+    if (const std::string& parameter = session.live_parameter(change); parameter.starts_with("renderer."))
+      changes.push_back({{"time_s", static_cast<double>(change.tick) / session.haptic_rate_hz()},
+                         {"parameter", parameter},
+                         {"value", change.value}});
+  const auto time_s = [](const Json& change) {
+    return change.is_object() && change.contains("time_s") && change["time_s"].is_number()
+               ? change["time_s"].get<double>()
+               : 0;
+  };
+  std::stable_sort(changes.begin(), changes.end(),
+                   [&](const Json& a, const Json& b) { return time_s(a) < time_s(b); });
+  if (!changes.empty()) experiment["changes"] = std::move(changes);
+}
+
+}  // namespace
+
 std::string session_experiment(const SessionReader& session, const std::string& path) {
   Json json = parse_json(session.config(), path + " config");
   if (!json.is_object())
@@ -104,6 +127,7 @@ std::string session_experiment(const SessionReader& session, const std::string& 
   for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
   for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
     json[setting] = 0;
+  add_changes(session, json);
   return json.dump();
 }
 

@@ -60,12 +60,13 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// A renderer that notes how long it takes to take a frame.
-class TimedFrames final : public Renderer {
+// A renderer that notes how long it takes to take a frame, and shows it to who wants to see it.
+class ObservedFrames final : public Renderer {
  public:
-  TimedFrames(Renderer& renderer, std::vector<double>* duration_s)
-      : renderer_(renderer), duration_s_(duration_s) {}
+  ObservedFrames(Renderer& renderer, const SimulationOptions& options)
+      : renderer_(renderer), duration_s_(options.frame_duration_s), observe_(options.on_frame) {}
   void on_frame(const Frame& frame) override {
+    if (observe_) observe_(frame);
     StopWatch watch;
     renderer_.on_frame(frame);
     if (duration_s_) duration_s_->push_back(watch.lap_s());
@@ -77,6 +78,7 @@ class TimedFrames final : public Renderer {
  private:
   Renderer& renderer_;
   std::vector<double>* duration_s_;
+  const std::function<void(const Frame&)>& observe_;
 };
 
 }  // namespace
@@ -90,7 +92,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
                      experiment.settings().transport, experiment.settings().key, options.hash_frames,
                      options.generate_all_points);
-  TimedFrames timed(*renderer, options.frame_duration_s);
+  ObservedFrames observed(*renderer, options);
+  RendererChanges changes(experiment.changes(), *renderer);
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
   const RenderedContact contact = experiment.rendered_contact();
@@ -103,7 +106,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     // Time is made from the tick's number, never added up.
     const double time_s = static_cast<double>(tick) / experiment.settings().haptic_rate_hz;
     if (trajectory->is_missed(time_s)) continue;
-    frames.deliver_until(time_s, timed);
+    changes.make_until(time_s);
+    frames.deliver_until(time_s, observed);
     const DeviceState device = hand.move(trajectory->at(time_s), time_s);
     if (options.step_duration_s) watch.lap_s();
     const RenderOutput out = renderer->step(device, time_s);

@@ -17,6 +17,7 @@ struct SimulationOptions {
   std::function<void(double fraction)> progress;    // called about a hundred times
   std::vector<double>* step_duration_s = nullptr;   // wall-clock time of each tick; null: not measured
   std::vector<double>* frame_duration_s = nullptr;  // and of the renderer's work on each frame
+  std::function<void(const Frame&)> on_frame;       // sees each frame that arrives, before the renderer
   bool generate_all_points =
       false;  // frames come with every point computed: durations without noise generation
   bool find_true_contact = false;  // fill Trace::contact, for measures that need it

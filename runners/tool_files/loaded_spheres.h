@@ -24,6 +24,8 @@ class LoadedSpheres final : public Renderer {
   void prepare(Frame& frame) const override { renderer_.prepare(frame); }
   void reserve(std::size_t points) override { renderer_.reserve(points); }
   void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
+  Parameters live_parameters() override { return renderer_.live_parameters(); }
+  void parameters_changed() override { renderer_.parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override {
     return renderer_.step(device, time_s);
   }

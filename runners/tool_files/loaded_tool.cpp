@@ -55,6 +55,15 @@ template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
     : renderer_(renderer_of(settings.motion, load_tool(settings.tool), kernels)) {}
 
+// The penalty rule has settings of its own, which do not change.
+template <class MotionSettings>
+Parameters ToolFromMesh<MotionSettings>::live_parameters() {
+  if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
+    return renderer_.live_parameters();
+  else
+    return {};
+}
+
 template class ToolFromMesh<ToolParameters>;
 template class ToolFromMesh<ToolPenaltyParameters>;
 

@@ -22,7 +22,7 @@ Parameters parameters(DepthCameraSettings& s) {
       {"camera_position_m", &s.camera_position_m, -10, 10, "position of the camera"},
       {"target_position_m", &s.target_position_m, -10, 10, "point that the camera looks at"},
       {"noise_per_m", &s.noise_per_m, 0, 0.1,
-       "depth noise: standard deviation = this value times z^2, with z the depth"},
+       "depth noise: standard deviation = this value times z^2, with z the depth", kLive},
       {"quantisation_per_m", &s.quantisation_per_m, 0, 0.1,
        "depth quantisation: step = this value times z^2, with z the depth; 0: off"},
       {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,

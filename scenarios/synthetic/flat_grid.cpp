@@ -8,7 +8,7 @@ Parameters parameters(FlatGrid::Settings& s) {
   Parameters list = parameters(s.grid);
   list.push_back({"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"});
   list.push_back(
-      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"});
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive});
   list.push_back({"redraw_noise", &s.redraw_noise, 0, 1,
                   "true: new noise in every frame; false: the same noise in all"});
   return list;

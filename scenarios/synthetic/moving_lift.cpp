@@ -12,7 +12,7 @@ Parameters parameters(MovingLift::Settings& s) {
   const Parameters more = {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
-       "standard deviation of the noise on x, y and z, redrawn per frame"},
+       "standard deviation of the noise on x, y and z, redrawn per frame", kLive},
       {"start_depth_m", &s.start_depth_m, 0, 10, "the first frame lies this far below y = 0"},
       {"start_velocity_m_per_s", &s.start_velocity_m_per_s, -10, 10, "velocity of the rise, v_0 of (4.20)"},
       {"rise_frames", &s.rise_frames, 0, 100000, "updates at constant velocity before the acceleration"},

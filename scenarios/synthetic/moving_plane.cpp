@@ -15,7 +15,7 @@ Parameters parameters(MovingPlane::Settings& s) {
       {"acceleration_m_per_s2", &s.acceleration_m_per_s2, 0, 1000, "acceleration of the rise"},
       {"rise_height_m", &s.rise_height_m, 0, 100, "height of the rise; the plane then stops"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
-       "standard deviation of the noise on x, y and z, redrawn per frame"},
+       "standard deviation of the noise on x, y and z, redrawn per frame", kLive},
   };
   list.insert(list.end(), more.begin(), more.end());
   return list;

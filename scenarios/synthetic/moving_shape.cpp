@@ -37,7 +37,7 @@ Parameters parameters(MovingShape::Settings& s) {
   add({
       {"sheets", &s.sheets, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
       {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
-      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
       {"redraw_noise", &s.redraw_noise, 0, 1, "true: new noise in every frame; false: the same noise in all"},
       {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000, "first frame of those without points; -1: never"},
       {"empty_frame", &s.empty_frame, -1, 1000000, "this one frame has no points; -1: none"},

@@ -28,7 +28,7 @@ Parameters parameters(Plates::Settings& s) {
        "a row for each plate: centre at the start, size along x and z, velocity along x and y in m/s, when it starts and stops to move; the first is the true surface"},
       {"max_height_m", &s.max_height_m, -1000, 1000,
        "a plate higher than this is too near to the camera: it gives no points, but hides what is below"},
-      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z"},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
       {"true_motion", &s.true_motion, 0, 1,
        "true surface: true: as it moves between frames; false: as at the last capture"},
   };

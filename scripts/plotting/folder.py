@@ -42,6 +42,16 @@ def plot_file(path, png, titled=False):
     return figure
 
 
+def views_of(folder, names):
+    """Of each figure the pages in views/ that show its runs: fig4.16-boxes.html belongs to fig4.16-boxes, or to fig4.16."""
+    found = {}
+    for path in sorted((folder / "views").glob("*.html"), key=sort_key):
+        owners = [name for name in names if path.stem == name or path.stem.startswith(f"{name}-")]
+        if owners:
+            found.setdefault(max(owners, key=len), []).append(f"views/{path.name}")
+    return found
+
+
 def ignore_interruption():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -82,7 +92,8 @@ class Folder:
         file = self.directory / "claims.json"
         claims = read_claims(file) if file.exists() or not progress else []
         figures = [self.figures[path] for path in sorted(self.figures, key=sort_key)]
-        write_page(self.out / "index.html", page(figures, claims, progress))
+        views = views_of(self.out, [figure.name for figure in figures])
+        write_page(self.out / "index.html", page(figures, claims, progress, views))
         return claims
 
 

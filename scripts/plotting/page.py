@@ -35,7 +35,13 @@ def pretty(config):
         return config
 
 
-def figure_section(figure, anchored):
+def view_links(views):
+    """Pages that show a run of the figure in 3-D."""
+    links = ", ".join(f'<a href="{esc(view)}">{esc(view.rpartition("/")[2].removesuffix(".html"))}</a>' for view in views)
+    return f"<p>Look at it in 3-D and over time: {links}.</p>" if links else ""
+
+
+def figure_section(figure, anchored, views):
     a = figure.attributes
     image = f'<img src="{esc(figure.name)}.png" alt="{esc(figure.heading)}">' if figure.panels else ""
     config = f'<pre>{esc(pretty(a["config"]))}</pre>' if a.get("config") else ""
@@ -43,6 +49,7 @@ def figure_section(figure, anchored):
 <h2>{esc(figure.heading)}</h2>
 <p>{esc(a.get("caption", ""))}</p>
 {image}
+{view_links(views)}
 {claim_table(anchored)}
 <details><summary>Command and configuration</summary>
 <pre>{esc(a.get("command", ""))}</pre>
@@ -92,14 +99,14 @@ def contents(figures):
     return f"<ul class=contents>\n{items}\n</ul>" if figures else ""
 
 
-def page(figures, claims, progress=None):
-    """progress: None when nothing more will come."""
+def page(figures, claims, progress=None, views=None):
+    """progress: None when nothing more will come. views: of each figure by its name, addresses of pages."""
     to_come = progress.to_come() if progress else set()
     figures = [figure for figure in figures if figure.name not in to_come]
     anchored = [(f"{figure_of(claim)}-claim{i}", claim) for i, claim in enumerate(claims)
                 if figure_of(claim) not in to_come]
     of = {figure.name: [one for one in anchored if figure_of(one[1]) == figure.name] for figure in figures}
-    sections = [figure_section(figure, of[figure.name]) for figure in figures]
+    sections = [figure_section(figure, of[figure.name], (views or {}).get(figure.name, [])) for figure in figures]
     homeless = [one for one in anchored if figure_of(one[1]) not in of]
     if homeless and not progress:  # a claim is never dropped
         sections.append(f"<section><h2>Claims without a figure</h2>{claim_table(homeless)}</section>")

@@ -104,7 +104,8 @@ def failure_text(failure, levels, link):
     level = levels[failure["level"]]
     if "error" in failure:
         return f"error at {level}, run {failure['replicate']:d}: {esc(failure['error'])}"
-    return f'<a href="{esc(link(failure["file"]))}">trace</a> at {level}: <code>{esc(failure["command"])}</code>'
+    page = f'<a href="{esc(link(failure["page"]))}">look at it</a>, ' if "page" in failure else ""
+    return f'{page}<a href="{esc(link(failure["file"]))}">trace</a> at {level}: <code>{esc(failure["command"])}</code>'
 
 
 def success_table(card, scene, link):

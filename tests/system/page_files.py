@@ -3,7 +3,7 @@ import os
 import pathlib
 import re
 
-FOLDERS_WITHOUT_PAGES = {".git", "build", "out"}
+FOLDERS_WITHOUT_PAGES = {".git", "build", "node_modules", "out"}
 LANGUAGES = {"sh", "json", "text"}
 
 

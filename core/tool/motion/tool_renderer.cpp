@@ -47,6 +47,11 @@ void ToolRenderer::on_frame(const Frame& frame) {
   frame_correction_m_ += correction;
 }
 
+// Switched on again, the estimate starts anew.
+void ToolRenderer::parameters_changed() {
+  if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
+}
+
 RenderOutput ToolRenderer::step(const DeviceState& device, double) {
   RenderOutput out;
   out.frame_index = order_.newest();

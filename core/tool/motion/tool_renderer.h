@@ -26,12 +26,14 @@ class ToolRenderer final : public Renderer {
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
   void measure(RenderOutput& out);
 
-  const ToolParameters p_;
+  ToolParameters p_;
   const std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   ContactList contacts_;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/entact.h"
 #include "runners/live/devices/force_dimension.h"
 #include "runners/live/devices/haply.h"
@@ -16,15 +17,39 @@ namespace remote_touch {
 
 namespace {
 
-std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const Experiment& experiment,
-                                             const Kernels& kernels, Clock& clock) {
+// The trajectory of an experiment, with the scenario at whose frames it may look as long as it lives.
+class Script final : public Trajectory {
+ public:
+  explicit Script(const DeviceContext& context)
+      : scenario_(context.experiment.build_scenario(context.kernels)),
+        trajectory_(context.experiment.build_trajectory(*scenario_)) {}
+  DeviceState at(double time_s) const override { return trajectory_->at(time_s); }
+  double duration_s() const override { return trajectory_->duration_s(); }
+  bool is_missed(double time_s) const override { return trajectory_->is_missed(time_s); }
+
+ private:
+  const std::shared_ptr<const Scenario> scenario_;
+  const std::unique_ptr<const Trajectory> trajectory_;
+};
+
+// Where the experiment begins.
+std::unique_ptr<HapticDevice> open_browser(const std::string& address, const DeviceContext& context) {
+  if (!address.empty()) throw InputError("--device browser:" + address, "expected browser:");
+  if (!context.poses) throw InputError("--device browser:", "needs a page: expected with --view");
+  const Experiment& experiment = context.experiment;
+  return std::make_unique<BrowserDevice>(context.poses, Script(context).at(0),
+                                         DevicePlacement(experiment.live()),
+                                         experiment.settings().haptic_rate_hz, context.clock);
+}
+
+std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const DeviceContext& context) {
+  const Experiment& experiment = context.experiment;
   if (!address.empty())
     throw InputError("--device sim:" + address,
                      "expected sim:, for the experiment's trajectory and operator");
-  auto script = experiment.build_trajectory(*experiment.build_scenario(kernels));
-  return std::make_unique<SimulatedDevice>(std::move(script), experiment.build_hand(),
+  return std::make_unique<SimulatedDevice>(std::make_unique<Script>(context), experiment.build_hand(),
                                            DevicePlacement(experiment.live()),
-                                           experiment.settings().haptic_rate_hz, clock);
+                                           experiment.settings().haptic_rate_hz, context.clock);
 }
 
 std::unique_ptr<HapticDevice> open_haply_service(const std::string& address, Clock& clock) {
@@ -32,19 +57,18 @@ std::unique_ptr<HapticDevice> open_haply_service(const std::string& address, Clo
 }
 
 // The recorded hand, in real time; it feels nothing.
-std::unique_ptr<HapticDevice> open_session(const std::string& address, const Experiment& experiment,
-                                           const Kernels& kernels, Clock& clock) {
-  const auto scenario = experiment.build_scenario(kernels);
+std::unique_ptr<HapticDevice> open_session(const std::string& address, const DeviceContext& context) {
+  const Experiment& experiment = context.experiment;
+  const auto scenario = experiment.build_scenario(context.kernels);
   const double rate_hz = experiment.settings().haptic_rate_hz;
   return std::make_unique<SimulatedDevice>(
       std::make_unique<SessionHand>(SessionHand::Settings{address}, *scenario),
-      SimulatedHand({}, {}, 1 / rate_hz), DevicePlacement(experiment.live()), rate_hz, clock);
+      SimulatedHand({}, {}, 1 / rate_hz), DevicePlacement(experiment.live()), rate_hz, context.clock);
 }
 
 template <std::unique_ptr<HapticDevice> (*open)(const std::string&, Clock&)>
-std::unique_ptr<HapticDevice> open_at(const std::string& address, const Experiment&, const Kernels&,
-                                      Clock& clock) {
-  return open(address, clock);
+std::unique_ptr<HapticDevice> open_at(const std::string& address, const DeviceContext& context) {
+  return open(address, context.clock);
 }
 
 constexpr DeviceEntry kDevices[] = {
@@ -52,6 +76,10 @@ constexpr DeviceEntry kDevices[] = {
      open_simulated,
      [] {
        return Availability{true, true, "simulated"};
+     }},
+    {"browser", "browser:", "the mouse, in the page of --view; input only", open_browser,
+     [] {
+       return Availability{true, true, "with --view"};
      }},
     {"fd", "fd:NUMBER", "Force Dimension omega, sigma, delta, lambda, and Novint Falcon",
      open_at<open_force_dimension>, force_dimension_availability},
@@ -74,10 +102,9 @@ std::span<const DeviceEntry> devices() {
   return kDevices;
 }
 
-std::unique_ptr<HapticDevice> open_device(const std::string& text, const Experiment& experiment,
-                                          const Kernels& kernels, Clock& clock) {
+std::unique_ptr<HapticDevice> open_device(const std::string& text, const DeviceContext& context) {
   const Uri uri = parse_uri("--device", text);
-  return find_scheme(devices(), "--device", uri).open(uri.address, experiment, kernels, clock);
+  return find_scheme(devices(), "--device", uri).open(uri.address, context);
 }
 
 }  // namespace remote_touch

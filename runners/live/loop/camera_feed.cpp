@@ -8,19 +8,10 @@
 
 namespace remote_touch {
 
-namespace {
-
-bool is_complete(const SensorFrame& frame, const SensorView& view) {
-  const std::size_t pixels =
-      static_cast<std::size_t>(view.camera.width) * static_cast<std::size_t>(view.camera.height);
-  return frame.depth.size() == pixels && (!view.has_colour || frame.colour.size() == pixels);
-}
-
-}  // namespace
-
 CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing,
                        const Renderer& renderer, const RigidTransform& registration, const Clock& clock,
-                       std::int64_t start_ns, TripleBuffer<LiveFrame>& out, FrameSink sink)
+                       std::int64_t start_ns, TripleBuffer<LiveFrame>& out, FrameSink sink,
+                       std::function<void(const Frame&)> on_frame)
     : source_(std::move(source)),
       processing_(std::move(processing)),
       renderer_(renderer),
@@ -29,6 +20,7 @@ CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing proc
       start_s_(1e-9 * static_cast<double>(start_ns)),
       out_(out),
       sink_(std::move(sink)),
+      on_frame_(std::move(on_frame)),
       newest_s_(start_s_) {}
 
 std::string CameraFeed::ended() const {
@@ -114,6 +106,7 @@ void CameraFeed::send(Frame frame, double sensed_s) {
     return old.points.use_count() == 1 && (!old.prepared || old.prepared.use_count() == 1);
   });
   held_.push_back(frame);
+  if (on_frame_) on_frame_(frame);
   const std::uint64_t hash =
       frame_hash(dynamic_cast<const CloudSearch&>(*frame.points).cloud(), frame.captured_s);
   const double ready_s = clock_.now_s();

@@ -37,7 +37,7 @@ class CameraFeed {
 
   CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
-             TripleBuffer<LiveFrame>& out, FrameSink sink);
+             TripleBuffer<LiveFrame>& out, FrameSink sink, std::function<void(const Frame&)> on_frame = {});
 
   // Waits at most patience_s for the next frame and passes it on. False: there will be no more.
   bool step(double patience_s) noexcept;
@@ -62,6 +62,7 @@ class CameraFeed {
   const double start_s_;
   TripleBuffer<LiveFrame>& out_;
   const FrameSink sink_;
+  const std::function<void(const Frame&)> on_frame_;  // a viewer's; may be empty
   SensorFrame sensed_;
   CameraCounts counts_;
   mutable std::mutex reported_mutex_;

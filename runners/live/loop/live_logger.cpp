@@ -6,8 +6,12 @@
 
 namespace remote_touch {
 
-LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder)
-    : rows_(rows), haptic_rate_hz_(haptic_rate_hz), recorder_(std::move(recorder)) {}
+LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder,
+                       std::function<void(const LiveTick&)> on_tick)
+    : rows_(rows),
+      haptic_rate_hz_(haptic_rate_hz),
+      recorder_(std::move(recorder)),
+      on_tick_(std::move(on_tick)) {}
 
 bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
   if (!recorder_) return true;
@@ -19,8 +23,8 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
 
 void LiveLogger::take_rows() {
   while (const LiveTick* row = rows_.oldest()) {
-    if (recorder_ && !failed_)
-      recorder_->append({row->number, row->device, row->taken, row->written, static_cast<int>(row->gate)});
+    if (on_tick_) on_tick_(*row);
+    if (recorder_ && !failed_) record(*row);
     if (!log_is_full_) {
       log_is_full_ = true;  // unless this succeeds: half a row would be worse than none
       log_.append(*row, haptic_rate_hz_);
@@ -40,6 +44,12 @@ void LiveLogger::take_frames() {
     if (!failed_) recorder_->append(oldest.frame, oldest.captured_s, oldest.fixtures_off);
     take_rows();  // a frame takes a while to be written
   }
+}
+
+void LiveLogger::record(const LiveTick& row) {
+  recorder_->append(SessionTick{row.number, row.device, row.taken, row.written, static_cast<int>(row.gate)});
+  for (const ParameterChange& change : row.changed.all())
+    recorder_->append(SessionChange{static_cast<std::uint64_t>(row.number), change.parameter, change.value});
 }
 
 // Where the disk is full it goes on without it, so that the log is whole.

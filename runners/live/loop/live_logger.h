@@ -18,8 +18,9 @@ namespace remote_touch {
 
 class LiveLogger {
  public:
-  // recorder: null if nothing is recorded.
-  LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder);
+  // recorder: null if nothing is recorded. on_tick: gets every row; must not throw; may be empty.
+  LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder,
+             std::function<void(const LiveTick&)> on_tick = {});
 
   // Takes what has come and calls the function given to ask(); call it about every kPeriod_s.
   void step() noexcept;
@@ -45,6 +46,7 @@ class LiveLogger {
   };
   void take_all() noexcept;
   void take_rows();
+  void record(const LiveTick& row);
   void take_frames();
   void answer();
   void fail(const std::exception& error);
@@ -52,6 +54,7 @@ class LiveLogger {
   Ring<LiveTick>& rows_;
   const double haptic_rate_hz_;
   const std::unique_ptr<SessionWriter> recorder_;
+  const std::function<void(const LiveTick&)> on_tick_;
   LiveLog log_;
   bool log_is_full_ = false;
   std::mutex question_mutex_;

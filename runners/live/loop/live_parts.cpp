@@ -15,6 +15,12 @@ std::size_t padded(int side_px) {
   return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
 }
 
+// A cloud may grow: to twice its first size without memory from the system.
+std::size_t expected_points(const SensorView& view) {
+  return view.cloud ? 2 * view.cloud->expected_points + 256
+                    : padded(view.camera.width) * padded(view.camera.height);
+}
+
 std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
   return duration_s > 0 ? start_ns + std::llround(1e9 * duration_s)
                         : std::numeric_limits<std::int64_t>::max();
@@ -33,9 +39,10 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       rows_(kRows) {
   require_rate();
   const SensorView& view = source->view();
-  renderer_->reserve(padded(view.camera.width) * padded(view.camera.height));
+  renderer_->reserve(expected_points(view));
   const RigidTransform registration = camera_registration(experiment.live());
-  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_, recorder(view, registration * view.X_WC));
+  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_, recorder(view, registration * view.X_WC),
+                                         options.on_tick);
   const auto sink = [this](const SensorFrame& sensed, const Frame& frame, std::uint64_t off) {
     return logger_->record(sensed, frame.captured_s, off);
   };
@@ -43,20 +50,26 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   ends_ns_ = end_ns(start_ns, options.duration_s);
   camera_ = std::make_unique<CameraFeed>(std::move(source),
                                          experiment.build_processing(*options.kernels, switches_), *renderer_,
-                                         registration, clock_, start_ns, frames_, sink);
+                                         registration, clock_, start_ns, frames_, sink, options.on_frame);
   force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
-      ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_},
+      ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_,
+                 &experiment.changes(), options.controls ? &options.controls->asked() : nullptr},
       DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
       rate_hz_, start_ns, options.stall_s);
+  if (options.controls && device_->traits().actuated_axes > 0 && !options.device.starts_with("sim:"))
+    options.controls->limit_stiffness();
   if (force_scale_ < 1) report_force_scale();
 }
 
 std::unique_ptr<SessionWriter> LiveParts::recorder(const SensorView& view,
                                                    const RigidTransform& registered) const {
   if (options_.record.empty()) return nullptr;
-  return std::make_unique<SessionWriter>(options_.record, view, registered, options_.provenance);
+  std::vector<std::string> names;
+  if (options_.controls)
+    for (const LiveParameter& parameter : options_.controls->parameters()) names.push_back(parameter.name);
+  return std::make_unique<SessionWriter>(options_.record, view, registered, options_.provenance, names);
 }
 
 // Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.

@@ -93,9 +93,11 @@ class LiveThreads {
 
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options) {
   Clock& clock = steady_clock();
-  auto device = open_device(options.device, experiment, *options.kernels, clock);
-  auto source = open_sensor(options.depth, experiment, *options.kernels, clock);
+  auto device = open_device(options.device, {experiment, *options.kernels, clock, options.poses});
+  auto source = open_sensor(options.depth, {experiment, *options.kernels, clock,
+                                            options.controls ? options.controls->scenario() : nullptr});
   LiveParts parts(experiment, options, clock, std::move(device), std::move(source));
+  if (options.on_start) options.on_start();
   LiveThreads threads(parts, clock);
   for (; !parts.is_over(); clock.sleep_s(LiveParts::kReportPeriod_s)) parts.report_changes();
   std::string real_time = threads.finish();

@@ -10,6 +10,8 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/experiment.h"
+#include "runners/live/devices/browser_device.h"
+#include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_report.h"
 
 namespace remote_touch {
@@ -25,9 +27,16 @@ struct LiveOptions {
   std::atomic<bool>* report = nullptr;                  // SIGUSR1: calls on_report; reset
   std::atomic<bool>* rearm = nullptr;                   // SIGUSR2: re-arms after a latch; reset
   std::function<void(const std::string&)> report_line;  // lines to the user while it runs
+  std::function<void()> on_start;                       // device and sensor are open, and the loop begins
   // Report of the run so far, called from the thread that writes the recording, so that no other thread uses
   // HDF5.
   std::function<void(const LiveReport&)> on_report;
+  // For a viewer: every tick, from the thread that writes the recording, and every frame on its way to the
+  // renderer, from the camera's thread. They must not throw.
+  std::function<void(const LiveTick&)> on_tick;
+  std::function<void(const Frame&)> on_frame;
+  std::shared_ptr<HandPoses> poses;        // for the device browser:
+  std::shared_ptr<LiveControls> controls;  // of the same experiment; null: nothing changes
 };
 
 struct LiveResult {

@@ -26,6 +26,8 @@ Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const Sa
     : links_(links),
       placement_(placement),
       rate_hz_(rate_hz),
+      live_(links.renderer.live_parameters()),
+      scripted_(links.scripted ? *links.scripted : std::vector<RendererChange>(), links.renderer),
       start_ns_(start_ns),
       gate_(limits),
       heartbeat_(links.device, stall_s) {}
@@ -43,13 +45,28 @@ void Servo::move_on_to(double time_s, LiveTick& row) {
   row.number = last_number_ = std::max(row.number, number);
 }
 
+// Offline, too, before a frame of the same tick. What cannot be recorded waits for the next tick.
+void Servo::make_changes(LiveTick& row) {
+  scripted_.make_until(static_cast<double>(row.number) / rate_hz_);
+  row.changed.count = 0;
+  const ParameterChanges* const asked = links_.asked ? links_.asked->oldest() : nullptr;
+  if (asked == nullptr || links_.rows.next_slot() == nullptr) return;
+  row.changed = *asked;
+  links_.asked->pop();
+  for (const ParameterChange& change : row.changed.all())
+    if (static_cast<std::size_t>(change.parameter) < live_.size())
+      set_number(live_[static_cast<std::size_t>(change.parameter)], change.value);
+  links_.renderer.parameters_changed();
+}
+
 // The slot is the servo's until it takes the next, so the time of arrival can be written into it.
 void Servo::take_frame(LiveTick& row) {
   row.taken = -1;
-  if (!links_.frames.take()) return;
+  if (!links_.frames.take()) return make_changes(row);
   LiveFrame& taken = links_.frames.front();
   row.waited_s = static_cast<float>(links_.clock.now_s() - taken.ready_s);
   move_on_to(taken.frame.captured_s, row);
+  make_changes(row);
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
   row.taken = taken.frame.index;

@@ -6,11 +6,13 @@
 #include <limits>
 
 #include "core/rendering/renderer.h"
+#include "runners/experiment/renderer_changes.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/heartbeat.h"
 #include "runners/live/devices/safety_gate.h"
+#include "runners/live/devices/triple_buffer.h"
+#include "runners/live/loop/parameter_changes.h"
 #include "runners/live/loop/ring.h"
-#include "runners/live/loop/triple_buffer.h"
 
 namespace remote_touch {
 
@@ -26,9 +28,10 @@ struct LiveTick {
   std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;
   RenderOutput out;
-  int taken = -1;          // the frame that the renderer got before this tick; -1: none
-  std::uint64_t hash = 0;  // of the newest frame taken
-  Wrench written;          // to the device, in its axes; zero if the device refused it
+  ParameterChanges changed;  // made before this tick
+  int taken = -1;            // the frame that the renderer got before this tick; -1: none
+  std::uint64_t hash = 0;    // of the newest frame taken
+  Wrench written;            // to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
   float step_s = 0;             // taking the frame and rendering
   float since_last_tick_s = 0;  // from the start of the tick before to the start of this one
@@ -48,6 +51,9 @@ struct ServoLinks {
   // the thread that waits for it may be blocked by the terminal that it writes to.
   const std::atomic<bool>* signal = nullptr;
   std::int64_t ends_ns = std::numeric_limits<std::int64_t>::max();  // of the clock
+  // Changes of the experiment, and those that someone asks for while it runs; null: none.
+  const std::vector<RendererChange>* scripted = nullptr;
+  Ring<ParameterChanges>* asked = nullptr;
 };
 
 // No allocation, no lock, no file, no time but that of the given clock, except in the device's calls. Ticks
@@ -81,11 +87,14 @@ class Servo final : public DeviceCycle {
   std::int64_t next_number(std::int64_t now_ns);
   void move_on_to(double time_s, LiveTick& row);
   void take_frame(LiveTick& row);
+  void make_changes(LiveTick& row);
   void note(const DeviceFault& fault, bool of_device) noexcept;
 
   const ServoLinks links_;
   const DevicePlacement placement_;
   const double rate_hz_;
+  const Parameters live_;  // of the renderer
+  RendererChanges scripted_;
   const std::int64_t start_ns_;
   SafetyGate gate_;
   Heartbeat heartbeat_;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parameters/input_error.h"
-
 namespace remote_touch {
 
 namespace {
@@ -20,17 +18,30 @@ void write_depth(const PointCloud& cloud, const RigidTransform& X_CW, SensorFram
   }
 }
 
+// Rounded to floats: a replay reads the same.
+void write_points(const PointCloud& cloud, SensorFrame& frame) {
+  frame.points.clear();
+  const auto add = [&](const Vec3& v) {
+    for (int k = 0; k < 3; ++k) frame.points.push_back(static_cast<float>(v[k]));
+  };
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    add(cloud.point(i));
+    if (cloud.has_normals()) add(cloud.normal(i));
+  }
+}
+
 }  // namespace
 
 ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock)
     : scenario_(std::move(scenario)), clock_(clock) {
   const PointCloud first = scenario_->cloud(0);
-  if (!first.image)
-    throw InputError("--depth sim:",
-                     "this scenario's frames are no depth images: expected one of a camera, "
-                     "such as valve-tank or recorded");
-  view_ = {first.image->camera, kUnit_m, scenario_->frame_rate_hz(), !first.colour.empty(),
-           first.image->X_WC};
+  view_.metres_per_unit = kUnit_m;
+  view_.frame_rate_hz = scenario_->frame_rate_hz();
+  view_.has_colour = !first.colour.empty();
+  if (first.image)
+    view_.camera = first.image->camera, view_.X_WC = first.image->X_WC;
+  else
+    view_.cloud = {first.has_normals(), first.grid_columns, first.size()};
 }
 
 SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
@@ -49,7 +60,10 @@ SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   if (wait_s > 0) clock_.sleep_s(std::min(wait_s, timeout_s));
   if (wait_s > timeout_s) return SensorState::waiting;
   const PointCloud cloud = scenario_->cloud(std::min(next_, last));
-  write_depth(cloud, cloud.image->X_WC.inverse(), frame);
+  if (view_.cloud)
+    write_points(cloud, frame);
+  else
+    write_depth(cloud, cloud.image->X_WC.inverse(), frame);
   frame.colour = cloud.colour;
   frame.number = next_++;
   frame.captured_s = start_s_ + captured_s;

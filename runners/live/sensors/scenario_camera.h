@@ -15,7 +15,7 @@ class ScenarioCamera final : public DepthSource {
  public:
   static constexpr double kUnit_m = 1e-4;  // 16 bits, so depths up to 6.5 m
 
-  // Throws InputError unless the scenario's frames are depth images.
+  // A scenario whose frames are no depth images is seen by a sensor that sends clouds, in the world frame.
   ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock);
 
   const SensorView& view() const override { return view_; }

@@ -17,34 +17,33 @@ Availability always(const char* what) {
   return {true, true, what};
 }
 
-std::unique_ptr<DepthSource> open_simulated(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels, Clock& clock) {
+std::unique_ptr<DepthSource> open_simulated(const std::string& address, SensorContext context) {
   if (!address.empty())
     throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
-  return std::make_unique<ScenarioCamera>(experiment.build_scenario(kernels), clock);
+  if (!context.scenario) context.scenario = context.experiment.build_scenario(context.kernels);
+  return std::make_unique<ScenarioCamera>(std::move(context.scenario), context.clock);
 }
 
 // Played at the rate of the recording, over and over, there and back.
-std::unique_ptr<DepthSource> open_recording(const std::string& address, const Experiment& experiment,
-                                            const Kernels& kernels, Clock& clock) {
+std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorContext context) {
   RecordedScene::Settings settings;
   settings.path = address;
   settings.playback = RecordedScene::Playback::ping_pong;
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<RecordedScene>(settings, experiment.settings().key, kernels), clock);
+      std::make_unique<RecordedScene>(settings, context.experiment.settings().key, context.kernels),
+      context.clock);
 }
 
-std::unique_ptr<DepthSource> open_session(const std::string& address, const Experiment& experiment,
-                                          const Kernels& kernels, Clock& clock) {
+std::unique_ptr<DepthSource> open_session(const std::string& address, SensorContext context) {
   return std::make_unique<ScenarioCamera>(
-      std::make_unique<SessionScene>(SessionScene::Settings{address}, experiment.settings().key, kernels),
-      clock);
+      std::make_unique<SessionScene>(SessionScene::Settings{address}, context.experiment.settings().key,
+                                     context.kernels),
+      context.clock);
 }
 
 template <std::unique_ptr<DepthSource> (*open)(const std::string&, Clock&)>
-std::unique_ptr<DepthSource> open_at(const std::string& address, const Experiment&, const Kernels&,
-                                     Clock& clock) {
-  return open(address, clock);
+std::unique_ptr<DepthSource> open_at(const std::string& address, SensorContext context) {
+  return open(address, context.clock);
 }
 
 constexpr SensorEntry kSensors[] = {
@@ -71,10 +70,9 @@ std::span<const SensorEntry> sensors() {
   return kSensors;
 }
 
-std::unique_ptr<DepthSource> open_sensor(const std::string& text, const Experiment& experiment,
-                                         const Kernels& kernels, Clock& clock) {
+std::unique_ptr<DepthSource> open_sensor(const std::string& text, SensorContext context) {
   const Uri uri = parse_uri("--depth", text);
-  return find_scheme(sensors(), "--depth", uri).open(uri.address, experiment, kernels, clock);
+  return find_scheme(sensors(), "--depth", uri).open(uri.address, std::move(context));
 }
 
 }  // namespace remote_touch

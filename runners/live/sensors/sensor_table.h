@@ -11,19 +11,25 @@
 
 namespace remote_touch {
 
+// What a sensor may need. All must outlive it.
+struct SensorContext {
+  const Experiment& experiment;
+  const Kernels& kernels;
+  Clock& clock;
+  std::unique_ptr<const Scenario> scenario = nullptr;  // for sim: in place of the experiment's own
+};
+
 struct SensorEntry {
   const char* scheme;
   const char* example;
   const char* summary;
-  std::unique_ptr<DepthSource> (*open)(const std::string& address, const Experiment& experiment,
-                                       const Kernels& kernels, Clock& clock);
+  std::unique_ptr<DepthSource> (*open)(const std::string& address, SensorContext context);
   Availability (*availability)();
 };
 
 std::span<const SensorEntry> sensors();
 
 // Throws InputError when the sensor cannot be opened.
-std::unique_ptr<DepthSource> open_sensor(const std::string& uri, const Experiment& experiment,
-                                         const Kernels& kernels, Clock& clock);
+std::unique_ptr<DepthSource> open_sensor(const std::string& uri, SensorContext context);
 
 }  // namespace remote_touch

@@ -137,6 +137,7 @@ bool carries_unit(const std::string& name) {
                                        "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",
                                        "_Ns_per_m",    "_m_per_s",  "_m_per_s2",   "_N",          "_Nm",
                                        "_kg",          "_kg_m2",    "_Nm_per_rad", "_Nms_per_rad"};
+  if (name == "value") return true;  // of a change: the unit of the parameter that changes
   return kPure.contains(name) || std::any_of(std::begin(kUnits), std::end(kUnits),
                                              [&](const char* unit) { return name.ends_with(unit); });
 }

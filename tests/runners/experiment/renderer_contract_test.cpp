@@ -8,6 +8,7 @@
 
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
+#include "runners/experiment/renderer_changes.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/scenes.h"
 
@@ -101,6 +102,102 @@ TEST(RendererContract, SameInputSameBits) {
       EXPECT_EQ(a[i].proxy_W, b[i].proxy_W) << entry.name;
       EXPECT_EQ(a[i].force_N, b[i].force_N) << entry.name;
       EXPECT_EQ(a[i].steps, b[i].steps) << entry.name;
+    }
+  }
+}
+
+// --- live parameters ---
+
+std::vector<std::string> names(const Parameters& parameters) {
+  std::vector<std::string> all;
+  for (const Parameter& parameter : parameters) all.push_back(parameter.name);
+  return all;
+}
+
+// Another value that is allowed together with the rest.
+double other_value(const Parameter& parameter) {
+  const double value = number_of(parameter);
+  if (std::holds_alternative<bool*>(parameter.value)) return 1 - value;
+  return value * (parameter.name == "r1_m" ? 0.9 : 1.1);
+}
+
+TEST(RendererContract, ItsLiveParametersAreThoseThatAreMarked) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto factory = entry.make();
+    const auto renderer = factory->build(1000, scenes::kernels());
+    EXPECT_EQ(names(renderer->live_parameters()), names(live_ones(factory->settings()))) << entry.name;
+    for (const Parameter& parameter : renderer->live_parameters())
+      EXPECT_TRUE(std::holds_alternative<double*>(parameter.value) ||
+                  std::holds_alternative<bool*>(parameter.value))
+          << entry.name << ": " << parameter.name;
+  }
+}
+
+// A press into an uneven cloud that rises by 2 mm a frame: every live parameter has an effect.
+std::vector<RenderOutput> press_on_rising(const RendererEntry& entry, Renderer& renderer) {
+  std::vector<RenderOutput> outputs;
+  for (int tick = 0; tick < 300; ++tick) {
+    if (tick % 33 == 0) {
+      PointCloud cloud = grid_for(entry, 60);
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        cloud.y[i] += 0.002 * (tick / 33) + 0.0004 * static_cast<double>(i * i % 7);
+      renderer.on_frame({tick / 33, 0.001 * tick, 0.001 * tick, scenes::frame(cloud).points});
+    }
+    const double depth = tick < 100 ? 0.02 - 0.0003 * tick : -0.01;
+    outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
+  }
+  return outputs;
+}
+
+bool same_outputs(const std::vector<RenderOutput>& a, const std::vector<RenderOutput>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const RenderOutput& x, const RenderOutput& y) {
+    return x.proxy_W == y.proxy_W && x.force_N == y.force_N;
+  });
+}
+
+TEST(RendererContract, ALiveParameterChangedBeforeTheStartIsASetting) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto unchanged = press_on_rising(entry, *build(entry));
+    for (std::size_t i = 0; i < live_ones(entry.make()->settings()).size(); ++i) {
+      const auto factory = entry.make();
+      const Parameter setting = live_ones(factory->settings())[i];
+      set_number(setting, other_value(setting));
+      ASSERT_EQ(factory->validate(), "") << entry.name << ": " << setting.name;
+      const auto made_so = factory->build(1000, scenes::kernels()), changed = build(entry);
+      set_number(changed->live_parameters()[i], number_of(setting));
+      changed->parameters_changed();
+      const auto as_made = press_on_rising(entry, *made_so);
+      EXPECT_TRUE(same_outputs(as_made, press_on_rising(entry, *changed)))
+          << entry.name << ": " << setting.name;
+      EXPECT_FALSE(same_outputs(as_made, unchanged))
+          << entry.name << ": " << setting.name << " has no effect";
+    }
+  }
+}
+
+// In contact: it stays finite and bounded, and needs no memory.
+TEST(RendererContract, ALiveParameterMayChangeInContact) {
+  for (const RendererEntry& entry : renderers()) {
+    const auto renderer = build(entry);
+    renderer->reserve(4000);
+    renderer->on_frame(scenes::frame(grid_for(entry, 60)));
+    resting_force(*renderer, 0.02, 0);
+    const double height = entry.contact_model == ContactModel::nothing ? 0.003 : -0.008;
+    resting_force(*renderer, height, 0.3);
+    double time_s = 0.6;
+    for (const Parameter& parameter : renderer->live_parameters()) {
+      const double before = number_of(parameter);
+      for (const double value : {other_value(parameter), before}) {
+        const std::size_t allocated = allocation_count();
+        set_number(parameter, value);
+        renderer->parameters_changed();
+        for (int tick = 0; tick < 50; ++tick) {
+          const RenderOutput out = renderer->step({Vec3(0, height, 0)}, time_s += 0.001);
+          ASSERT_TRUE(out.force_N.allFinite()) << entry.name << ": " << parameter.name;
+          EXPECT_LT(out.force_N.norm(), 20) << entry.name << ": " << parameter.name;
+        }
+        EXPECT_EQ(allocation_count(), allocated) << entry.name << ": " << parameter.name;
+      }
     }
   }
 }

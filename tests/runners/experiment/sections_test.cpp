@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kAll = R"({"scenario": {"name": "camera-scene"}, "faults": {}, "depth_pipeline": {},
     "fixtures": [{"name": "everywhere", "role": "guidance", "label": "all", "radius_m": 0.01}], "guidance": {},
     "sequence": [{"action": "activate", "fixture": "all"}], "renderer": {"name": "proxy"},
+    "changes": [{"time_s": 1, "parameter": "renderer.r3_m", "value": 0.02}],
     "trajectory": {"name": "waypoints"}, "operator": {}, "device": {}, "live": {}, "safety": {}})";
 
 std::string why(const std::string& assignment) {

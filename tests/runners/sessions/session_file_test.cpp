@@ -59,6 +59,25 @@ TEST(SessionFile, GivesBackTheTicksToTheBit) {
   expect_same(SessionReader(session.write(folder / "session.h5")), session);
 }
 
+TEST(SessionFile, GivesBackChangesOfParameters) {
+  const TestFolder folder("session_file");
+  SmallSession session;
+  session.add_tick(3), session.add_tick(4);
+  SessionWriter writer(folder / "x.h5", session.view, session.registered, {{"config", session.config}},
+                       {"renderer.r3_m", "scenario.noise_per_m"});
+  session.fill(writer);
+  writer.append(SessionChange{3, 1, 0.02}), writer.append(SessionChange{3, 0, 1.0 / 3});
+  writer.append(SessionChange{2147483647, 0, -0.0});
+  writer.finish();
+  const SessionReader read(folder / "x.h5");
+  ASSERT_EQ(read.changes().size(), 3u);
+  EXPECT_EQ(read.changes()[0].tick, 3u);
+  EXPECT_EQ(read.live_parameter(read.changes()[0]), "scenario.noise_per_m");
+  EXPECT_EQ(read.live_parameter(read.changes()[1]), "renderer.r3_m");
+  EXPECT_EQ(read.changes()[1].value, 1.0 / 3);
+  EXPECT_EQ(read.changes()[2].tick, 2147483647u);
+}
+
 // They go to the disk a thousand at a time: the last ones only at the end.
 TEST(SessionFile, GivesBackThousandsOfTicks) {
   const TestFolder folder("session_file");
@@ -183,6 +202,10 @@ struct RawSession {
   std::vector<std::int32_t> taken{0, -1, 1}, frame_number{5, 6};
   std::vector<std::int32_t> depth = std::vector<std::int32_t>(12, 500);
   std::vector<double> colour = std::vector<double>(12, 0xffffff);
+  std::string live_parameters = R"(["renderer.r1_m", "renderer.r3_m"])";
+  std::vector<std::uint64_t> changed_at{4, 4};
+  std::vector<std::int32_t> changed{1, 0};
+  std::vector<double> value{0.02, 0.004};
   unsigned long long width = 3, height = 2;  // of the images as they are stored
   std::string left_out;                      // a dataset that is not there
 
@@ -195,8 +218,11 @@ struct RawSession {
 fs::path RawSession::write(const fs::path& file) const {
   using Number = Hdf5Appender::Number;
   Hdf5Appender out(file);
-  out.attributes("/", {{"schema", schema_name("session")}, {"view", view}, {"config", config}});
-  out.group("/ticks"), out.group("/frames");
+  out.attributes("/", {{"schema", schema_name("session")},
+                       {"view", view},
+                       {"config", config},
+                       {"live_parameters", live_parameters}});
+  out.group("/ticks"), out.group("/frames"), out.group("/changes");
   const auto put = [&](const char* path, Number kind, const auto& values,
                        std::vector<unsigned long long> row = {}) {
     if (path == left_out) return;
@@ -211,6 +237,8 @@ fs::path RawSession::write(const fs::path& file) const {
   put("/frames/captured", Number::f64, captured), put("/frames/fixtures_off", Number::u64, fixtures_off);
   put("/frames/depth", Number::i32, depth, {height, width});
   put("/frames/colour", Number::f64, colour, {height, width});
+  put("/changes/tick", Number::u64, changed_at), put("/changes/parameter", Number::i32, changed);
+  put("/changes/value", Number::f64, value);
   out.finish();
   return file;
 }
@@ -232,6 +260,14 @@ void expect_refused(const std::vector<Damage>& damages) {
   }
 }
 
+// Of version 0.2 before parameters could change.
+TEST(SessionFile, OneWithoutAListOfChangesIsRead) {
+  const TestFolder folder("session_file");
+  RawSession session;
+  session.left_out = "/changes/tick";
+  EXPECT_TRUE(SessionReader(session.write(folder / "old.h5")).changes().empty());
+}
+
 TEST(SessionFile, ColumnsThatDoNotFitAreRefused) {
   const char* lengths = "its columns differ in length";
   expect_refused({
@@ -243,12 +279,24 @@ TEST(SessionFile, ColumnsThatDoNotFitAreRefused) {
       {[](RawSession& s) { s.fixtures_off.clear(); }, lengths},
       {[](RawSession& s) { s.left_out = "/ticks/position"; }, "/ticks/position is missing"},
       {[](RawSession& s) { s.left_out = "/frames/number"; }, "/frames/number is missing"},
+      {[](RawSession& s) { s.changed.pop_back(); }, lengths},
+      {[](RawSession& s) { s.value.push_back(1); }, lengths},
+      {[](RawSession& s) { s.left_out = "/changes/value"; }, "/changes/value is missing"},
   });
 }
 
 TEST(SessionFile, WhatNoLoopRecordsIsRefused) {
-  const char *ticks = "its ticks are out of order", *frames = "its frames are out of order";
+  const char *ticks = "its ticks are out of order", *frames = "its frames are out of order",
+             *changes = "its changes of parameters cannot be";
   expect_refused({
+      {[](RawSession& s) { s.changed_at[0] = 5; }, changes},
+      {[](RawSession& s) { s.changed_at[1] = std::uint64_t{1} << 31; }, changes},
+      {[](RawSession& s) { s.changed[0] = 2; }, changes},
+      {[](RawSession& s) { s.changed[1] = -1; }, changes},
+      {[](RawSession& s) { s.live_parameters = "[]"; }, changes},
+      {[](RawSession& s) { s.live_parameters = ""; }, "its attribute live_parameters"},
+      {[](RawSession& s) { s.live_parameters = "[3, 4]"; }, "its attribute live_parameters"},
+      {[](RawSession& s) { s.value[1] = std::numeric_limits<double>::infinity(); }, changes},
       {[](RawSession& s) {
          s.number = {3, 3, 9};
        },

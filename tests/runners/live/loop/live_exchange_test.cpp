@@ -4,8 +4,8 @@
 #include <array>
 #include <thread>
 
+#include "runners/live/devices/triple_buffer.h"
 #include "runners/live/loop/ring.h"
-#include "runners/live/loop/triple_buffer.h"
 
 namespace remote_touch::live_exchange_test {
 namespace {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
+#include "runners/sessions/sensor_cloud.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 
@@ -45,6 +47,35 @@ TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
     EXPECT_EQ(frame.number, number);
     EXPECT_NEAR(frame.captured_s, 5 + after_s, 1e-9);
     EXPECT_NEAR(clock.now_s(), 5 + after_s, 1e-9);
+  }
+}
+
+// Depths are rounded to 0.1 mm, and lie on the ray of their pixel; the points of clouds are rounded to
+// floats.
+TEST(ScenarioCamera, ShowsEveryScenarioOfTheCatalog) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto factory = entry.make();
+    if (!factory->inputs().empty()) continue;  // reads files: tested with those
+    const auto scenario = factory->build(NoiseKey{7}, scenes::kernels());
+    const PointCloud truth = scenario->cloud(0);
+    SimulatedClock clock;
+    ScenarioCamera camera(factory->build(NoiseKey{7}, scenes::kernels()), clock);
+    EXPECT_EQ(camera.view().cloud.has_value(), !truth.image) << entry.name;
+    SensorFrame frame;
+    ASSERT_EQ(camera.next(frame, 1), SensorState::frame) << entry.name;
+    ASSERT_TRUE(is_complete(frame, camera.view())) << entry.name;
+    const PointCloud seen = cloud_of(frame, camera.view(), camera.view().X_WC);
+    ASSERT_EQ(seen.size(), truth.size()) << entry.name;
+    EXPECT_EQ(seen.columns(), truth.columns()) << entry.name;
+    EXPECT_EQ(seen.has_normals(), truth.has_normals() && !truth.image) << entry.name;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      ASSERT_EQ(seen.is_measured(i), truth.is_measured(i)) << entry.name << ", point " << i;
+      if (!truth.is_measured(i)) continue;
+      ASSERT_LT((seen.point(i) - truth.point(i)).norm(), truth.image ? 2e-4 : 1e-6) << entry.name;
+      if (truth.image || !truth.has_normals() || !truth.normal(i).allFinite()) continue;
+      ASSERT_LT((seen.normal(i) - truth.normal(i)).norm(), 1e-6) << entry.name;
+      ASSERT_NEAR(seen.normal(i).norm(), 1, 1e-12) << entry.name;
+    }
   }
 }
 

@@ -1,0 +1,56 @@
+#include "runners/live/devices/browser_device.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace remote_touch {
+
+BrowserDevice::BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start,
+                             const DevicePlacement& placement, double rate_hz, Clock& clock)
+    : HapticDevice(clock),
+      poses_(std::move(poses)),
+      placement_(placement),
+      traits_{.name = "mouse in a browser", .sensed_axes = 6, .actuated_axes = 0, .tick_rate_hz = rate_hz},
+      wanted_{start.position_W, start.orientation_W, 0},
+      now_(start) {}
+
+void BrowserDevice::run(DeviceCycle& cycle) {
+  start_s_ = clock().now_s();
+  HapticDevice::run(cycle);
+}
+
+// x'' = w^2 (wanted - x) - 2 w x', the velocity first: stable for steps far below 1 / w.
+void BrowserDevice::follow(double interval_s) {
+  constexpr double w = kStiffness_per_s;
+  velocity_m_per_s_ +=
+      interval_s * (w * w * (wanted_.position_W - now_.position_W) - 2 * w * velocity_m_per_s_);
+  const double speed = velocity_m_per_s_.norm();
+  if (speed > kMaxSpeed_m_per_s) velocity_m_per_s_ *= kMaxSpeed_m_per_s / speed;
+  now_.position_W += interval_s * velocity_m_per_s_;
+}
+
+void BrowserDevice::turn(double interval_s) {
+  const double left = now_.orientation_W.angularDistance(wanted_.orientation_W);
+  if (left < 1e-9) return;
+  const double angle =
+      std::min({left, 0.5 * kStiffness_per_s * interval_s * left, kMaxTurning_rad_per_s * interval_s});
+  now_.orientation_W = now_.orientation_W.slerp(angle / left, wanted_.orientation_W).normalized();
+}
+
+DeviceFault BrowserDevice::read(DeviceReading& reading) noexcept {
+  if (poses_->take()) wanted_ = poses_->front();
+  const long long first = ticks_;
+  ticks_ = std::max(ticks_ + 1, static_cast<long long>((clock().now_s() - start_s_) * traits_.tick_rate_hz));
+  const double interval_s = 1 / traits_.tick_rate_hz;
+  for (long long tick = std::max(first, ticks_ - kMaxTicksAtOnce); tick < ticks_; ++tick)
+    follow(interval_s), turn(interval_s);
+  now_.buttons = wanted_.buttons;
+  reading = placement_.of_device(now_);
+  if (first > 0)
+    reading.velocity_m_per_s =
+        (reading.position_m - last_.position_m) * traits_.tick_rate_hz / static_cast<double>(ticks_ - first);
+  last_ = reading;
+  return {};
+}
+
+}  // namespace remote_touch

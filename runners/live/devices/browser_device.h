@@ -1,0 +1,63 @@
+// A hand without a haptic device: someone moves it with the mouse in a page of the viewer. Input only, six
+// axes, no motors.
+//
+// A page sends some sixty poses a second, and the loop needs one each millisecond: the hand follows the
+// newest pose as a critically damped spring would, with a lag of about 30 ms, and never faster than
+// kMaxSpeed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "runners/live/devices/device_placement.h"
+#include "runners/live/devices/haptic_device.h"
+#include "runners/live/devices/triple_buffer.h"
+
+namespace remote_touch {
+
+// Where the page wants the hand to be, world frame.
+struct HandPose {
+  Vec3 position_W = Vec3::Zero();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  std::uint32_t buttons = 0;
+};
+
+// From the thread of the page to the haptic loop.
+using HandPoses = TripleBuffer<HandPose>;
+
+class BrowserDevice final : public HapticDevice {
+ public:
+  static constexpr double kStiffness_per_s = 60;  // natural frequency of the spring
+  static constexpr double kMaxSpeed_m_per_s = 1;  // a third of what the safety gate allows by default
+  static constexpr double kMaxTurning_rad_per_s = 6;
+
+  // start: where the hand is until the page moves it. placement: that of the loop.
+  BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
+                double rate_hz, Clock& clock);
+
+  const DeviceTraits& traits() const override { return traits_; }
+  void run(DeviceCycle& cycle) override;
+  DeviceFault read(DeviceReading& reading) noexcept override;
+  DeviceFault write(const Wrench&) noexcept override { return {}; }
+  void release() noexcept override {}
+  bool rearm() noexcept override { return true; }
+
+ private:
+  void follow(double interval_s);
+  void turn(double interval_s);
+
+  // After a longer pause the hand goes on from where it is.
+  static constexpr int kMaxTicksAtOnce = 200;
+
+  const std::shared_ptr<HandPoses> poses_;
+  const DevicePlacement placement_;
+  const DeviceTraits traits_;
+  HandPose wanted_;
+  DeviceState now_;
+  Vec3 velocity_m_per_s_ = Vec3::Zero();
+  double start_s_ = 0;
+  long long ticks_ = 0;
+  DeviceReading last_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,64 @@
+// A scenario that another can take the place of while a simulated camera looks at it: its noise was changed.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+// What is looked at now: shared by the camera's thread and the one that replaces it.
+class ShownScenario {
+ public:
+  explicit ShownScenario(std::shared_ptr<const Scenario> first) : now_(std::move(first)) {}
+  std::shared_ptr<const Scenario> now() const {
+    const std::lock_guard lock(mutex_);
+    return now_;
+  }
+  // pre: the same frame rate. One without noise may have a single frame, where the others go on.
+  void replace(std::shared_ptr<const Scenario> next) {
+    const std::lock_guard lock(mutex_);
+    now_ = std::move(next);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Scenario> now_;
+};
+
+// A frame beyond the last is the last: it may have been asked for before the scenario was replaced.
+class ReplaceableScenario final : public Scenario {
+ public:
+  explicit ReplaceableScenario(std::shared_ptr<const ShownScenario> shown) : shown_(std::move(shown)) {}
+
+  double frame_rate_hz() const override { return shown_->now()->frame_rate_hz(); }
+  int frame_count() const override { return shown_->now()->frame_count(); }
+  double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
+  bool ends() const override { return shown_->now()->ends(); }
+  std::optional<double> arrives_s(int frame) const override { return shown_->now()->arrives_s(frame); }
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return shown_->now()->fixtures_off(frame);
+  }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    const auto now = shown_->now();
+    return now->points(std::min(frame, now->frame_count() - 1));
+  }
+  PointCloud cloud(int frame) const override {
+    const auto now = shown_->now();
+    return now->cloud(std::min(frame, now->frame_count() - 1));
+  }
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return shown_->now()->signed_distance(p_W, time_s);
+  }
+  double surface_height(double x, double z, double time_s) const override {
+    return shown_->now()->surface_height(x, z, time_s);
+  }
+
+ private:
+  const std::shared_ptr<const ShownScenario> shown_;
+};
+
+}  // namespace remote_touch

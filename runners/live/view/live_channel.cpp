@@ -1,0 +1,113 @@
+#include "runners/live/view/live_channel.h"
+
+#include <limits>
+#include <utility>
+
+#include "runners/live/view/page_message.h"
+#include "runners/live/view/view_messages.h"
+
+namespace remote_touch {
+
+LiveChannel::LiveChannel(double haptic_rate_hz, const Kernels& kernels, std::shared_ptr<HandPoses> poses,
+                         std::shared_ptr<LiveControls> controls)
+    : rate_hz_(haptic_rate_hz), kernels_(kernels), poses_(std::move(poses)), controls_(std::move(controls)) {}
+
+// A page without some ticks is better than a run that ends.
+void LiveChannel::take(const LiveTick& tick) noexcept {
+  if (!is_open_.load(std::memory_order_relaxed)) return;
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const std::lock_guard lock(mutex_);
+  try {
+    if (rows_.length() >= kMaxRows) rows_ = {};
+    rows_.append(static_cast<double>(tick.number) / rate_hz_, tick.device, tick.out,
+                 {kUnknown, kUnknown, tick.hash});
+  } catch (const std::bad_alloc&) {
+    rows_ = {};
+  }
+}
+
+void LiveChannel::take(const Frame& frame) noexcept {
+  const std::lock_guard lock(mutex_);
+  points_ = frame.points;
+  index_ = frame.index;
+  frame_is_new_ = true;
+}
+
+void LiveChannel::open() {
+  const std::lock_guard lock(mutex_);
+  rows_ = {};
+  frame_is_new_ = points_ != nullptr;
+  sent_columns_ = was_frame_ = false;
+  sent_ = acknowledged_ = 0;
+  answer_ = controls_->has_changed() ? parameters_message(*controls_, {}) : std::string();
+  is_open_ = true;
+}
+
+// Nobody is there to let a button go.
+void LiveChannel::close() {
+  is_open_ = false;
+  if (hand_.buttons == 0) return;
+  hand_.buttons = 0;
+  poses_->back() = hand_;
+  poses_->publish();
+}
+
+bool LiveChannel::receive(std::string_view bytes) {
+  const auto message = page_message(bytes);
+  const auto* acknowledged = message ? std::get_if<PageAcknowledgement>(&*message) : nullptr;
+  const bool is_known =
+      message && (!acknowledged || acknowledged->number - acknowledged_ <= sent_ - acknowledged_);
+  if (!is_known) {
+    ++refused_;
+    return false;
+  }
+  if (acknowledged) {
+    acknowledged_ = acknowledged->number;
+  } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {
+    answer_ = parameters_message(*controls_, controls_->change(*changes));
+  } else {
+    hand_ = std::get<HandPose>(*message);
+    poses_->back() = hand_;
+    poses_->publish();
+  }
+  return true;
+}
+
+bool LiveChannel::next(Message& message) {
+  if (sent_columns_ && !answer_.empty()) {
+    message = {std::exchange(answer_, {}), true};
+    return true;
+  }
+  if (sent_ - acknowledged_ >= kMaxInFlight) return false;
+  std::shared_ptr<const NeighbourSearch> points;
+  std::int32_t index = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (rows_.length() == 0) return false;
+    // Turn about: where the page is slower than the camera there is always a new frame.
+    was_frame_ = sent_columns_ && frame_is_new_ && !was_frame_;
+    if (was_frame_) points = points_, index = index_, frame_is_new_ = false;
+  }
+  message = points ? frame_message_of(*points, index) : tick_message();
+  return true;
+}
+
+LiveChannel::Message LiveChannel::tick_message() {
+  Trace rows;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!sent_columns_) {
+      sent_columns_ = true;
+      return {columns_message(rows_), true};
+    }
+    std::swap(rows, rows_);
+  }
+  return {ticks_message(rows, ++sent_), false};
+}
+
+LiveChannel::Message LiveChannel::frame_message_of(const NeighbourSearch& points, std::int32_t index) {
+  PointCloud buffer;
+  return {frame_message(points.every_point(kernels_, buffer), index, kMaxPoints, ++sent_), false};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,86 @@
+#include "runners/live/view/live_view.h"
+
+#include <nlohmann/json.hpp>
+
+#include "runners/provenance/provenance.h"
+#include "runners/view/page_file.h"
+#include "runners/view/shown_sensor.h"
+#include "runners/view/shown_tool.h"
+#include "scenarios/interface/scenario.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr const char* kPageSchema = "remote-touch-live/1";
+
+double length_m(const Json& renderer, const char* name) {
+  return renderer.contains(name) && renderer[name].is_number() ? renderer[name].get<double>() : 0;
+}
+
+// Where the hand is before anybody moves it, and the camera of the first frame, if there is one.
+void add_start(Json& run, const Experiment& experiment, const LiveViewSource& source,
+               const Kernels& kernels) {
+  const auto scenario = experiment.build_scenario(kernels);
+  run["start_m"] = json_of(experiment.build_trajectory(*scenario)->at(0).position_W);
+  if (source.depth != "sim:") return;  // a camera of its own
+  PointCloud buffer;
+  const PointCloud& first = scenario->points(0)->every_point(kernels, buffer);
+  if (first.image) run["sensor"] = sensor_json(first.image->X_WC);
+}
+
+Json parameters_json(const LiveControls& controls) {
+  Json list = Json::array();
+  for (const LiveParameter& p : controls.parameters())
+    list.push_back({{"name", p.name},
+                    {"meaning", p.help},
+                    {"value", p.value},
+                    {"low", p.low},
+                    {"high", p.high},
+                    {"is_switch", p.is_switch}});
+  return list;
+}
+
+std::string page_of(const Experiment& experiment, const LiveViewSource& source, const LiveControls& controls,
+                    const Kernels& kernels) {
+  const Json configuration = parse_json(experiment.to_json(), "the experiment");
+  const Json& renderer = configuration["renderer"];
+  PackedArrays numbers;
+  Json run{{"file", "live"},
+           {"title", configuration.value("title", "")},
+           {"command", source.command},
+           {"device", source.device},
+           {"depth", source.depth},
+           {"version", version()},
+           {"digest", ""},
+           {"note", ""},
+           {"configuration", configuration},
+           {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
+           {"contact_radius_m", 0.5 * (length_m(renderer, "r1_m") + length_m(renderer, "r2_m"))},
+           {"touch_radius_m", length_m(renderer, "r2_m")}};
+  add_start(run, experiment, source, kernels);
+  run["parameters"] = parameters_json(controls);
+  if (renderer.contains("tool_mesh")) run["tool"] = json_of(shown_tool(renderer), numbers);
+  const Json page{{"schema", kPageSchema}, {"runs", Json::array()}, {"live", run}};
+  return page_file(configuration.value("title", "live"), page.dump(), numbers.bytes());
+}
+
+}  // namespace
+
+LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels,
+                   int port)
+    : controls_(std::make_shared<LiveControls>(
+          experiment, kernels,
+          source.depth == "sim:" ? LiveControls::Camera::simulated : LiveControls::Camera::other)),
+      channel_(experiment.settings().haptic_rate_hz, kernels, poses_, controls_),
+      server_(serve_view(page_of(experiment, source, *controls_, kernels), channel_, port)) {}
+
+void LiveView::connect(LiveOptions& options) {
+  options.poses = poses_;
+  options.controls = controls_;
+  options.on_tick = [this](const LiveTick& tick) { channel_.take(tick); };
+  options.on_frame = [this](const Frame& frame) { channel_.take(frame); };
+}
+
+}  // namespace remote_touch

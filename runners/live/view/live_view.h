@@ -1,0 +1,40 @@
+// A live run in a browser: `remote-touch live --view`.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "runners/experiment/experiment.h"
+#include "runners/live/loop/live_run.h"
+#include "runners/live/view/live_channel.h"
+#include "runners/live/view/view_server.h"
+
+namespace remote_touch {
+
+// What the page says of the run.
+struct LiveViewSource {
+  std::string command;
+  std::string device, depth;  // as for --device and --depth
+};
+
+class LiveView {
+ public:
+  // port: see serve_view(). Throws InputError when the experiment's
+  // tool cannot be made or the port cannot be had, and in a program without the viewer.
+  LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels, int port);
+
+  std::string address() const { return server_->address(); }
+  // Lets the run tell this view its ticks and frames, and gives it the page's hand. This view must outlive
+  // it.
+  void connect(LiveOptions& options);
+  // What came and was no message of a page.
+  std::uint64_t refused() const { return channel_.refused(); }
+
+ private:
+  const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
+  const std::shared_ptr<LiveControls> controls_;
+  LiveChannel channel_;
+  const std::unique_ptr<ViewServer> server_;
+};
+
+}  // namespace remote_touch

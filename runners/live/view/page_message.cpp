@@ -1,0 +1,65 @@
+#include "runners/live/view/page_message.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr unsigned char kHand = 1, kAcknowledgement = 2, kChanges = 3;
+constexpr std::size_t kHandSize = 64, kAcknowledgementSize = 8, kChangesHead = 8, kChangeSize = 16;
+
+template <class T>
+T number_at(std::string_view bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+std::optional<HandPose> hand(std::string_view bytes) {
+  HandPose pose;
+  pose.buttons = number_at<std::uint32_t>(bytes, 4);
+  for (int k = 0; k < 3; ++k) {
+    pose.position_W[k] = number_at<double>(bytes, 8 + 8 * static_cast<std::size_t>(k));
+    if (!(std::abs(pose.position_W[k]) <= kMaxHandDistance_m)) return {};
+  }
+  double q[4];
+  for (std::size_t k = 0; k < 4; ++k) q[k] = number_at<double>(bytes, 32 + 8 * k);
+  pose.orientation_W = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  const double norm = pose.orientation_W.norm();
+  if (!(std::abs(norm - 1) < 0.01)) return {};
+  pose.orientation_W.coeffs() /= norm;
+  return pose;
+}
+
+std::optional<ParameterChanges> changes(std::string_view bytes) {
+  if (bytes.size() < kChangesHead) return {};
+  ParameterChanges changes;
+  changes.count = number_at<std::uint32_t>(bytes, 4);
+  if (changes.count == 0 || changes.count > ParameterChanges::kMax ||
+      bytes.size() != kChangesHead + kChangeSize * changes.count)
+    return {};
+  for (std::size_t i = 0; i < changes.count; ++i) {
+    const std::size_t at = kChangesHead + kChangeSize * i;
+    changes.list[i] = {number_at<std::int32_t>(bytes, at), number_at<double>(bytes, at + 8)};
+    if (number_at<std::uint32_t>(bytes, at + 4) != 0) return {};
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::optional<PageMessage> page_message(std::string_view bytes) {
+  if (bytes.size() < 4 || bytes[1] != 0 || bytes[2] != 0 || bytes[3] != 0) return {};
+  const auto kind = static_cast<unsigned char>(bytes[0]);
+  if (kind == kAcknowledgement && bytes.size() == kAcknowledgementSize)
+    return PageAcknowledgement{number_at<std::uint32_t>(bytes, 4)};
+  if (kind == kHand && bytes.size() == kHandSize)
+    if (const auto pose = hand(bytes)) return *pose;
+  if (kind == kChanges)
+    if (const auto wanted = changes(bytes)) return *wanted;
+  return {};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,30 @@
+// What a page sends while it shows a live run. Whoever runs a program on this machine may have sent it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "runners/live/devices/browser_device.h"
+#include "runners/live/loop/parameter_changes.h"
+
+namespace remote_touch {
+
+// The page has shown the message of that number, and all before it.
+struct PageAcknowledgement {
+  std::uint32_t number = 0;
+};
+
+using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges>;
+
+inline constexpr std::size_t kMaxPageMessage = 8 + 16 * ParameterChanges::kMax;  // bytes
+inline constexpr double kMaxHandDistance_m = 10;  // of a hand from the origin, along each axis
+
+// Little endian. A hand: 1, three bytes 0, buttons (u32), position in metres and quaternion w x y z (f64); 64
+// bytes. An acknowledgement: 2, three bytes 0, number (u32); 8 bytes. Changes of parameters: 3, three bytes
+// 0, their count (u32); then of each its parameter (i32), 0 (u32) and value (f64). None for anything else,
+// and for a pose that is not finite, too far away, or whose quaternion is not about a unit one.
+std::optional<PageMessage> page_message(std::string_view bytes);
+
+}  // namespace remote_touch

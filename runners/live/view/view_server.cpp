@@ -1,0 +1,268 @@
+#include "runners/live/view/view_server.h"
+
+#include "core/parameters/input_error.h"
+
+#ifdef REMOTE_TOUCH_VIEW_SERVER
+// The one file of this room that includes Boost.Beast.
+#define BOOST_ASIO_DISABLE_FENCED_BLOCK
+// Boost 1.74 does not know that clang++ 14 has the coroutines of C++20.
+#ifdef __clang__
+#define BOOST_ASIO_HAS_CO_AWAIT 1
+#define BOOST_ASIO_HAS_STD_COROUTINE 1
+#endif
+#include <fcntl.h>
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "runners/live/view/page_message.h"
+#endif
+
+namespace remote_touch {
+
+#ifndef REMOTE_TOUCH_VIEW_SERVER
+
+bool view_server_is_compiled_in() {
+  return false;
+}
+
+std::unique_ptr<ViewServer> serve_view(std::string, LiveChannel&, int) {
+  throw InputError("--view", "not compiled in; install libboost-dev and build again");
+}
+
+#else
+
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using asio::use_awaitable;
+using asio::ip::tcp;
+using Request = http::request<http::empty_body>;
+using Socket = websocket::stream<beast::tcp_stream>;
+
+constexpr auto kPatience = std::chrono::seconds(5);       // for a request
+constexpr auto kPicture = std::chrono::milliseconds(16);  // between looks for something to send
+constexpr auto kIdle = std::chrono::seconds(20);          // without an answer of the browser
+constexpr int kMaxConnections = 16;
+constexpr std::uint32_t kMaxHeader = 8192;
+
+std::string random_secret() {
+  std::random_device random;
+  char text[33];
+  for (int i = 0; i < 4; ++i) std::snprintf(text + 8 * i, 9, "%08x", static_cast<unsigned>(random()));
+  return text;
+}
+
+// Takes as long wherever they differ.
+bool same(beast::string_view a, const std::string& b) {
+  if (a.size() != b.size()) return false;
+  unsigned char difference = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) difference |= static_cast<unsigned char>(a[i] ^ b[i]);
+  return difference == 0;
+}
+
+// A browser that this program starts would keep the port.
+template <class Handle>
+void keep_from_children(Handle& handle) {
+  fcntl(handle.native_handle(), F_SETFD, FD_CLOEXEC);
+}
+
+class BeastServer final : public ViewServer {
+ public:
+  BeastServer(std::string page, LiveChannel& channel, int port)
+      : page_(std::move(page)), channel_(channel), acceptor_(context_) {
+    open(port);
+    host_ = "127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port());
+    asio::co_spawn(context_, accept_all(), asio::detached);
+    thread_ = std::thread([this] { context_.run(); });
+  }
+  ~BeastServer() override {
+    context_.stop();
+    thread_.join();
+  }
+  std::string address() const override { return "http://" + host_ + path_; }
+
+ private:
+  void open(int port) {
+    boost::system::error_code failure;
+    const tcp::endpoint place(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
+    acceptor_.open(place.protocol(), failure);
+    if (!failure) acceptor_.set_option(tcp::acceptor::reuse_address(true), failure);
+    if (!failure) acceptor_.bind(place, failure);
+    if (!failure) acceptor_.listen(asio::socket_base::max_listen_connections, failure);
+    if (!failure) keep_from_children(acceptor_);
+    if (failure)
+      throw InputError("--view-port " + std::to_string(port),
+                       "cannot be had (" + failure.message() + "): expected a free port, or 0 for any");
+  }
+
+  asio::awaitable<void> accept_all() {
+    asio::steady_timer timer(context_);
+    for (;;) {
+      boost::system::error_code failure;
+      tcp::socket socket = co_await acceptor_.async_accept(asio::redirect_error(use_awaitable, failure));
+      if (failure) {  // no more descriptors, for example
+        timer.expires_after(kPatience);
+        co_await timer.async_wait(use_awaitable);
+        continue;
+      }
+      keep_from_children(socket);
+      if (connections_ < kMaxConnections) asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
+    }
+  }
+
+  // What ends with an exception, a page that is closed for example, ends one connection.
+  asio::awaitable<void> serve(tcp::socket socket) {
+    ++connections_;
+    try {
+      co_await answer(beast::tcp_stream(std::move(socket)));
+    } catch (const std::exception&) {
+    }
+    --connections_;
+  }
+
+  asio::awaitable<void> answer(beast::tcp_stream stream) {
+    beast::flat_buffer buffer;
+    http::request_parser<http::empty_body> parser;
+    parser.header_limit(kMaxHeader);
+    stream.expires_after(kPatience);
+    co_await http::async_read(stream, buffer, parser, use_awaitable);
+    const Request request = parser.release();
+    const http::status status = judged(request);
+    if (status == http::status::switching_protocols)
+      co_await talk(std::move(stream), request);
+    else
+      co_await send(stream, request, status);
+  }
+
+  http::status judged(const Request& request) const {
+    const bool is_channel = same(request.target(), path_ + "channel");
+    if (!is_channel && !same(request.target(), path_)) return http::status::not_found;
+    if (!is_ours(request[http::field::host])) return http::status::forbidden;
+    if (request.method() != http::verb::get) return http::status::method_not_allowed;
+    if (!is_channel) return http::status::ok;
+    const beast::string_view origin = request[http::field::origin];
+    if (!origin.starts_with("http://") || !is_ours(origin.substr(7))) return http::status::forbidden;
+    if (!websocket::is_upgrade(request)) return http::status::bad_request;
+    return has_page_ ? http::status::conflict : http::status::switching_protocols;
+  }
+  bool is_ours(beast::string_view host) const {
+    return host == host_ || host == "localhost" + host_.substr(host_.find(':'));
+  }
+
+  asio::awaitable<void> send(beast::tcp_stream& stream, const Request& request, http::status status) {
+    http::response<http::string_body> response{status, request.version()};
+    response.set(http::field::cache_control, "no-store");
+    response.set(http::field::x_frame_options, "DENY");
+    response.set("Referrer-Policy", "no-referrer");
+    response.set("X-Content-Type-Options", "nosniff");
+    if (status == http::status::ok) {
+      response.set(http::field::content_type, "text/html; charset=utf-8");
+      response.set(
+          "Content-Security-Policy",
+          "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+          "connect-src 'self' ws://" +
+              host_);
+      response.body() = page_;
+    } else {
+      response.set(http::field::content_type, "text/plain");
+      response.body() = std::string(http::obsolete_reason(status)) + "\n";
+    }
+    response.keep_alive(false);
+    response.prepare_payload();
+    co_await http::async_write(stream, response, use_awaitable);
+    boost::system::error_code gone;
+    stream.socket().shutdown(tcp::socket::shutdown_send, gone);
+  }
+
+  asio::awaitable<void> talk(beast::tcp_stream stream, const Request& request) {
+    has_page_ = true;
+    try {
+      const auto socket = std::make_shared<Socket>(std::move(stream));
+      beast::get_lowest_layer(*socket).expires_never();
+      socket->set_option(websocket::stream_base::timeout{kPatience, kIdle, true});
+      socket->read_message_max(kMaxPageMessage);
+      socket->auto_fragment(false);  // thousands of writes for a frame otherwise
+      co_await socket->async_accept(request, use_awaitable);
+      channel_.open();
+      asio::co_spawn(context_, send_all(socket), asio::detached);
+      co_await receive_all(*socket);
+    } catch (const std::exception&) {
+    }
+    channel_.close();
+    has_page_ = false;
+  }
+
+  asio::awaitable<void> receive_all(Socket& socket) {
+    try {
+      beast::flat_buffer buffer;
+      for (;;) {
+        co_await socket.async_read(buffer, use_awaitable);
+        const auto bytes = buffer.data();
+        channel_.receive({static_cast<const char*>(bytes.data()), bytes.size()});
+        buffer.clear();
+      }
+    } catch (const std::exception&) {
+    }
+    beast::get_lowest_layer(socket).close();
+  }
+
+  // Ends with the connection, and ends it where it cannot go on.
+  asio::awaitable<void> send_all(std::shared_ptr<Socket> socket) {
+    asio::steady_timer timer(context_);
+    LiveChannel::Message message;
+    try {
+      while (socket->is_open()) {
+        if (channel_.next(message)) {
+          socket->text(message.is_text);
+          co_await socket->async_write(asio::buffer(message.bytes), use_awaitable);
+          continue;
+        }
+        timer.expires_after(kPicture);
+        co_await timer.async_wait(use_awaitable);
+      }
+    } catch (const std::exception&) {
+    }
+    beast::get_lowest_layer(*socket).close();
+  }
+
+  const std::string page_, path_ = "/" + random_secret() + "/";
+  LiveChannel& channel_;
+  asio::io_context context_{1};
+  tcp::acceptor acceptor_;
+  std::string host_;
+  int connections_ = 0;
+  bool has_page_ = false;
+  std::thread thread_;
+};
+
+}  // namespace
+
+bool view_server_is_compiled_in() {
+  return true;
+}
+
+std::unique_ptr<ViewServer> serve_view(std::string page, LiveChannel& channel, int port) {
+  return std::make_unique<BeastServer>(std::move(page), channel, port);
+}
+
+#endif
+
+}  // namespace remote_touch

@@ -1,0 +1,197 @@
+// The 3-D view: camera, lights, scale bar, and what is in it. The scene is in millimetres.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { CloudView } from "./cloud";
+import { round125, type Run, type Vector } from "./data";
+import { HandView } from "./hand";
+import { TruthView } from "./truth";
+
+const labelHeight = 0.022; // where the camera sees 0.7 at a distance of 1
+
+export type CameraPreset = "sensor" | "side" | "follow";
+
+function largestForce(runs: Run[]): number {
+  let largest = 0;
+  for (const run of runs)
+    for (let tick = 0; tick < run.ticks; ++tick) largest = Math.max(largest, run.column("force").magnitude(tick) || 0);
+  return largest;
+}
+
+// A text that faces the camera, as large from near as from far.
+function label(text: string): THREE.Sprite {
+  const canvas = document.createElement("canvas"), pixels = 48;
+  const pen = canvas.getContext("2d");
+  if (!pen) return new THREE.Sprite();
+  const font = `${0.75 * pixels}px system-ui, sans-serif`;
+  pen.font = font;
+  canvas.width = Math.ceil(pen.measureText(text).width) + 8;
+  canvas.height = pixels;
+  pen.font = font;
+  pen.fillStyle = "#ddd";
+  pen.textBaseline = "middle";
+  pen.fillText(text, 4, pixels / 2);
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, sizeAttenuation: false }));
+  sprite.center.set(-0.05, 0.5); // beside the arrow
+  sprite.scale.set((labelHeight * canvas.width) / pixels, labelHeight, 1);
+  return sprite;
+}
+
+export class SceneView {
+  readonly clouds: CloudView[];
+  readonly mmPerN: number;
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(40, 1, 1, 1e5);
+  private readonly controls: OrbitControls;
+  private readonly hands: HandView[];
+  private readonly truths: TruthView[];
+  private readonly middle = new THREE.Vector3();
+  private readonly size: number;
+  private follows = false;
+  private followed = new THREE.Vector3();
+
+  // Throws where the browser has no WebGL 2.
+  // fullN: the largest force to expect; 0: that of the runs.
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly bar: HTMLElement, private readonly runs: Run[],
+    fullN = 0) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const box = this.actionBox();
+    box.getCenter(this.middle);
+    this.size = Math.max(box.getSize(new THREE.Vector3()).length(), 1);
+    this.mmPerN = (0.3 * this.size) / Math.max(fullN || largestForce(runs), 1e-9);
+    this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, 0.005 * this.size));
+    this.hands = runs.map((run, i) => new HandView(run, this.size, this.mmPerN, i > 0));
+    this.truths = runs.slice(0, 1).map((run) => new TruthView(run));
+    for (const part of [...this.truths, ...this.clouds, ...this.hands]) this.scene.add(part.object);
+    this.light();
+    this.scene.add(this.axes());
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.draw());
+    this.setCamera(runs[0].stored.sensor ? "sensor" : "side");
+    new ResizeObserver(() => this.resize()).observe(canvas);
+  }
+
+  show(tick: number): void {
+    for (const part of [...this.truths, ...this.clouds]) part.show(Math.min(tick, this.runs[0].ticks - 1));
+    this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
+    if (this.follows) this.followProxy(tick);
+    this.draw();
+  }
+  setCamera(preset: CameraPreset): void {
+    const sensor = this.runs[0].stored.sensor, far = 1.1 * this.size;
+    this.follows = preset === "follow";
+    this.camera.up.set(0, 1, 0);
+    if (sensor) this.camera.up.set(...sensor.up);
+    const away = new THREE.Vector3(0.35, 0.3, 1);
+    if (preset === "sensor" && sensor) away.set(...sensor.forward).multiplyScalar(-1);
+    else if (preset === "sensor") away.set(0, 1, 0.02);
+    else if (sensor) away.set(...this.besides(sensor.forward, sensor.up));
+    this.camera.position.copy(this.middle).addScaledVector(away.normalize(), this.follows ? 0.5 * far : far);
+    this.controls.target.copy(this.middle);
+    this.followed.copy(this.middle);
+    this.camera.near = 0.005 * far;
+    this.camera.far = 50 * far;
+    this.resize();
+    this.controls.update();
+  }
+  setVisible(what: "points" | "truth" | "regions" | "spheres" | "axes", visible: boolean): void {
+    if (what === "spheres") for (const hand of this.hands) hand.spheresVisible = visible;
+    else if (what === "regions") for (const cloud of this.clouds) cloud.regionsVisible = visible;
+    else if (what === "points") for (const cloud of this.clouds) cloud.object.visible = visible;
+    else if (what === "truth") for (const truth of this.truths) truth.object.visible = visible && truth.known;
+    else this.scene.getObjectByName("axes")?.traverse((o) => { o.visible = visible; });
+    this.draw();
+  }
+  get touching(): number {
+    return this.clouds[0]?.touching ?? 0;
+  }
+  // For a hand that is moved with them.
+  leaveLeftButtonAndWheel(): void {
+    this.controls.enableZoom = false;
+    this.controls.touches.ONE = null;
+    this.controls.mouseButtons = { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE };
+    // With shift the controls take moving for turning.
+    this.canvas.addEventListener("pointerdown", (event) => {
+      this.controls.mouseButtons.LEFT = event.shiftKey ? THREE.MOUSE.PAN : null;
+    }, { capture: true });
+  }
+  zoom(wheel: number): void {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(away, Math.exp(0.001 * wheel));
+    this.controls.update();
+  }
+  // Of the picture, in the scene: to the right, up, and towards the camera.
+  directions(): [THREE.Vector3, THREE.Vector3, THREE.Vector3] {
+    const [x, y, z] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, k));
+    return [x, y, z];
+  }
+  // How long a pixel is at that place.
+  mmPerPixel(place: THREE.Vector3): number {
+    const distance = Math.max(this.camera.position.clone().sub(place).dot(this.directions()[2]), 1);
+    return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(this.canvas.clientHeight, 1);
+  }
+  dispose(): void {
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss(); // a browser gives few contexts to a page
+  }
+  draw(): void {
+    this.renderer.render(this.scene, this.camera);
+    this.showBar();
+  }
+
+  // From the side of what the sensor sees.
+  private besides(forward: Vector, up: Vector): Vector {
+    const f = new THREE.Vector3(...forward), side = f.clone().cross(new THREE.Vector3(...up));
+    return side.addScaledVector(f, -0.5).addScaledVector(new THREE.Vector3(...up), 0.35).toArray() as Vector;
+  }
+  private actionBox(): THREE.Box3 {
+    const { low_m: low, high_m: high } = this.runs[0].stored, corner = (p: Vector) => new THREE.Vector3(...p).multiplyScalar(1000);
+    return new THREE.Box3(corner(low), corner(high));
+  }
+  private followProxy(tick: number): void {
+    const p = this.runs[0].vector("proxy_position", tick);
+    if (!p.every(Number.isFinite)) return;
+    const now = new THREE.Vector3(1000 * p[0], 1000 * p[1], 1000 * p[2]), moved = now.clone().sub(this.followed);
+    this.camera.position.add(moved);
+    this.controls.target.add(moved);
+    this.followed = now;
+    this.controls.update();
+  }
+  private light(): void {
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x777777, 2.2));
+    const lamp = new THREE.DirectionalLight(0xffffff, 1.6);
+    lamp.position.set(0.4, 1, 0.7);
+    this.scene.add(lamp);
+  }
+  // Arrows of a round length along x, y and z, with their names.
+  private axes(): THREE.Group {
+    const axes = new THREE.Group(), length = round125(0.15 * this.size), origin = new THREE.Vector3();
+    (["x", "y", "z"] as const).forEach((name, k) => {
+      const along = new THREE.Vector3().setComponent(k, 1);
+      const text = label(k === 0 ? `x, ${length} mm` : name);
+      text.position.copy(along).multiplyScalar(1.2 * length);
+      axes.add(new THREE.ArrowHelper(along, origin, length, 0xbbbbbb, 0.1 * length, 0.06 * length), text);
+    });
+    axes.name = "axes";
+    axes.position.copy(this.actionBox().min);
+    return axes;
+  }
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+  // How long a millimetre is where the camera looks.
+  private showBar(): void {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const mmPerPixel = (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(this.canvas.clientHeight, 1);
+    const length = round125(120 * mmPerPixel);
+    this.bar.style.width = `${length / mmPerPixel}px`;
+    this.bar.textContent = `${length} mm`;
+  }
+}

@@ -1,0 +1,152 @@
+// The map of a sweep: a measure over two of its axes. Cells whose run is on the page have a frame and can be clicked.
+import { colours, rampColour } from "./colours";
+import { digits, type Numbers, type Sweep } from "./data";
+
+const left = 64, bottom = 34;
+
+export class SweepMap {
+  readonly element = document.createElement("section");
+  private readonly canvas = document.createElement("canvas");
+  private readonly caption = document.createElement("figcaption");
+  private readonly choice = document.createElement("select");
+  private readonly runs = document.createElement("select");
+  private readonly fixed: HTMLSelectElement[]; // the places on the axes that the map does not show
+  private numbers: Numbers = new Float64Array();
+  private range: [number, number] = [0, 1];
+
+  // shown: which of the runs of the page is seen now.
+  constructor(private readonly sweep: Sweep, private readonly shown: number, choose: (run: number) => void) {
+    const { stored } = sweep, figure = document.createElement("figure");
+    this.element.className = "map";
+    for (const measure of stored.measures) this.choice.add(new Option(measure.name, measure.name));
+    this.choice.value = stored.judged;
+    this.choice.title = "measure";
+    this.choice.addEventListener("change", () => this.setMeasure());
+    stored.runs.forEach((_, i) => { this.runs.add(new Option(sweep.text(sweep.cellOf(i)), String(i))); });
+    this.runs.value = String(shown);
+    this.runs.title = "the run that is shown";
+    this.runs.addEventListener("change", () => choose(Number(this.runs.value)));
+    const place = sweep.place(sweep.cellOf(shown));
+    this.fixed = stored.axes.slice(0, -2).map((axis, k) => {
+      const select = document.createElement("select");
+      select.title = axis.name;
+      axis.values.forEach((value, i) => { select.add(new Option(`${axis.name} = ${value}`, String(i))); });
+      select.value = String(place[k]);
+      select.addEventListener("change", () => this.draw());
+      return select;
+    });
+    this.canvas.addEventListener("click", (event) => {
+      const run = this.runAt(event);
+      if (run >= 0) choose(run);
+    });
+    this.canvas.addEventListener("pointermove", (event) => this.describe(this.cellUnder(event)));
+    this.canvas.addEventListener("pointerleave", () => this.describe(sweep.cellOf(shown)));
+    figure.append(this.canvas, this.caption);
+    this.element.append(this.choice, ...this.fixed, figure, this.runs);
+    this.setMeasure();
+    new ResizeObserver(() => this.draw()).observe(this.canvas);
+  }
+
+  private setMeasure(): void {
+    this.numbers = this.sweep.measure(this.choice.value);
+    let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
+    for (let cell = 0; cell < this.numbers.length / this.sweep.stored.replicates; ++cell) {
+      const mean = this.sweep.mean(this.numbers, cell);
+      if (Number.isFinite(mean)) [low, high] = [Math.min(low, mean), Math.max(high, mean)];
+    }
+    this.range = high > low ? [low, high] : [low, low + 1];
+    this.describe(this.sweep.cellOf(this.shown));
+    this.draw();
+  }
+  // The last axis to the right, the one before it up.
+  private get size(): [number, number] {
+    const axes = this.sweep.stored.axes;
+    return [axes[axes.length - 1].values.length, axes.length > 1 ? axes[axes.length - 2].values.length : 1];
+  }
+  private cellAt(column: number, row: number): number {
+    const place = this.fixed.map((select) => Number(select.value));
+    return this.sweep.cellAt(this.sweep.stored.axes.length > 1 ? [...place, row, column] : [column]);
+  }
+  private cellUnder(event: MouseEvent): number {
+    const box = this.canvas.getBoundingClientRect(), [columns, rows] = this.size;
+    const column = Math.floor(((event.clientX - box.left - left) / (box.width - left)) * columns);
+    const row = rows - 1 - Math.floor(((event.clientY - box.top) / (box.height - bottom)) * rows);
+    return column >= 0 && column < columns && row >= 0 && row < rows ? this.cellAt(column, row) : -1;
+  }
+  // The shown run that is at most 12 pixels away, or -1: cells of a fine map are small.
+  private runAt(event: MouseEvent): number {
+    const box = this.canvas.getBoundingClientRect(), [columns, rows] = this.size;
+    let best = -1, least = 12 + 0.5 * Math.max((box.width - left) / columns, (box.height - bottom) / rows);
+    this.shownCells().forEach(([run, column, row]) => {
+      const x = left + ((column + 0.5) * (box.width - left)) / columns, y = ((rows - row - 0.5) * (box.height - bottom)) / rows;
+      const distance = Math.hypot(event.clientX - box.left - x, event.clientY - box.top - y);
+      if (distance < least) [best, least] = [run, distance];
+    });
+    return best;
+  }
+  // Run, column and row of those that this part of the map has.
+  private shownCells(): [number, number, number][] {
+    const list: [number, number, number][] = [], fixed = this.fixed.map((select) => Number(select.value));
+    this.sweep.stored.runs.forEach((_, run) => {
+      const place = this.sweep.place(this.sweep.cellOf(run));
+      if (fixed.every((at, k) => at === place[k])) list.push([run, place[place.length - 1], place.length > 1 ? place[place.length - 2] : 0]);
+    });
+    return list;
+  }
+  private describe(cell: number): void {
+    if (cell < 0) return;
+    const mean = this.sweep.mean(this.numbers, cell), { replicates, measures } = this.sweep.stored;
+    const unit = measures.find((measure) => measure.name === this.choice.value)?.unit ?? "";
+    const value = Number.isFinite(mean) ? `${digits(mean)}${unit === "1" ? "" : ` ${unit}`}` : "no value";
+    this.caption.textContent = `${this.choice.value} ${value} at ${this.sweep.text(cell)}${replicates > 1 ? `, mean of up to ${replicates} runs` : ""}`;
+  }
+
+  private draw(): void {
+    const ratio = window.devicePixelRatio, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    const pen = this.canvas.getContext("2d");
+    if (width < 2 || height < 2 || !pen) return;
+    this.canvas.width = ratio * width;
+    this.canvas.height = ratio * height;
+    pen.scale(ratio, ratio);
+    const [columns, rows] = this.size, w = (width - left) / columns, h = (height - bottom) / rows, tint = new Uint8Array(3);
+    for (let row = 0; row < rows; ++row)
+      for (let column = 0; column < columns; ++column) {
+        const mean = this.sweep.mean(this.numbers, this.cellAt(column, row));
+        if (!Number.isFinite(mean)) continue;
+        rampColour((mean - this.range[0]) / (this.range[1] - this.range[0]), tint, 0);
+        pen.fillStyle = `rgb(${tint.join(" ")})`;
+        pen.fillRect(left + column * w, (rows - 1 - row) * h, w + 0.5, h + 0.5);
+      }
+    for (const [run, column, row] of this.shownCells()) {
+      const now = run === this.shown, x = left + column * w, y = (rows - 1 - row) * h, room = Math.max(0, (9 - Math.min(w, h)) / 2);
+      pen.lineWidth = now ? 3 : 1.5;
+      pen.strokeStyle = now ? colours.force : "#fff";
+      pen.strokeRect(x - room, y - room, w + 2 * room, h + 2 * room);
+      pen.lineWidth = 0.75;
+      pen.strokeStyle = "#000";
+      pen.strokeRect(x - room - 1.5, y - room - 1.5, w + 2 * room + 3, h + 2 * room + 3);
+    }
+    this.drawAxes(pen, width, height);
+  }
+  private drawAxes(pen: CanvasRenderingContext2D, width: number, height: number): void {
+    const { axes } = this.sweep.stored, across = axes[axes.length - 1], up = axes[axes.length - 2];
+    const text = (value: number | string | undefined) => typeof value === "number" ? digits(value) : (value ?? "");
+    pen.fillStyle = getComputedStyle(this.canvas).color;
+    pen.font = "11px system-ui, sans-serif";
+    const write = (what: string, x: number, y: number, align: CanvasTextAlign) => {
+      pen.textAlign = align;
+      pen.fillText(what, x, y);
+    };
+    write(text(across.values[0]), left, height - bottom + 12, "left");
+    write(text(across.values.at(-1)), width, height - bottom + 12, "right");
+    write(`${across.name}${across.unit === "1" ? "" : ` (${across.unit})`}`, (left + width) / 2, height - 6, "center");
+    if (!up) return;
+    write(text(up.values.at(-1)), left - 4, 10, "right");
+    write(text(up.values[0]), left - 4, height - bottom, "right");
+    pen.save();
+    pen.translate(11, (height - bottom) / 2);
+    pen.rotate(-Math.PI / 2);
+    write(`${up.name}${up.unit === "1" ? "" : ` (${up.unit})`}`, 0, 0, "center");
+    pen.restore();
+  }
+}

@@ -1,0 +1,73 @@
+// Play, step, speed, and a slider over all ticks with marks where something happened.
+import { button } from "./button";
+import type { RunEvent } from "./data";
+import { digits } from "./data";
+import { type Player, speeds } from "./player";
+
+function speedText(speed: number): string {
+  return speed < 1 ? `1/${Math.round(1 / speed)}` : `${speed}x`;
+}
+
+export class Timeline {
+  readonly element = document.createElement("footer");
+  private readonly slider = document.createElement("input");
+  private readonly clock = document.createElement("output");
+  private readonly play: HTMLButtonElement;
+  private readonly speed = document.createElement("select");
+
+  // frames: the tick with which each frame is first used.
+  constructor(private readonly player: Player, private readonly events: RunEvent[], private readonly frames: number[],
+    private readonly timeS: (tick: number) => number) {
+    this.slider.type = "range";
+    this.slider.min = "0";
+    this.slider.max = String(player.ticks - 1);
+    this.slider.ariaLabel = "tick";
+    this.slider.addEventListener("input", () => player.go(Number(this.slider.value)));
+    this.play = button("Play", "play or stop (space)", () => player.toggle());
+    this.speed.title = "speed: 1x is real time";
+    for (const speed of speeds) this.speed.add(new Option(speedText(speed), String(speed)));
+    this.speed.addEventListener("change", () => player.setSpeed(Number(this.speed.value)));
+    const track = document.createElement("div");
+    track.className = "track";
+    track.append(this.slider, ...this.marks());
+    this.element.append(
+      this.play, button("|<", "one tick back (,)", () => player.step(-1)), button(">|", "one tick on (.)", () => player.step(1)),
+      button("Next event", "to the next event (e)", () => this.nextEvent()), this.speed, track, this.clock);
+    player.onChange(() => this.show());
+    this.show();
+  }
+
+  nextEvent(): void {
+    const next = this.events.find((event) => event.tick > this.player.tick) ?? this.events[0];
+    if (next) this.player.step(next.tick - this.player.tick);
+  }
+  stepFrame(by: number): void {
+    const now = this.player.tick;
+    const tick = by > 0 ? this.frames.find((first) => first > now) : this.frames.findLast((first) => first < now);
+    if (tick !== undefined) this.player.step(tick - now);
+  }
+  faster(by: number): void {
+    const at = speeds.indexOf(this.player.speed) + by;
+    if (speeds[at] !== undefined) this.player.setSpeed(speeds[at]);
+  }
+
+  private marks(): HTMLElement[] {
+    return this.events.map((event) => {
+      const mark = document.createElement("button");
+      mark.type = "button";
+      mark.className = `mark ${event.kind.replace(" ", "-")}`;
+      mark.title = `tick ${event.tick}: ${event.text}`;
+      mark.ariaLabel = mark.title;
+      mark.style.left = `${(100 * event.tick) / Math.max(this.player.ticks - 1, 1)}%`;
+      mark.addEventListener("click", () => this.player.step(event.tick - this.player.tick));
+      return mark;
+    });
+  }
+  private show(): void {
+    const { tick, playing, speed } = this.player;
+    this.slider.value = String(tick);
+    this.play.textContent = playing ? "Stop" : "Play";
+    this.speed.value = String(speed);
+    this.clock.textContent = `${this.timeS(tick).toFixed(3)} s, tick ${digits(tick)}`;
+  }
+}

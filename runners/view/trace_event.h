@@ -1,0 +1,25 @@
+// What happened in a run that is worth looking at.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/comparison/column_source.h"
+
+namespace remote_touch {
+
+struct TraceEvent {
+  std::size_t tick;
+  const char* kind;  // "pop-through", "force jump", "not converged", "task" or "divergence"
+  std::string text;  // for people
+};
+
+// In the order of their ticks:
+//   pop-through    the proxy's centre goes from above to below the true surface, where that is known
+//   force jump     the largest change of the force from one tick to the next
+//   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,
+//                  at most 50
+//   task           a step of the task ended
+std::vector<TraceEvent> trace_events(const ColumnSource& trace);
+
+}  // namespace remote_touch

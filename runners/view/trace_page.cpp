@@ -1,0 +1,38 @@
+#include "runners/view/trace_page.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/view/shown_claims.h"
+
+namespace remote_touch {
+
+namespace {
+
+// The frames of a live run came from a sensor, at times that only its recording knows.
+void require_simulated(const std::filesystem::path& file, const StoredTrace& trace) {
+  if (attribute(trace.attributes(), "command").starts_with("remote-touch live"))
+    throw InputError(
+        file.string(),
+        "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
+}
+
+}  // namespace
+
+ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const ViewOptions& options) {
+  std::vector<std::unique_ptr<ShownRun>> runs;
+  BoundingBox box_W;
+  for (const auto& file : traces) {
+    const auto trace = std::make_shared<StoredTrace>(file);
+    require_simulated(file, *trace);
+    RunSource source{file.string(), trace, trace->attributes()};
+    source.claims = shown_claims(options.claims, source.attributes).dump();
+    runs.push_back(std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop));
+    box_W.extend(runs.back()->box_W());
+  }
+  for (const auto& run : runs) run->set_box(box_W);
+  if (runs.size() == 2) runs.front()->mark_divergence_from(*runs.back());
+  return view_page(runs.front()->title(), runs, Json::object(), {}, options);
+}
+
+}  // namespace remote_touch

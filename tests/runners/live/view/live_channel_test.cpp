@@ -1,0 +1,250 @@
+// What a page gets of a live run, and what it can do to it.
+#include "runners/live/view/live_channel.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "runners/live/view/page_message.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::live_channel_test {
+namespace {
+
+constexpr double kRate_hz = 1000;
+
+template <class T>
+T number_at(const std::string& bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+LiveTick tick(std::int64_t number) {
+  LiveTick tick;
+  tick.number = number;
+  tick.device.position_W = Vec3(1, 2, static_cast<double>(number));
+  return tick;
+}
+
+std::string acknowledgement(std::uint32_t number) {
+  std::string bytes("\2\0\0\0", 4);
+  return bytes.append(reinterpret_cast<const char*>(&number), 4);
+}
+
+class LiveChannelTest : public testing::Test {
+ protected:
+  LiveChannel::Message next() {
+    LiveChannel::Message message;
+    EXPECT_TRUE(channel_.next(message));
+    return message;
+  }
+  bool has_next() {
+    LiveChannel::Message message;
+    return channel_.next(message);
+  }
+  void acknowledge(std::uint32_t number) { EXPECT_TRUE(channel_.receive(acknowledgement(number))); }
+
+  const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
+  const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
+      Experiment::load("fig4.12"), scenes::kernels(), LiveControls::Camera::other);
+  LiveChannel channel_{kRate_hz, scenes::kernels(), poses_, controls_};
+};
+
+TEST_F(LiveChannelTest, TellsTheColumnsAndThenTheTicks) {
+  channel_.open();
+  channel_.take(tick(7));
+  channel_.take(tick(8));
+  const LiveChannel::Message columns = next();
+  EXPECT_TRUE(columns.is_text);
+  const auto list = nlohmann::json::parse(columns.bytes)["columns"];
+  std::size_t width = 0, hip = 0;
+  for (const auto& column : list) {
+    if (column["name"] == "hip_position") hip = width;
+    width += column["width"].get<std::size_t>();
+  }
+  const LiveChannel::Message ticks = next();
+  EXPECT_FALSE(ticks.is_text);
+  ASSERT_EQ(ticks.bytes.size(), 16 + 8 * 2 * width);
+  EXPECT_EQ(number_at<std::uint32_t>(ticks.bytes, 0), 1u);
+  EXPECT_EQ(number_at<std::uint32_t>(ticks.bytes, 8), 2u);
+  EXPECT_EQ(number_at<double>(ticks.bytes, 16), 0.007) << "time is the first column";
+  EXPECT_EQ(number_at<double>(ticks.bytes, 24), 0.008);
+  EXPECT_EQ(number_at<double>(ticks.bytes, 16 + 8 * (2 * hip + 2)), 7) << "z of the HIP";
+  EXPECT_EQ(number_at<double>(ticks.bytes, 16 + 8 * (2 * hip + 5)), 8);
+}
+
+TEST_F(LiveChannelTest, AFrameHasItsPointsColoursAndRegions) {
+  PointCloud cloud = scenes::random_cloud(500, 0.1, 3);
+  cloud.colour.resize(cloud.size(), 0x112233);
+  cloud.fixture_radius_m.resize(cloud.size(), 0.004);
+  cloud.y[5] = std::numeric_limits<double>::quiet_NaN();
+  channel_.take(scenes::frame(cloud, 12));
+  channel_.open();
+  channel_.take(tick(1));
+  next();
+  const std::string bytes = next().bytes;
+  ASSERT_EQ(number_at<std::uint32_t>(bytes, 0), 2u);
+  EXPECT_EQ(number_at<std::int32_t>(bytes, 8), 12);
+  const auto count = number_at<std::uint32_t>(bytes, 12);
+  ASSERT_EQ(count, 499u) << "one is not measured";
+  EXPECT_EQ(number_at<std::uint32_t>(bytes, 16), 3u);
+  const double step = number_at<double>(bytes, 24);
+  const auto has = [&](const Vec3& p) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Vec3 shown;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        shown[static_cast<int>(axis)] = number_at<double>(bytes, 32 + 8 * axis) +
+                                        step * number_at<std::uint16_t>(bytes, 56 + 2 * (3 * i + axis));
+      if ((shown - p).lpNorm<Eigen::Infinity>() <= 0.51 * step) return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_EQ(has(cloud.point(i)), i != 5) << i;
+  const std::size_t colours = 56 + (6 * count + 7) / 8 * 8;
+  EXPECT_EQ(bytes.substr(colours, 3), "\x11\x22\x33");
+  EXPECT_EQ(number_at<float>(bytes, (colours + 3 * count + 7) / 8 * 8), 0.004f);
+}
+
+TEST_F(LiveChannelTest, ALargeFrameIsThinned) {
+  channel_.take(
+      scenes::frame(scenes::random_cloud(static_cast<int>(2 * LiveChannel::kMaxPoints) + 7, 0.1, 3)));
+  channel_.open();
+  channel_.take(tick(1));
+  next();
+  const auto count = number_at<std::uint32_t>(next().bytes, 12);
+  EXPECT_LE(count, LiveChannel::kMaxPoints);
+  EXPECT_GT(count, LiveChannel::kMaxPoints / 2);
+}
+
+TEST_F(LiveChannelTest, APageThatAcknowledgesNothingGetsTwoMessages) {
+  channel_.open();
+  channel_.take(tick(1));
+  next();  // the columns
+  next();
+  channel_.take(tick(2));
+  next();
+  channel_.take(tick(3));
+  EXPECT_FALSE(has_next());
+  acknowledge(1);
+  EXPECT_TRUE(has_next());
+}
+
+// Of a page that sleeps the run keeps a bounded number of ticks and one frame.
+TEST_F(LiveChannelTest, ASlowPageLosesPictures) {
+  channel_.open();
+  channel_.take(tick(0));
+  next(), next();
+  for (int i = 1; i <= 20; ++i) channel_.take(scenes::frame(scenes::flat_grid(10), i));
+  for (std::int64_t i = 1; i <= 12000; ++i) channel_.take(tick(i));
+  acknowledge(1);
+  const std::string frame = next().bytes;
+  EXPECT_EQ(number_at<std::int32_t>(frame, 8), 20) << "the newest";
+  acknowledge(2);
+  const std::string ticks = next().bytes;
+  EXPECT_EQ(number_at<std::uint32_t>(ticks, 0), 1u);
+  EXPECT_LE(number_at<std::uint32_t>(ticks, 8), LiveChannel::kMaxRows);
+}
+
+// A camera that is faster than the page does not keep the ticks away from it.
+TEST_F(LiveChannelTest, FramesAndTicksTakeTurns) {
+  channel_.open();
+  channel_.take(tick(0));
+  next();
+  std::string kinds;
+  for (std::uint32_t i = 1; i <= 6; ++i) {
+    channel_.take(scenes::frame(scenes::flat_grid(10), static_cast<int>(i)));
+    channel_.take(tick(i));
+    kinds += std::to_string(number_at<std::uint32_t>(next().bytes, 0));
+    acknowledge(i);
+  }
+  EXPECT_EQ(kinds, "212121");
+}
+
+TEST_F(LiveChannelTest, TheNextPageGetsTheColumnsAndTheNewestFrameAgain) {
+  channel_.take(scenes::frame(scenes::flat_grid(10), 4));
+  for (int page = 0; page < 2; ++page) {
+    channel_.open();
+    channel_.take(tick(page));
+    EXPECT_TRUE(next().is_text);
+    EXPECT_EQ(number_at<std::uint32_t>(next().bytes, 0), 2u);
+    EXPECT_EQ(number_at<std::uint32_t>(next().bytes, 0), 1u);
+    channel_.close();
+  }
+  channel_.take(tick(5));
+  EXPECT_FALSE(has_next());
+}
+
+TEST_F(LiveChannelTest, WithoutAPageNothingIsKept) {
+  for (std::int64_t i = 0; i < 100; ++i) channel_.take(tick(i));
+  channel_.open();
+  EXPECT_FALSE(has_next());
+}
+
+TEST_F(LiveChannelTest, AHandGoesToTheLoopAndAllElseIsRefused) {
+  channel_.open();
+  EXPECT_FALSE(poses_->take());
+  EXPECT_FALSE(channel_.receive("hello"));
+  EXPECT_FALSE(channel_.receive(acknowledgement(1))) << "nothing was sent";
+  EXPECT_EQ(channel_.refused(), 2u);
+  std::string hand("\1\0\0\0\0\0\0\0", 8);
+  const double pose[] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
+  hand.append(reinterpret_cast<const char*>(pose), sizeof pose);
+  EXPECT_TRUE(channel_.receive(hand));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(channel_.refused(), 2u);
+}
+
+// Numbers and reasons come back as JSON, also to the page that is opened next.
+TEST_F(LiveChannelTest, ChangesOfParametersGoToTheLoopAndAreAnswered) {
+  const auto change = [&](double value) {
+    std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
+    return channel_.receive(bytes.append(reinterpret_cast<const char*>(&value), 8));
+  };
+  const auto answer = [&] {
+    const LiveChannel::Message message = next();
+    EXPECT_TRUE(message.is_text);
+    return nlohmann::json::parse(message.bytes);
+  };
+  channel_.open();
+  channel_.take(tick(1));
+  EXPECT_TRUE(change(450));
+  EXPECT_TRUE(answer().contains("columns"));
+  nlohmann::json now = answer();
+  EXPECT_EQ(now["values"][3], 450);
+  EXPECT_EQ(now["refused"], "");
+  ASSERT_NE(controls_->asked().oldest(), nullptr);
+  EXPECT_EQ(controls_->asked().oldest()->list[0].value, 450);
+  EXPECT_TRUE(change(-1));
+  now = answer();
+  EXPECT_EQ(now["values"][3], 450);
+  EXPECT_NE(now["refused"].get<std::string>().find("expected 0 to 10000"), std::string::npos) << now;
+  EXPECT_EQ(channel_.refused(), 0u) << "it was a message";
+  channel_.close();
+  channel_.open();
+  channel_.take(tick(2));
+  answer();
+  EXPECT_EQ(answer()["values"][3], 450);
+}
+
+// A page that is closed while its button is down.
+TEST_F(LiveChannelTest, WithThePageItsButtonIsLetGo) {
+  channel_.open();
+  const std::uint32_t buttons = 1;
+  std::string hand("\1\0\0\0", 4);
+  hand.append(reinterpret_cast<const char*>(&buttons), 4);
+  const double pose[] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
+  hand.append(reinterpret_cast<const char*>(pose), sizeof pose);
+  EXPECT_TRUE(channel_.receive(hand));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().buttons, 1u);
+  channel_.close();
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().buttons, 0u);
+  EXPECT_EQ(poses_->front().position_W, Vec3(0.1, 0.2, 0.3));
+}
+
+}  // namespace
+}  // namespace remote_touch::live_channel_test

@@ -1,0 +1,232 @@
+// A live run in a browser: the mouse as the hand, and who is refused. Usage: node live.mjs PROGRAM CHROMIUM
+import assert from "node:assert/strict";
+import { execFileSync, spawn, spawnSync } from "node:child_process";
+import { test } from "node:test";
+import { openBrowser, picture } from "./browser.mjs";
+
+const [program, chromium] = process.argv.slice(2);
+const browser = await openBrowser(chromium);
+const children = [], pages = []; // those of a test that failed are left
+test.afterEach(async () => {
+  for (const child of children.splice(0)) child.kill("SIGKILL");
+  for (const page of pages.splice(0)) await page.close();
+});
+test.after(() => browser.close());
+
+// A run until it is stopped; its address and, at the end, what it printed.
+async function startLive(...args) {
+  const child = spawn(program, ["live", ...args, "--view"], { stdio: ["ignore", "pipe", "pipe"] });
+  children.push(child);
+  let out = "", err = "";
+  child.stderr.on("data", (data) => { err += data; });
+  const ended = new Promise((done) => { child.on("exit", (code) => done({ code, out, err })); });
+  const address = await new Promise((done, failed) => {
+    child.stdout.on("data", (data) => {
+      out += data;
+      const found = /http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\//.exec(out);
+      if (found) done(found[0]);
+    });
+    child.on("exit", () => failed(new Error(`live ended: ${err}`)));
+  });
+  const stop = () => {
+    child.kill("SIGINT");
+    return ended;
+  };
+  return { address, stop };
+}
+
+async function openLive(address) {
+  const page = await browser.newPage({ viewport: { width: 480, height: 320 } }), complaints = [];
+  pages.push(page);
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type()) && !message.text().includes("GPU stall")) complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  await page.goto(address);
+  await page.waitForSelector("body[data-ready=yes]", { timeout: 30000 });
+  return { page, complaints };
+}
+
+const newest = (page) => page.evaluate(() => {
+  const { run } = window.remoteTouch, tick = run.ticks - 1;
+  return {
+    tick, time: run.column("time").value(tick), hip: run.vector("hip_position", tick), force: run.column("force").magnitude(tick),
+    contacts: run.column("contact_count").value(tick), frames: run.frameCount, pictures: window.remoteTouch.page.pictures,
+  };
+});
+
+async function until(page, holds, act, seconds = 30) {
+  const end = Date.now() + 1000 * seconds;
+  for (let now = await newest(page); Date.now() < end; now = await newest(page)) {
+    if (holds(now)) return now;
+    await act();
+    await page.waitForTimeout(20);
+  }
+  return newest(page);
+}
+
+async function middle(page) {
+  const box = await page.locator(".picture canvas").boundingBox();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+// The hand follows the mouse by as much as the picture moves, and in its plane.
+async function dragMovesTheHand(page) {
+  const [x, y] = await middle(page), before = await newest(page);
+  const [right, mm] = await page.evaluate((hip) => {
+    const { scene } = window.remoteTouch, place = scene.directions()[0].clone().set(1000 * hip[0], 1000 * hip[1], 1000 * hip[2]);
+    return [scene.directions()[0].toArray(), scene.mmPerPixel(place)];
+  }, before.hip);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 20; ++i) await page.mouse.move(x + 3 * i, y);
+  await page.mouse.up();
+  const moved = (now) => now.hip.reduce((sum, h, k) => sum + 1000 * (h - before.hip[k]) * right[k], 0);
+  const after = await until(page, (now) => Math.abs(moved(now) - 60 * mm) < 1, async () => {});
+  assert.ok(Math.abs(moved(after) - 60 * mm) < 1.5, `dragged by ${60 * mm} mm, moved by ${moved(after)} mm`);
+  await page.mouse.move(x + 60, y);
+  await page.mouse.down();
+  for (let i = 19; i >= 0; --i) await page.mouse.move(x + 3 * i, y);
+  await page.mouse.up();
+}
+
+async function touches(page) {
+  const [x, y] = await middle(page);
+  await page.keyboard.press("1");
+  await page.mouse.move(x, y);
+  return until(page, (now) => now.contacts > 0 && now.force > 0.3, async () => {
+    for (let i = 0; i < 4; ++i) await page.mouse.wheel(0, -100);
+  }, 90);
+}
+
+// Each slider to another place; what the run then has stands beside it.
+async function changesParameters(page) {
+  const rows = page.locator(".sliders label"), changed = [];
+  for (const row of await rows.all()) {
+    const input = row.locator("input"), before = await row.locator("output").textContent();
+    if ((await input.getAttribute("type")) === "range") await input.fill("10");
+    else await row.click();
+    await page.waitForFunction(([name, old]) => [...document.querySelectorAll(".sliders label")].some((label) =>
+      label.querySelector("span").textContent === name && label.querySelector("output").textContent !== old),
+    [await row.locator("span").textContent(), before], { timeout: 5000 });
+    changed.push(`${await row.locator("span").textContent()}: ${before} -> ${await row.locator("output").textContent()}`);
+  }
+  assert.ok(changed.length > 0, "there are no sliders");
+  assert.equal(await page.locator(".sliders .warning").isVisible(), false);
+  return changed;
+}
+
+function digestOffline(session) {
+  const out = execFileSync(program, ["-q", "--force", "run", session, "-o", "again.h5"], { encoding: "utf8" });
+  return /digest ([0-9a-f]{64})/.exec(out)[1];
+}
+
+for (const [name, ...more] of [["fig5.8-recorded"], ["fig4.16"], ["fig6.4-organ"]])
+  test(`${name}: the mouse touches, and the recording gives the same digest`, { timeout: 120000 }, async () => {
+    if (!process.env.REMOTE_TOUCH_DATA && name !== "fig4.16") return;
+    const { address, stop } = await startLive(name, ...more, "--record", `${name}.session.h5`, "--force");
+    const { page, complaints } = await openLive(address);
+    await dragMovesTheHand(page);
+    const touched = await touches(page);
+    assert.ok(touched.contacts > 0 && touched.force > 0.3, `no contact: ${JSON.stringify(touched)}`);
+    const shown = await picture(page);
+    assert.ok(shown.drawn > 2000, "the picture is blank");
+    console.log(`${name}: ${(await changesParameters(page)).join("; ")}`);
+    const { uploads, draws, pictures, frames } = await page.evaluate(countWork);
+    assert.equal(draws, pictures, "one picture, one draw of the points");
+    assert.ok(uploads > 0 && uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
+    console.log(`${name}: ${JSON.stringify({ ...touched, drawn: shown.drawn })}`);
+    const { code, out } = await stop();
+    assert.equal(code, 0, out);
+    assert.deepEqual(complaints, []);
+    await page.waitForSelector("body[data-ended]", { state: "attached", timeout: 10000 });
+    assert.match(await page.evaluate(() => document.body.dataset.ended), /has ended/);
+    assert.equal(digestOffline(`${name}.session.h5`), /digest of the trace: ([0-9a-f]{64})/.exec(out)[1]);
+    await page.close();
+  });
+
+// In two seconds: draws of all points, uploads of their positions, and pictures.
+function countWork() {
+  return new Promise((done) => {
+    const { scene, page } = window.remoteTouch, gl = document.querySelector(".picture canvas").getContext("webgl2");
+    const frames = window.remoteTouch.run.frameCount;
+    let draws = 0, uploads = 0;
+    const [drawArrays, bufferSubData] = [gl.drawArrays.bind(gl), gl.bufferSubData.bind(gl)];
+    gl.drawArrays = (mode, first, count) => {
+      if (mode === gl.POINTS && count === scene.clouds[0].pointCount()) ++draws;
+      drawArrays(mode, first, count);
+    };
+    gl.bufferSubData = (target, at, data, offset, length) => {
+      if (data.BYTES_PER_ELEMENT === 2 && length >= 4 * scene.clouds[0].pointCount()) ++uploads;
+      bufferSubData(target, at, data, offset, length);
+    };
+    const before = page.pictures;
+    setTimeout(() => done({ points: window.remoteTouch.run.frameAt().positions.length / 3, draws, uploads, pictures: page.pictures - before, frames: window.remoteTouch.run.frameCount - frames }), 2000);
+  });
+}
+
+test("what cannot run has no address", () => {
+  const { status, stdout, stderr } = spawnSync(program, ["live", "fig4.16", "--view", "--depth", "dir:/nowhere"], { encoding: "utf8" });
+  assert.equal(status, 2, stderr);
+  assert.match(stderr, /nowhere/);
+  assert.doesNotMatch(stdout, /http/);
+});
+
+// 300 000 points: a picture draws them once, and a frame is uploaded once.
+test("fig4.16 with 880 x 660 pixels", { timeout: 120000 }, async () => {
+  const { address, stop } = await startLive("fig4.16", "--set", "scenario.width=880", "--set", "scenario.height=660", "--set", "scenario.focal_px=722");
+  const { page, complaints } = await openLive(address);
+  const { uploads, draws, pictures, frames, points } = await page.evaluate(countWork);
+  assert.ok(points > 250000, `${points} points`);
+  assert.equal(draws, pictures, "one picture, one draw of the points");
+  assert.ok(uploads > 0 && uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
+  console.log(`880 x 660: ${points} points a frame, ${pictures / 2} pictures/s and ${frames / 2} frames/s with software graphics`);
+  assert.equal((await stop()).code, 0);
+  assert.deepEqual(complaints, []);
+});
+
+test("who is refused, and the run goes on", { timeout: 120000 }, async () => {
+  const { address, stop } = await startLive("fig4.16");
+  const { page } = await openLive(address);
+  const port = new URL(address).port, wrong = address.replace(/[0-9a-f]{32}/, "0".repeat(32));
+  assert.equal((await fetch(wrong)).status, 404, "a wrong secret");
+  assert.equal((await fetch(`http://127.0.0.1:${port}/`)).status, 404, "no secret");
+  const second = await browser.newPage();
+  await second.goto(address);
+  await second.waitForSelector("body[data-ended]");
+  assert.match(await second.textContent("body"), /another page has the hand/);
+  await second.goto("data:text/html,x");
+  const opened = await second.evaluate((place) => new Promise((done) => {
+    const socket = new WebSocket(place);
+    socket.onopen = () => done(true);
+    socket.onerror = () => done(false);
+  }), `${address.replace("http", "ws")}channel`);
+  assert.equal(opened, false, "a page of another origin");
+  const before = await newest(page);
+  await until(page, (now) => now.time > before.time + 0.2, async () => {});
+
+  // The hand's page sends 100 000 messages of random bytes.
+  const hip = (await newest(page)).hip;
+  await page.evaluate(async () => {
+    const { connection } = window.remoteTouch;
+    for (let i = 0; i < 100000; ++i) {
+      const bytes = new Uint8Array(Math.floor(65 * Math.random()));
+      crypto.getRandomValues(bytes);
+      connection.socket.send(bytes);
+      if (connection.socket.bufferedAmount > 1e5) await new Promise((done) => { setTimeout(done, 5); });
+    }
+  });
+  const after = await newest(page);
+  const later = await until(page, (now) => now.time > after.time + 0.5, async () => {});
+  assert.ok(later.time > after.time + 0.5, "the run goes on");
+  assert.deepEqual(later.hip, hip, "nobody moved the hand");
+  // A message that is too long ends the connection, not the run; the next page gets the hand.
+  await page.evaluate(() => window.remoteTouch.connection.socket.send(new Uint8Array(100000)));
+  await page.waitForSelector("body[data-ended]");
+  await page.close();
+  await second.close();
+  const next = await openLive(address);
+  await dragMovesTheHand(next.page);
+  const { code, out } = await stop();
+  assert.equal(code, 0, out);
+});

@@ -1,0 +1,169 @@
+// Pages of results, as people use them. Usage: node pages.mjs PROGRAM CHROMIUM [all]
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { test } from "node:test";
+import { goTo, noComplaints, openBrowser, openPage, picture, tick } from "./browser.mjs";
+
+const [program, chromium, extent] = process.argv.slice(2);
+const remoteTouch = (...args) => execFileSync(program, ["-q", "--force", ...args], { encoding: "utf8" });
+const columns = (trace, ticks, ...names) =>
+  JSON.parse(execFileSync("/usr/bin/python3", ["columns.py", trace, ticks.join(","), ...names], { encoding: "utf8" }));
+
+const browser = await openBrowser(chromium);
+test.after(() => browser.close());
+
+async function withPage(file, options, look) {
+  const opened = await openPage(browser, file, options);
+  try {
+    await look(opened.page, opened);
+    noComplaints(opened, file);
+  } finally {
+    await opened.context.close();
+  }
+}
+
+// Not blank, and other at another time.
+async function showsMotion(page, ticks) {
+  const pictures = [];
+  for (const t of ticks) {
+    await goTo(page, t);
+    const now = await picture(page);
+    assert.ok(now.drawn > 1000, `tick ${t}: only ${now.drawn} pixels are drawn`);
+    pictures.push(now.hash);
+  }
+  assert.equal(new Set(pictures).size, ticks.length, "the picture does not change with the time");
+}
+
+async function showsStoredNumbers(page, trace, ticks, names) {
+  const stored = columns(trace, ticks, ...names);
+  await page.click("summary");
+  for (const [i, t] of ticks.entries()) {
+    await goTo(page, t);
+    for (const name of names) {
+      const [here, shown] = await page.evaluate(([column, at]) => {
+        const found = window.remoteTouch.runs[0].column(column);
+        const values = Array.from({ length: found.width }, (_, k) => found.value(at, k));
+        const row = [...document.querySelectorAll(".values tr")].find((one) => one.firstChild.textContent === column);
+        return [values, row.children[1].textContent];
+      }, [name, t]);
+      const expected = [stored[name][i]].flat();
+      assert.deepEqual(here, expected, `${name} at tick ${t}`);
+      shown.split(/ +/).forEach((text, k) => {
+        if (Number.isFinite(Number(text))) assert.ok(Math.abs(Number(text) - expected[k]) <= 1e-4 * Math.abs(expected[k]), `${name} at tick ${t}: the page says ${shown}`);
+      });
+    }
+  }
+}
+
+async function picturesPerSecond(page) {
+  return page.evaluate(() => new Promise((done) => {
+    const { player, scene } = window.remoteTouch, draw = scene.draw.bind(scene), begin = performance.now();
+    let count = 0;
+    scene.draw = () => { draw(); ++count; };
+    player.go(0);
+    player.setSpeed(1);
+    player.toggle();
+    setTimeout(() => {
+      player.stop();
+      done((1000 * count) / (performance.now() - begin));
+    }, 1500);
+  }));
+}
+
+test("a trace: picture, motion and stored numbers", async () => {
+  await withPage("a.html", {}, async (page, { firstPictureS }) => {
+    await showsMotion(page, [100, 900, 1800]);
+    await showsStoredNumbers(page, "a.h5", [0, 731, 1500], ["time", "force", "proxy_position", "contact_count", "signed_distance"]);
+    console.log(`fig4.14: first picture after ${firstPictureS.toFixed(2)} s, ${(await picturesPerSecond(page)).toFixed(0)} pictures/s while playing (software)`);
+  });
+});
+
+test("keys and buttons", async () => {
+  await withPage("a.html", {}, async (page) => {
+    await goTo(page, 500);
+    await page.keyboard.press(".");
+    assert.equal(await tick(page), 501);
+    await page.keyboard.press(",");
+    assert.equal(await tick(page), 500);
+    await goTo(page, 0);
+    const first = await page.evaluate(() => window.remoteTouch.runs[0].stored.events[0].tick);
+    await page.keyboard.press("e");
+    assert.equal(await tick(page), first);
+    await page.keyboard.press(" ");
+    await page.waitForFunction((t) => window.remoteTouch.player.tick > t, first, { timeout: 20000 }); // it plays
+    await page.keyboard.press(" ");
+    await page.click("text=Keys");
+    assert.ok(await page.isVisible("dialog[open]"));
+    await page.click("dialog[open] >> text=Close");
+    await page.locator("figure canvas").first().click({ position: { x: 250, y: 40 } });
+    const went = await tick(page);
+    assert.ok(went > 500, `a click on a plot goes there: tick ${went}`);
+    const before = await picture(page);
+    await page.click("text=side");
+    await page.click("text=follow");
+    assert.notEqual((await picture(page)).hash, before.hash, "cameras differ");
+  });
+});
+
+test("two traces open where they part", async () => {
+  remoteTouch("run", "fig4.14", "--set", "renderer.stiffness_N_per_m=300", "-o", "b.h5");
+  const { stdout } = spawnSync(program, ["compare", "a.h5", "b.h5", "--view", "both.html"], { encoding: "utf8" });
+  const named = Number(/tick (\d+)/.exec(stdout)?.[1]);
+  assert.ok(Number.isFinite(named), `compare names no tick: ${stdout}`);
+  await withPage("both.html", {}, async (page) => {
+    assert.equal(await tick(page), named);
+    assert.match(await page.textContent("aside"), /difference of force/);
+    await showsMotion(page, [400, 1700]);
+  });
+});
+
+test("a sweep: a click on its map shows another run", async () => {
+  remoteTouch("sweep", "fig4.13", "--set", "axes.0.count=12", "--set", "axes.1.count=10", "-o", "map.h5");
+  remoteTouch("view", "map.h5", "-o", "map.html");
+  await withPage("map.html", {}, async (page) => {
+    const proxyEnd = () => page.evaluate(() => window.remoteTouch.runs[0].vector("proxy_position", 790).join());
+    const before = await proxyEnd(), cells = await page.locator(".map select").last().locator("option").count();
+    assert.ok(cells >= 2, `${cells} runs on the page`);
+    await page.locator(".map select").last().selectOption(String(cells - 1));
+    assert.notEqual(await proxyEnd(), before);
+    const box = await page.locator(".map canvas").boundingBox();
+    const place = await page.evaluate(() => window.remoteTouch.sweep.place(window.remoteTouch.sweep.cellOf(0)));
+    await page.mouse.click(box.x + 64 + ((place[1] + 0.5) * (box.width - 64)) / 10, box.y + ((11 - place[0] + 0.5) * (box.height - 34)) / 12);
+    assert.equal(await proxyEnd(), before, "the click goes back to the first run");
+    assert.equal(await page.locator("header").count(), 1);
+    await showsMotion(page, [100, 700]);
+  });
+});
+
+test("on a phone, in the dark", async () => {
+  await withPage("a.html", { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, colorScheme: "dark", hasTouch: true }, async (page) => {
+    const [width, dark] = await page.evaluate(() => [document.documentElement.scrollWidth, getComputedStyle(document.body).backgroundColor]);
+    assert.ok(width <= 390, `${width} pixels wide`);
+    assert.equal(dark, "rgb(22, 24, 27)");
+    await showsMotion(page, [100, 1800]);
+  });
+});
+
+test("without WebGL the page says so and shows the scene from the side", async () => {
+  const plain = await openBrowser(chromium, ["--disable-gpu", "--disable-3d-apis"]);
+  const opened = await openPage(plain, "a.html");
+  try {
+    assert.match(await opened.page.textContent(".note"), /No 3-D here/);
+    await showsMotion(opened.page, [100, 1800]);
+  } finally {
+    await plain.close();
+  }
+});
+
+if (extent === "all") {
+  const list = execFileSync(program, ["list"], { encoding: "utf8" }).split(/^(?=\S)/m).find((part) => part.startsWith("experiments"));
+  for (const name of list.trim().split("\n").slice(1).map((line) => line.trim().split(/ +/)[0]))
+    test(`a page of ${name}`, async () => {
+      remoteTouch("run", name, "-o", "one.h5");
+      remoteTouch("view", "one.h5", "-o", "one.html", "--max-mb", "3");
+      await withPage("one.html", {}, async (page) => {
+        const last = await page.evaluate(() => window.remoteTouch.player.ticks - 1);
+        await showsMotion(page, [Math.floor(last / 5), last]);
+      });
+    });
+}
