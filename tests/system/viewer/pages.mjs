@@ -1,7 +1,8 @@
 // Pages of results, as people use them. Usage: node pages.mjs PROGRAM CHROMIUM [all]
 import assert from "node:assert/strict";
-import { execFileSync, spawnSync } from "node:child_process";
+import { execFile, execFileSync, spawnSync } from "node:child_process";
 import { test } from "node:test";
+import { promisify } from "node:util";
 import { goTo, noComplaints, openBrowser, openPage, picture, tick } from "./browser.mjs";
 
 const [program, chromium, extent] = process.argv.slice(2);
@@ -157,11 +158,20 @@ test("without WebGL the page says so and shows the scene from the side", async (
 
 if (extent === "all") {
   const list = execFileSync(program, ["list"], { encoding: "utf8" }).split(/^(?=\S)/m).find((part) => part.startsWith("experiments"));
-  for (const name of list.trim().split("\n").slice(1).map((line) => line.trim().split(/ +/)[0]))
+  const names = list.trim().split("\n").slice(1).map((line) => line.trim().split(/ +/)[0]);
+  const execute = promisify(execFile);
+  async function makePage(name) {
+    await execute(program, ["-q", "--force", "run", name, "-o", `${name}.h5`]);
+    await execute(program, ["-q", "--force", "view", `${name}.h5`, "-o", `${name}.html`, "--max-mb", "3"]);
+  }
+  let coming; // the page of the next experiment is made while the browser is busy with this one
+  for (const [i, name] of names.entries())
     test(`a page of ${name}`, async () => {
-      remoteTouch("run", name, "-o", "one.h5");
-      remoteTouch("view", "one.h5", "-o", "one.html", "--max-mb", "3");
-      await withPage("one.html", {}, async (page) => {
+      const made = coming ?? makePage(name);
+      coming = i + 1 < names.length ? made.catch(() => {}).then(() => makePage(names[i + 1])) : undefined;
+      coming?.catch(() => {}); // its own test reports that
+      await made;
+      await withPage(`${name}.html`, {}, async (page) => {
         const last = await page.evaluate(() => window.remoteTouch.player.ticks - 1);
         await showsMotion(page, [Math.floor(last / 5), last]);
       });
