@@ -21,6 +21,8 @@ using openni2::read_from, openni2::wait_for;
 
 // The player of recordings shortens pauses to 2 s.
 constexpr double kMaxPause_s = 5;
+// A slow machine may miss so much of the end of a recording.
+constexpr double kMaxMissed_s = 0.5;
 
 // 0: no distance along the axis, but the shift that the sensor measures.
 double metres_per_unit(openni::PixelFormat format) {
@@ -91,6 +93,8 @@ class Openni2Camera final : public DepthSource {
   SensorState take(SensorFrame& frame);
   bool copy_colour(std::uint64_t depth_stamp, SensorFrame& frame);
   SensorState fail(const std::string& reason);
+  SensorState fail_of_damage();
+  SensorState begins_anew();
   SensorState end();
 
   const Clock& host_;
@@ -217,8 +221,7 @@ SensorState Openni2Camera::next(SensorFrame& frame, double timeout_s) {
     const openni::Status status = wait_for(depth_, static_cast<int>(part_ms));
     if (status == openni::STATUS_OK) return take(frame);
     if (status != openni::STATUS_TIME_OUT) return fail("cannot be waited for (" + error_text() + ")");
-    if (frame_count_ > 0 && host_.now_s() - last_sign_s_ > kMaxPause_s)
-      return fail("plays no further: expected a recording without damage");
+    if (frame_count_ > 0 && host_.now_s() - last_sign_s_ > kMaxPause_s) return fail_of_damage();
     if (remaining_s <= 0) return SensorState::waiting;
   }
 }
@@ -231,8 +234,7 @@ SensorState Openni2Camera::take(SensorFrame& frame) {
   if (view_.has_colour && wait_for(colour_, openni::TIMEOUT_NONE) == openni::STATUS_OK)
     colour_frame_ = read_from(colour_);
   const int number = taken.getFrameIndex();
-  // The player begins anew: made to stop at the end, it sometimes crashes when it is closed.
-  if (frame_count_ > 0 && number <= last_number_) return end();
+  if (frame_count_ > 0 && number <= last_number_) return begins_anew();
   if (!copy_depth(rows_of(taken, depth_is_mirrored_), view_.camera, frame.depth))
     return fail("frame " + std::to_string(number) + " is " + std::to_string(taken.getWidth()) + " x " +
                 std::to_string(taken.getHeight()) + " pixels in " + std::to_string(taken.getDataSize()) +
@@ -257,6 +259,20 @@ bool Openni2Camera::copy_colour(std::uint64_t depth_stamp, SensorFrame& frame) {
 SensorState Openni2Camera::fail(const std::string& reason) {
   failure_ = name_ + ": " + reason;
   return SensorState::failed;
+}
+
+SensorState Openni2Camera::fail_of_damage() {
+  return fail("plays no further than frame " + std::to_string(last_number_) + " of " +
+              std::to_string(frame_count_) + ": expected a recording without damage");
+}
+
+// The player does so at the end: made to stop there, it sometimes crashes when it is closed. It does so, too,
+// when it looks for a frame in vain.
+SensorState Openni2Camera::begins_anew() {
+  const int missed = frame_count_ - last_number_;
+  if (missed <= kMaxMissed_s * view_.frame_rate_hz) return end();
+  depth_.stop();
+  return fail_of_damage();
 }
 
 SensorState Openni2Camera::end() {

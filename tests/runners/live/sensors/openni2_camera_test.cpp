@@ -261,7 +261,7 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
   }
 }
 
-// The player itself would look for the next frame for ever.
+// The player itself would look for the next frame for ever, or begin anew.
 TEST_F(Openni2Recording, FramesThatAreZeroed) {
   std::string bytes = bytes_of(file_);
   const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // which frame begins where
@@ -271,7 +271,7 @@ TEST_F(Openni2Recording, FramesThatAreZeroed) {
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
   EXPECT_LE(frames.size(), 1u);
-  EXPECT_HAS(source->failure(), "zeroed.oni: plays no further");
+  EXPECT_HAS(source->failure(), "zeroed.oni: plays no further than frame ");
 }
 
 }  // namespace
