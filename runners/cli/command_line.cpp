@@ -286,9 +286,11 @@ void add_live(Subcommands& commands) {
   command->add_option(
       "--device", live->device,
       "haptic device, SCHEME:ADDRESS; see remote-touch devices (default: sim:, with --view browser:)");
-  command->add_flag("--view", live->view, "show the run in a browser, where the mouse moves the hand");
+  CLI::Option* const view =
+      command->add_flag("--view", live->view, "show the run in a browser, where the mouse moves the hand");
   command->add_option("--view-port", live->view_port, "its port on 127.0.0.1; 0: any that is free")
       ->check(CLI::Range(0, 65535))
+      ->needs(view)
       ->capture_default_str();
   command->add_option("--depth", live->depth, "depth sensor, SCHEME:ADDRESS; see remote-touch devices")
       ->capture_default_str();

@@ -12,9 +12,20 @@ namespace remote_touch {
 
 namespace {
 
+bool is_sweep_file(const std::string& file) {
+  const Hdf5Reader result(file);
+  if (attribute(result.attributes(), "schema").starts_with("remote-touch-session/"))
+    throw InputError(file, "is a recorded live session: expected its trace, made by remote-touch run " +
+                               file + " -o TRACE.h5");
+  const std::string kind = kind_of(result);
+  if (kind != "trace" && kind != "sweep")
+    throw InputError(file, "is a " + kind + ": expected a trace or a sweep");
+  return kind == "sweep";
+}
+
 ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
   bool is_sweep = false;
-  for (const std::string& file : request.results) is_sweep |= kind_of(Hdf5Reader(file)) == "sweep";
+  for (const std::string& file : request.results) is_sweep |= is_sweep_file(file);
   if (is_sweep && request.results.size() > 1)
     throw InputError(request.results.back(),
                      "beside another result: expected one sweep alone, or two traces");

@@ -13,7 +13,7 @@ namespace remote_touch {
 namespace {
 
 [[noreturn]] void refuse_cell(const std::string& text, const std::string& expected) {
-  throw InputError("--cell " + text, "expected " + expected);
+  throw InputError("cell " + text, "expected " + expected);
 }
 
 std::vector<std::string> items_of(const std::string& text) {

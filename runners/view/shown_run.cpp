@@ -158,8 +158,16 @@ struct ShownRun::State {
             {"haptic_rate_hz", experiment.settings().haptic_rate_hz},
             {"contact_radius_m", contact_radius_m}};
   }
+  // "activate right" of each step of the task.
+  std::vector<std::string> steps() const {
+    std::vector<std::string> list;
+    for (const Json& step : configuration.value("sequence", Json::array()))
+      list.push_back(step.value("action", "") + (step.value("fixture", "").empty() ? "" : " ") +
+                     step.value("fixture", ""));
+    return list;
+  }
   Json events() const {
-    std::vector<TraceEvent> all = trace_events(*source.columns);
+    std::vector<TraceEvent> all = trace_events(*source.columns, steps());
     if (divergence) all.push_back(*divergence);
     std::stable_sort(all.begin(), all.end(),
                      [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });

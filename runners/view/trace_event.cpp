@@ -49,22 +49,53 @@ void find_spells(const ColumnSource& trace, const std::string& name, std::int32_
     if (column[i] == exhausted && column[i - 1] != exhausted) {
       std::size_t end = i;
       while (end < column.size() && column[end] == exhausted) ++end;
-      events.push_back(
-          {i, "not converged", "Ticks without convergence, " + std::to_string(end - i) + " in a row."});
+      events.push_back({i, "not converged",
+                        end - i == 1 ? "A tick without convergence."
+                                     : std::to_string(end - i) + " ticks without convergence."});
       ++found;
     }
 }
 
-void find_task_steps(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+std::string name_of_step(std::int32_t step, const std::vector<std::string>& steps) {
+  const auto number = static_cast<std::size_t>(std::max(step, 0));
+  return "Step " + std::to_string(step) + " of the task" +
+         (number < steps.size() ? " (" + steps[number] + ")" : "");
+}
+
+// Empty where the step had no goal.
+std::string from_goal(double distance_m, double angle_rad) {
+  if (!std::isfinite(distance_m) || !std::isfinite(angle_rad)) return {};
+  char text[80];
+  std::snprintf(text, sizeof text, ", %.2g mm and %.2g deg from its goal", 1000 * distance_m,
+                angle_rad * 180 / M_PI);
+  return text;
+}
+
+// As `run` prints them. Of several steps that end in a tick the first may have come to its deadline.
+void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& steps,
+                     std::vector<TraceEvent>& events) {
   const auto step = values_or_none<std::int32_t>(trace, "sequence_step");
-  for (std::size_t i = 1; i < step.size(); ++i)
-    if (step[i] != step[i - 1])
-      events.push_back({i, "task", "Step " + std::to_string(step[i - 1]) + " of the task ended."});
+  auto missed = values_or_none<std::int32_t>(trace, "sequence_missed");
+  auto running = values_or_none<std::int32_t>(trace, "sequence_running");
+  auto distance_m = values_or_none<double>(trace, "sequence_distance");
+  auto angle_rad = values_or_none<double>(trace, "sequence_angle");
+  missed.resize(step.size()), running.resize(step.size());
+  distance_m.resize(step.size(), NAN), angle_rad.resize(step.size(), NAN);
+  for (std::size_t i = 1; i < step.size(); ++i) {
+    for (std::int32_t ended = step[i - 1]; ended < step[i]; ++ended) {
+      const bool is_late = ended == step[i - 1] && missed[i] > missed[i - 1];
+      events.push_back({i, "task",
+                        name_of_step(ended, steps) + (is_late ? " is missed" : " is done") +
+                            from_goal(distance_m[i], angle_rad[i]) + "."});
+    }
+    if (running[i] != 0 && (running[i - 1] == 0 || step[i] != step[i - 1]))
+      events.push_back({i, "task", name_of_step(step[i], steps) + " begins."});
+  }
 }
 
 }  // namespace
 
-std::vector<TraceEvent> trace_events(const ColumnSource& trace) {
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps) {
   std::vector<TraceEvent> events;
   find_pop_throughs(trace, events);
   find_force_jump(trace, events);
@@ -72,7 +103,7 @@ std::vector<TraceEvent> trace_events(const ColumnSource& trace) {
     find_spells(trace, "budget_exhausted", 1, events);
   else
     find_spells(trace, "converged", 0, events);
-  find_task_steps(trace, events);
+  find_task_steps(trace, steps, events);
   std::stable_sort(events.begin(), events.end(),
                    [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });
   return events;

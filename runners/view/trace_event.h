@@ -19,7 +19,8 @@ struct TraceEvent {
 //   force jump     the largest change of the force from one tick to the next
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,
 //                  at most 50
-//   task           a step of the task ended
-std::vector<TraceEvent> trace_events(const ColumnSource& trace);
+//   task           a step of the task began or ended
+// steps: what the steps of the task do, for the text; may be fewer than there are.
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps = {});
 
 }  // namespace remote_touch

@@ -22,17 +22,23 @@ void require_simulated(const std::filesystem::path& file, const StoredTrace& tra
 ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const ViewOptions& options) {
   std::vector<std::unique_ptr<ShownRun>> runs;
   BoundingBox box_W;
+  bool has_claims = false;
   for (const auto& file : traces) {
     const auto trace = std::make_shared<StoredTrace>(file);
     require_simulated(file, *trace);
     RunSource source{file.string(), trace, trace->attributes()};
-    source.claims = shown_claims(options.claims, source.attributes).dump();
+    const Json claims = shown_claims(options.claims, source.attributes);
+    has_claims |= !claims.empty();
+    source.claims = claims.dump();
     runs.push_back(std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop));
     box_W.extend(runs.back()->box_W());
   }
   for (const auto& run : runs) run->set_box(box_W);
   if (runs.size() == 2) runs.front()->mark_divergence_from(*runs.back());
-  return view_page(runs.front()->title(), runs, Json::object(), {}, options);
+  ViewPage page = view_page(runs.front()->title(), runs, Json::object(), {}, options);
+  if (!options.claims.empty() && !has_claims)
+    page.shown += options.claims.string() + " has no claim of a figure that runs this experiment\n";
+  return page;
 }
 
 }  // namespace remote_touch

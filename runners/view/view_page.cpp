@@ -44,20 +44,21 @@ std::string joined(const std::vector<std::unique_ptr<ShownRun>>& runs) {
 
 ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
                    const Json& page, const PackedArrays& numbers, const ViewOptions& options) {
-  std::size_t points = points_of_frame(runs, options.max_bytes);
+  std::size_t points = points_of_frame(runs, options.max_bytes), size = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     PackedArrays all = numbers;
     Json whole{{"schema", kPageSchema}, {"runs", Json::array()}};
     whole.update(page);
     for (const auto& run : runs) whole["runs"].push_back(run->json(all, points));
     std::string html = page_file(title, whole.dump(), all.bytes());
-    if (html.size() <= options.max_bytes) return {std::move(html), joined(runs)};
+    size = html.size();
+    if (size <= options.max_bytes) return {std::move(html), joined(runs)};
     // Where the first guess was wrong, most of the page is not points: it takes far fewer.
-    points = std::min(fewer_points(points, html.size(), options.max_bytes), trial > 0 ? points / 3 : points);
+    points = std::min(fewer_points(points, size, options.max_bytes), trial > 0 ? points / 3 : points);
   }
-  throw InputError(runs.front()->source().name,
-                   "has a page of more than " + std::to_string(options.max_bytes) +
-                       " bytes even with few points: expected a larger --max-mb");
+  throw InputError(runs.front()->source().name, "has a page of " + std::to_string(size) +
+                                                    " bytes even with few points: expected --max-mb " +
+                                                    std::to_string(size / 1'000'000 + 1) + " or more");
 }
 
 }  // namespace remote_touch

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace remote_touch::trace_event_test {
@@ -43,6 +44,21 @@ TEST(TraceEvents, TicksThatDidNotConverge) {
   Integers often;
   for (int i = 0; i < 400; ++i) often.push_back(i % 2);
   EXPECT_EQ(found({column("converged", often)}).size(), 50u);
+}
+
+TEST(TraceEvents, StepsOfATaskSayWhatBecameOfThem) {
+  const auto events =
+      trace_events(ColumnsInMemory({column("sequence_step", Integers{0, 0, 1, 1, 2}),
+                                    column("sequence_running", Integers{0, 1, 1, 1, 0}),
+                                    column("sequence_missed", Integers{0, 0, 0, 0, 1}),
+                                    column("sequence_distance", Doubles{NAN, NAN, NAN, NAN, 0.0005}),
+                                    column("sequence_angle", Doubles{NAN, NAN, NAN, NAN, M_PI / 2})}),
+                   {"activate right"});
+  Texts texts;
+  for (const TraceEvent& event : events) texts.push_back(std::to_string(event.tick) + " " + event.text);
+  EXPECT_EQ(texts, (Texts{"1 Step 0 of the task (activate right) begins.",
+                          "2 Step 0 of the task (activate right) is done.", "2 Step 1 of the task begins.",
+                          "4 Step 1 of the task is missed, 0.5 mm and 90 deg from its goal."}));
 }
 
 TEST(TraceEvents, StepsOfATaskAndTheirOrder) {

@@ -18,6 +18,8 @@ async function withPage(file, options, look) {
   try {
     await look(opened.page, opened);
     noComplaints(opened, file);
+    const words = await opened.page.evaluate(() => document.body.innerText);
+    assert.doesNotMatch(words, /NaN|Infinity|undefined|\[object/, `${file}: words of a programming language`);
   } finally {
     await opened.context.close();
   }
@@ -103,6 +105,14 @@ test("keys and buttons", async () => {
     await page.click("text=side");
     await page.click("text=follow");
     assert.notEqual((await picture(page)).hash, before.hash, "cameras differ");
+    const away = await page.evaluate(() => {
+      const { scene, runs, player } = window.remoteTouch, proxy = runs[0].vector("proxy_position", player.tick);
+      return Math.hypot(...scene.controls.target.toArray().map((x, k) => x - 1000 * proxy[k]));
+    });
+    assert.ok(away < 1e-6, `the camera that follows looks ${away} mm beside the proxy`);
+    await page.locator("aside select").selectOption("force");
+    await page.keyboard.press(",");
+    assert.equal(await tick(page), went - 1, "keys work after a choice");
   });
 });
 
@@ -113,7 +123,11 @@ test("two traces open where they part", async () => {
   assert.ok(Number.isFinite(named), `compare names no tick: ${stdout}`);
   await withPage("both.html", {}, async (page) => {
     assert.equal(await tick(page), named);
-    assert.match(await page.textContent("aside"), /difference of force/);
+    const beside = await page.textContent("aside");
+    assert.match(beside, /difference of force/);
+    assert.match(beside, /run 1: a\.h5; renderer\.stiffness_N_per_m 600/);
+    assert.match(beside, /run 2: b\.h5; renderer\.stiffness_N_per_m 300/);
+    assert.equal(await page.locator('.mark[title*="Run 2: The largest force jump"]').count(), 1);
     await showsMotion(page, [400, 1700]);
   });
 });

@@ -1,6 +1,6 @@
 // The points of the frame in use, those that touch, and the forbidden regions around them. Millimetres.
 import * as THREE from "three";
-import { colours, rampColour } from "./colours";
+import { colours, heights, rampColour } from "./colours";
 import type { Frame, Run } from "./data";
 import { PointsBuffer } from "./points_buffer";
 
@@ -34,7 +34,7 @@ export class CloudView {
     this.points = new THREE.Points(this.buffer.geometry,
       new THREE.PointsMaterial({ size: pointMm, vertexColors: true }));
     this.near = new THREE.Points(new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ size: 2.2 * pointMm, color: colours.touching }));
+      new THREE.PointsMaterial({ size: 2.6 * pointMm, color: colours.touching }));
     // Thousands of balls that overlap would hide everything behind them. Only their nearest surface is drawn: the first
     // pass finds how far away that is, the second one gives it a colour.
     const ball = new THREE.IcosahedronGeometry(1, 1);
@@ -83,7 +83,7 @@ export class CloudView {
   }
   private tints(positions: Uint16Array): Uint8Array {
     const tints = new Uint8Array(positions.length), [low, high] = this.heightRange ?? rangeOf([positions]);
-    for (let i = 0; i < positions.length; i += 3) rampColour((positions[i + 1] - low) / (high - low), tints, i);
+    for (let i = 0; i < positions.length; i += 3) rampColour(heights, (positions[i + 1] - low) / (high - low), tints, i);
     return tints;
   }
   private showRegions(frame: Frame | undefined): void {

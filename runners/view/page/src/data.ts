@@ -60,7 +60,9 @@ export class Column {
   }
 }
 
+// NaN: not known. Infinite is the distance of what is not there.
 export function digits(value: number): string {
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? "unknown" : "none";
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(5)));
 }
 

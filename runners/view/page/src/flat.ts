@@ -1,22 +1,9 @@
 // Where there is no WebGL 2: the scene from the side, x to the right and y up.
 import { colours } from "./colours";
-import type { Run, Vector } from "./data";
+import { round125, type Run, type Vector } from "./data";
 
 export class FlatView {
-  private readonly low: [number, number];
-  private readonly size: number;
-
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly runs: Run[]) {
-    const low: [number, number] = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY], high = [-Infinity, -Infinity];
-    for (const run of runs)
-      for (const name of ["hip_position", "proxy_position"])
-        for (let tick = 0; tick < run.ticks; ++tick)
-          run.vector(name, tick).slice(0, 2).forEach((x, k) => {
-            if (Number.isFinite(x)) [low[k], high[k]] = [Math.min(low[k], x), Math.max(high[k], x)];
-          });
-    this.size = Math.max(high[0] - low[0], high[1] - low[1]) + 0.06;
-    this.low = [low[0] - 0.03, low[1] - 0.03];
-  }
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly runs: Run[]) {}
 
   show(tick: number): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -24,8 +11,10 @@ export class FlatView {
     this.canvas.height = height;
     const pen = this.canvas.getContext("2d");
     if (!pen) return;
-    const factor = Math.min(width, height) / this.size;
-    const at = (p: Vector): [number, number] => [(p[0] - this.low[0]) * factor, height - (p[1] - this.low[1]) * factor];
+    const { low_m: low, high_m: high } = this.runs[0].stored;
+    const factor = Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
+    const at = (p: Vector): [number, number] =>
+      [width / 2 + (p[0] - (low[0] + high[0]) / 2) * factor, height / 2 - (p[1] - (low[1] + high[1]) / 2) * factor];
     const dot = (p: Vector, radius: number, colour: string) => {
       pen.fillStyle = colour;
       pen.beginPath();
@@ -45,5 +34,9 @@ export class FlatView {
       pen.lineTo(...at([hip[0] + 0.005 * force[0], hip[1] + 0.005 * force[1], 0]));
       pen.stroke();
     }
+    const mm = round125((120 / factor) * 1000);
+    pen.fillStyle = "#eee";
+    pen.fillRect(14, height - 14, (mm / 1000) * factor, 2);
+    pen.fillText(`${mm} mm`, 14, height - 20);
   }
 }

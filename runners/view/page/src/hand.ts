@@ -4,6 +4,8 @@ import { colours } from "./colours";
 import type { Run, Vector } from "./data";
 
 const wayS = 0.3;
+// The arrow of a force, as a part of the scene; that of a greater force is no longer.
+export const longestForce = 0.3;
 
 function ball(radius: number, colour: string, opacity = 1): THREE.Mesh {
   return new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20),
@@ -14,20 +16,31 @@ function isKnown(v: Vector): boolean {
   return v.every(Number.isFinite);
 }
 
-// An arrow whose length and direction change.
+const upwards = new THREE.Vector3(0, 1, 0);
+
+// An arrow whose length and direction change. head: its length, mm.
 class Arrow {
-  readonly object: THREE.ArrowHelper;
-  constructor(colour: string, private readonly head: number) {
-    this.object = new THREE.ArrowHelper(new THREE.Vector3(0, 1, 0), new THREE.Vector3(), 1, colour);
+  readonly object = new THREE.Group();
+  private readonly shaft: THREE.Mesh;
+  private readonly tip: THREE.Mesh;
+  // always: seen also through what is before it.
+  constructor(colour: string, private readonly head: number, private readonly longest = Number.POSITIVE_INFINITY, always = false) {
+    const material = new THREE.MeshStandardMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.35, depthTest: !always });
+    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 10).translate(0, 0.5, 0), material);
+    this.tip = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 16).translate(0, 0.5, 0), material);
+    this.object.add(this.shaft, this.tip);
+    if (always) this.shaft.renderOrder = this.tip.renderOrder = 5;
   }
   show(from: Vector, vector: Vector, factor: number): void {
-    const v = new THREE.Vector3(...vector).multiplyScalar(factor), length = v.length();
+    const v = new THREE.Vector3(...vector).multiplyScalar(factor), length = Math.min(v.length(), this.longest);
     this.object.visible = isKnown(from) && length > 1e-3;
     if (!this.object.visible) return;
     this.object.position.set(1000 * from[0], 1000 * from[1], 1000 * from[2]);
-    this.object.setDirection(v.divideScalar(length));
-    const head = Math.min(this.head, 0.4 * length);
-    this.object.setLength(length, head, 0.6 * head);
+    this.object.quaternion.setFromUnitVectors(upwards, v.normalize());
+    const head = Math.min(this.head, 0.5 * length), thick = 0.09 * head;
+    this.shaft.scale.set(thick, length - head, thick);
+    this.tip.scale.set(0.32 * head, head, 0.32 * head);
+    this.tip.position.y = length - head;
   }
 }
 
@@ -48,19 +61,20 @@ export class HandView {
   // sizeMm: of the scene. mmPerN: length of the force's arrow.
   constructor(private readonly run: Run, sizeMm: number, private readonly mmPerN: number, private readonly second: boolean) {
     const dot = 0.008 * sizeMm, head = 0.03 * sizeMm;
-    this.hip = ball(dot, colours.hip);
+    const hipColour = second ? colours.second : colours.hip, proxyColour = second ? colours.second : colours.proxy;
+    this.hip = ball(dot, hipColour);
     this.slave = ball(0.8 * dot, colours.slave);
     this.goal = ball(1.5 * dot, colours.guidance, 0.5);
-    this.proxy = run.stored.tool ? this.tool(colours.proxy, second ? 0.35 : 0.8)
-      : ball(1000 * run.stored.contact_radius_m || dot, colours.proxy, second ? 0.25 : 0.5);
-    this.ghost = run.stored.tool ? this.tool(colours.hip, 0.18) : null;
+    this.proxy = run.stored.tool ? this.tool(proxyColour, second ? 0.45 : 0.8)
+      : ball(1000 * run.stored.contact_radius_m || dot, proxyColour, second ? 0.4 : 0.5);
+    this.ghost = run.stored.tool ? this.tool(hipColour, 0.18) : null;
     this.spheres = this.toolSpheres();
     if (this.spheres) this.proxy.add(this.spheres);
-    this.force = new Arrow(colours.force, head);
+    this.force = new Arrow(colours.force, 1.3 * head, longestForce * sizeMm, true);
     this.normal = new Arrow(colours.normal, head);
     this.velocity = new Arrow(colours.velocity, head);
-    this.spring = this.line(colours.hip, 2);
-    this.way = this.line(colours.proxy, Math.round(wayS * run.stored.haptic_rate_hz) + 1);
+    this.spring = this.line(hipColour, 2);
+    this.way = this.line(proxyColour, Math.round(wayS * run.stored.haptic_rate_hz) + 1);
     const parts = [this.hip, this.slave, this.goal, this.proxy, this.spring, this.way, this.force.object,
       this.normal.object, this.velocity.object];
     if (this.ghost) parts.push(this.ghost);

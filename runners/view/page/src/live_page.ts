@@ -36,6 +36,7 @@ class LivePage {
   private readonly values: Values;
   private readonly pace = new Pace();
   private readonly sound = new ForceSound();
+  private readonly hint = document.createElement("span");
   private readonly startMs = performance.now();
   private begun = false;
   private ended = "";
@@ -52,7 +53,7 @@ class LivePage {
     this.canvas = canvas;
     this.values = new Values([this.run]);
     this.sliders = new Sliders(stored.parameters, (changes) => this.connection.change(changes));
-    this.plots = plotted.map(([name, colour, label]) => new Plot(curvesOf([this.run], name, colour, label), 0, null));
+    this.plots = plotted.map(([name, colour, label]) => new Plot(curvesOf([this.run], name, colour, label), 0, stored.haptic_rate_hz, null));
     this.layOut(canvas);
     requestAnimationFrame(this.picture);
   }
@@ -69,6 +70,8 @@ class LivePage {
   }
   end(why: string): void {
     this.ended = why;
+    this.hint.textContent = "";
+    this.sliders.end();
   }
 
   private layOut(canvas: HTMLCanvasElement): void {
@@ -86,10 +89,11 @@ class LivePage {
     const details = this.details, summary = document.createElement("summary"), foot = document.createElement("footer");
     summary.textContent = "All columns now";
     details.append(summary, this.values.element);
-    side.append(...this.plots.map((plot) => plot.element));
+    side.append(legend([this.run], this.scene.mmPerN, this.scene.longestMm), ...this.plots.map((plot) => plot.element));
     if (this.run.stored.parameters.length > 0) side.append(this.sliders.element);
-    side.append(legend(this.run, this.scene.mmPerN), details);
-    foot.append(this.isHand ? "Drag to move the hand, wheel to push it. " : `The hand is ${this.run.stored.device}. `, this.clock);
+    side.append(details);
+    this.hint.textContent = this.isHand ? "Drag to move the hand, turn the wheel to push it. " : `The hand is ${this.run.stored.device}. `;
+    foot.append(this.hint, this.clock);
     document.body.append(head, side, foot, about, help);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     document.addEventListener("keydown", (event) => {

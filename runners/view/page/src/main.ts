@@ -24,7 +24,8 @@ async function start(): Promise<void> {
   let now: Shown | null = null;
   const show = (of: Sweep, run: number) => {
     now?.end();
-    now = showRuns([runs[run]], new SweepMap(of, run, (chosen) => show(of, chosen)).element);
+    const map = new SweepMap(of, run, (chosen) => show(of, chosen));
+    now = showRuns([runs[run]], map.element, `${of.stored.title || of.stored.file}: ${of.text(of.cellOf(run))}`);
     publish(now, [runs[run]]);
   };
   show(sweep, 0);

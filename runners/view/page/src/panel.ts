@@ -1,5 +1,5 @@
 // Text beside the pictures: values at the tick, what the page is of, the legend and the keys.
-import { colours } from "./colours";
+import { colours, curveColour } from "./colours";
 import { type Claim, type Run, digits } from "./data";
 
 function element(name: string, text = "", className = ""): HTMLElement {
@@ -17,22 +17,61 @@ const keysOfRuns: [string, string][] = [
   ["r", "forbidden regions on or off"], ["s", "spheres of the tool on or off"], ["i", "what this is of"], ["h, ?", "this help"],
 ];
 
-export function legend(run: Run, mmPerN: number): HTMLElement {
-  const list = element("ul", "", "legend");
+// Whether a column has a number other than 0 in any tick; of a live run that has not begun nobody knows.
+function isUsed(run: Run, name: string): boolean {
+  const column = run.columns.get(name);
+  return column !== undefined && (run.ticks === 0 || column.numbers.some((value) => Number.isFinite(value) && value !== 0));
+}
+function slaveDiffers(run: Run): boolean {
+  for (let tick = 0; tick < run.ticks; ++tick) {
+    const proxy = run.vector("proxy_position", tick);
+    if (run.vector("slave_command", tick).some((x, k) => Math.abs(x - proxy[k]) > 0)) return true;
+  }
+  return run.ticks === 0;
+}
+
+// What is in the picture. longestMm: of the arrow of a force; infinite where none is longer.
+export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_INFINITY): HTMLElement {
+  const list = element("ul", "", "legend"), run = runs[0], { tool } = run.stored, frames = [...run.frames.values()];
   const add = (colour: string, text: string) => {
     const item = element("li", text);
     item.style.setProperty("--dot", colour);
     list.append(item);
   };
-  add(colours.hip, run.stored.tool ? "HIP, and the tool at the device's pose" : "HIP: where the hand is");
-  add(colours.proxy, run.stored.tool ? "tool" : "proxy, as large as r_c; its way of the last 0.3 s");
-  add(colours.force, `force on the hand, 1 N is ${digits(Number(mmPerN.toPrecision(2)))} mm long`);
-  add(colours.normal, "normal");
+  const two = (mm: number) => digits(Number(mm.toPrecision(2)));
+  add(colours.hip, tool ? "HIP and device's pose" : "HIP: where the hand is");
+  add(colours.proxy, tool ? "tool" : `proxy${run.contactRadiusM > 0 ? ", radius r_c" : ""}; path of 0.3 s`);
+  if (runs.length === 2) add(colours.second, "HIP and proxy of run 2");
+  add(colours.force, `force: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
+  add(colours.normal, "surface normal");
   add(colours.touching, "points that touch");
+  if (frames.length === 0 || frames.some((frame) => !frame.colours)) add("linear-gradient(90deg, #3e5696, #deeaf2)", frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
   if (run.stored.truth) add(colours.truth, "true surface");
-  add(colours.velocity, "velocity estimate: how far the surface moves in 1/15 s");
-  if ([...run.frames.values()].some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
-  add(colours.slave, "slave command, where it is not the proxy");
+  if (isUsed(run, "surface_velocity")) add(colours.velocity, "velocity estimate: 67 mm per m/s");
+  if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
+  if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");
+  if (slaveDiffers(run)) add(colours.slave, "slave command, if not the proxy");
+  return list;
+}
+
+// "scenario.noise_sigma_m": 0.003 of all settings of a configuration.
+function settings(value: unknown, name = ""): Map<string, string> {
+  if (value === null || typeof value !== "object") return new Map([[name, String(value)]]);
+  return new Map(Object.entries(value).flatMap(([key, part]) => [...settings(part, name ? `${name}.${key}` : key)]));
+}
+
+// Of two runs: their files, and in what their configurations differ.
+export function whichIsWhich(runs: Run[]): HTMLElement {
+  const most = 4, [a, b] = runs.map((run) => settings(run.stored.configuration));
+  const names = [...new Set([...a.keys(), ...b.keys()])].filter((name) => a.get(name) !== b.get(name));
+  const list = element("ul", "", "legend which");
+  runs.forEach((run, i) => {
+    const own = names.slice(0, most).map((name) => `${name} ${(i === 0 ? a : b).get(name) ?? "none"}`);
+    const more = names.length > most ? `, and ${names.length - most} more` : "";
+    const item = element("li", `run ${i + 1}: ${run.stored.file}${own.length > 0 ? `; ${own.join(", ")}${more}` : ""}`);
+    item.style.setProperty("--dot", i === 0 ? curveColour(colours.proxy) : colours.second);
+    list.append(item);
+  });
   return list;
 }
 

@@ -1,21 +1,37 @@
-// Curves over time below each other, with a line at the tick that is shown. A click goes to a tick.
-import { colours } from "./colours";
+// Curves over time below each other, with a line at the tick that is shown. A click goes to a tick. Lengths are in mm.
+import { colours, curveColour } from "./colours";
 import type { Column, Run } from "./data";
 import { digits, round125 } from "./data";
 
 export interface Curve { column: Column; colour: string; label: string; dashed: boolean }
+
+// A unit as it is plotted, how many of them the stored one is, and the least range of an axis: below it changes are those
+// of rounding.
+interface Unit { name: string; factor: number; least: number }
+const units: Record<string, Unit> = {
+  m: { name: "mm", factor: 1000, least: 0.01 }, "m/s": { name: "mm/s", factor: 1000, least: 0.1 }, N: { name: "N", factor: 1, least: 0.01 },
+  1: { name: "", factor: 1, least: 1 }, rad: { name: "rad", factor: 1, least: 1e-3 },
+};
+function unitOf(column: Column): Unit {
+  return units[column.unit] ?? { name: column.unit, factor: 1, least: 1e-6 };
+}
 
 // The first and last value on the axis and the distance of its ticks.
 function scaleOf(curves: Curve[], begin: number, end: number): [number, number, number] {
   let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
   for (const curve of curves)
     for (let tick = begin; tick < end; ++tick) {
-      const value = curve.column.magnitude(tick);
+      const value = unitOf(curve.column).factor * curve.column.magnitude(tick);
       if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
     }
   if (!(high >= low)) return [0, 1, 1];
-  if (high === low) [low, high] = [low - 0.5, high + 0.5];
-  return [low, high, round125((high - low) / 2)];
+  const { least } = unitOf(curves[0].column);
+  if (high - low < least) {
+    const begins = low >= 0 ? Math.max((low + high - least) / 2, 0) : (low + high - least) / 2;
+    [low, high] = [begins, begins + least];
+  }
+  const step = round125((high - low) / 2);
+  return [low, high, curves.some((curve) => curve.column.names.length > 0) ? Math.max(step, 1) : step];
 }
 
 export class Plot {
@@ -25,13 +41,14 @@ export class Plot {
   private drawn = false; // the still picture is of the present curves
   private readonly caption = document.createElement("figcaption");
   private scale: [number, number, number] = [0, 1, 1];
-  private readonly left = 52;
+  private readonly left = 60;
+  private readonly bottom = 15; // for the time
   private tick = 0;
   private first = 0; // tick that is drawn
   private isLive = false;
 
   // goTo: null where a click goes nowhere.
-  constructor(private curves: Curve[], private ticks: number, goTo: ((tick: number) => void) | null) {
+  constructor(private curves: Curve[], private ticks: number, private readonly rateHz: number, goTo: ((tick: number) => void) | null) {
     this.element.append(this.caption, this.canvas);
     this.setCurves(curves);
     new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -84,7 +101,7 @@ export class Plot {
     const x = this.x(this.tick, width);
     pen.beginPath();
     pen.moveTo(x, 0);
-    pen.lineTo(x, height);
+    pen.lineTo(x, height - this.bottom);
     pen.stroke();
     this.writeCaption();
   }
@@ -109,27 +126,43 @@ export class Plot {
   }
   private y(value: number, height: number): number {
     const [low, high] = this.scale;
-    return height - 4 - ((value - low) / (high - low)) * (height - 8);
+    return height - this.bottom - 3 - ((value - low) / (high - low)) * (height - this.bottom - 7);
   }
   private drawAxis(pen: CanvasRenderingContext2D, width: number, height: number, style: CSSStyleDeclaration): void {
-    const [low, high, step] = this.scale;
+    const [low, high, step] = this.scale, foot = height - this.bottom, names = this.curves[0]?.column.names ?? [];
     pen.font = "11px system-ui, sans-serif";
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    for (let value = Math.ceil(low / step) * step; value <= high; value += step) {
-      const y = this.y(value, height);
-      pen.strokeStyle = style.getPropertyValue("--line");
-      pen.beginPath();
-      pen.moveTo(this.left, y);
-      pen.lineTo(width, y);
-      pen.stroke();
-      pen.fillStyle = style.getPropertyValue("--quiet");
-      pen.fillText(digits(Number(value.toPrecision(6))), this.left - 5, Math.min(Math.max(y, 6), height - 6));
+    pen.strokeStyle = style.getPropertyValue("--line");
+    pen.fillStyle = style.getPropertyValue("--quiet");
+    for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) {
+      const value = Number((n * step).toPrecision(6)), y = this.y(value, height);
+      this.line(pen, this.left, y, width, y);
+      pen.fillText(names[value] ?? digits(value), this.left - 5, Math.min(Math.max(y, 6), foot - 5), this.left - 6);
     }
+    this.drawTimes(pen, width, foot);
+  }
+  private drawTimes(pen: CanvasRenderingContext2D, width: number, foot: number): void {
+    const beginS = this.first / this.rateHz, endS = (this.first + this.ticks - 1) / this.rateHz;
+    if (!(endS > beginS)) return;
+    const stepS = round125((endS - beginS) / 3);
+    for (let n = Math.ceil(beginS / stepS - 1e-9); n * stepS <= endS; ++n) {
+      const x = this.x(n * stepS * this.rateHz, width);
+      this.line(pen, x, 0, x, foot);
+      pen.textAlign = x < this.left + 12 ? "left" : x > width - 24 ? "right" : "center";
+      pen.fillText(`${Number((n * stepS).toPrecision(6))} s`, x, foot + 9);
+    }
+  }
+  private line(pen: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+    pen.beginPath();
+    pen.moveTo(x1, y1);
+    pen.lineTo(x2, y2);
+    pen.stroke();
   }
   // Of all ticks in a pixel the smallest and the largest value.
   private drawCurve(pen: CanvasRenderingContext2D, curve: Curve, width: number, height: number): void {
-    pen.strokeStyle = curve.colour;
+    const { factor } = unitOf(curve.column);
+    pen.strokeStyle = curveColour(curve.colour);
     pen.lineWidth = 1.4;
     pen.setLineDash(curve.dashed ? [5, 3] : []);
     pen.beginPath();
@@ -139,7 +172,7 @@ export class Plot {
       const begin = Math.floor(pixel * perPixel), end = Math.max(Math.floor((pixel + 1) * perPixel), begin + 1);
       let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
       for (let k = begin; k < end && k < this.ticks && this.first + k <= this.last; ++k) {
-        const value = curve.column.magnitude(this.first + k);
+        const value = factor * curve.column.magnitude(this.first + k);
         if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
       }
       if (!(high >= low)) {
@@ -157,9 +190,11 @@ export class Plot {
   private writeCaption(): void {
     this.caption.replaceChildren(...this.curves.map((curve) => {
       const part = document.createElement("span"), value = curve.column.magnitude(Math.min(this.tick, this.first + this.ticks - 1));
-      part.style.setProperty("--dot", curve.colour);
+      const { name, factor } = unitOf(curve.column);
+      part.style.setProperty("--dot", curveColour(curve.colour));
       part.title = curve.column.meaning;
-      part.textContent = `${curve.label} ${curve.column.names[value] ?? digits(value)} ${curve.column.unit === "1" ? "" : curve.column.unit}`;
+      const shown = Number.isFinite(value) ? `${digits(Number((factor * value).toPrecision(4)))} ${name}` : digits(value);
+      part.textContent = `${curve.label} ${curve.column.names[value] ?? shown}`;
       return part;
     }));
   }
@@ -168,6 +203,6 @@ export class Plot {
 export function curvesOf(runs: Run[], name: string, colour: string, label: string): Curve[] {
   return runs.flatMap((run, i) => {
     const column = run.columns.get(name);
-    return column ? [{ column, colour: i === 0 ? colour : colours.slave, label: i === 0 ? label : `${label} (2)`, dashed: i > 0 }] : [];
+    return column ? [{ column, colour: i === 0 ? colour : colours.second, label: i === 0 ? label : "in run 2", dashed: i > 0 }] : [];
   });
 }

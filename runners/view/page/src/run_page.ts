@@ -1,20 +1,37 @@
 // One run, or two together: picture, plots, time and texts.
 import { button } from "./button";
 import { colours } from "./colours";
-import { differenceOf, type Run } from "./data";
+import { differenceOf, type Run, type RunEvent } from "./data";
 import { FlatView } from "./flat";
-import { aboutDialog, helpDialog, legend, licence, Values } from "./panel";
+import { Pace } from "./pace";
+import { aboutDialog, helpDialog, legend, licence, Values, whichIsWhich } from "./panel";
 import { Player } from "./player";
 import { type Curve, curvesOf, Plot } from "./plots";
 import { type CameraPreset, SceneView } from "./scene";
 import { Timeline } from "./timeline";
 
-const standard: [string, string, string][] = [
-  ["force", colours.force, "force"],
-  ["signed_distance", colours.truth, "distance to the true surface"],
-  ["contact_count", colours.normal, "contacts"],
-  ["surface_velocity", colours.velocity, "velocity estimate"],
-];
+// The surface of a recording is what its camera measured. Of a tool the distance is that of its centre.
+function distanceLabel(run: Run): string {
+  const { scenario } = run.stored.configuration as { scenario?: { name?: string } };
+  const surface = ["recording", "live-session"].includes(scenario?.name ?? "") ? "measured surface" : "true surface";
+  return run.stored.tool ? `tool's centre to the ${surface}` : `distance to the ${surface}`;
+}
+
+function standard(run: Run): [string, string, string][] {
+  return [
+    ["force", colours.force, "force"],
+    ["signed_distance", colours.truth, distanceLabel(run)],
+    ["contact_count", colours.normal, "contacts"],
+    ["surface_velocity", colours.velocity, "velocity estimate"],
+  ];
+}
+
+// Of two runs those of both, and whose they are.
+function eventsOf(runs: Run[]): RunEvent[] {
+  if (runs.length === 1) return runs[0].stored.events;
+  return runs.flatMap((run, i) => run.stored.events.map((event) =>
+    event.kind === "divergence" ? event : { ...event, text: `Run ${i + 1}: ${event.text}` })).sort((a, b) => a.tick - b.tick);
+}
 
 function firstTicksOfFrames(run: Run): number[] {
   const frames = run.column("frame_index"), list: number[] = [];
@@ -31,17 +48,20 @@ function changes(curve: Curve): boolean {
 
 function makePlots(runs: Run[], player: Player): HTMLElement {
   const box = document.createElement("section");
-  const plots = standard.map(([name, colour, label]) => curvesOf(runs, name, colour, label).filter(changes))
-    .filter((curves) => curves.length > 0)
-    .map((curves) => new Plot(curves, player.ticks, (tick) => player.go(tick)));
+  const plotOf = (curves: Curve[]) => new Plot(curves, player.ticks, runs[0].stored.haptic_rate_hz, (tick) => player.go(tick));
+  const plots = standard(runs[0]).map(([name, colour, label]) => curvesOf(runs, name, colour, label).filter(changes))
+    .filter((curves) => curves.length > 0).map(plotOf);
   for (const [name, colour] of runs.length === 2 ? [["force", colours.force], ["proxy_position", colours.proxy]] : []) {
     const column = differenceOf(runs, name);
-    if (column) plots.push(new Plot([{ column, colour, label: column.name, dashed: false }], player.ticks, (tick) => player.go(tick)));
+    if (column) plots.push(plotOf([{ column, colour, label: column.name, dashed: false }]));
   }
-  const chosen = new Plot([], player.ticks, (tick) => player.go(tick)), choice = document.createElement("select");
+  const chosen = plotOf([]), choice = document.createElement("select");
   for (const name of runs[0].columns.keys()) choice.add(new Option(name, name));
   const choose = () => chosen.setCurves(curvesOf(runs, choice.value, colours.proxy, choice.value));
-  choice.addEventListener("change", choose);
+  choice.addEventListener("change", () => {
+    choose();
+    choice.blur(); // keys are for the time
+  });
   choice.value = "nearest_distance";
   choose();
   box.append(...plots.map((plot) => plot.element), choice, chosen.element);
@@ -108,35 +128,52 @@ function opensAt(run: Run): number {
   return largest > 0 ? tick : 0;
 }
 
+// While it plays, slow graphics draw fewer points; a picture that stands has all of them.
+function keepPace(player: Player, timeline: Timeline, scene: SceneView): void {
+  let pace = new Pace();
+  const draw = (share: number) => {
+    for (const cloud of scene.clouds) cloud.setShare(share);
+    timeline.tell(share < 1 ? `slow graphics: 1 of ${1 / share} points` : "");
+  };
+  player.onChange(() => {
+    if (player.playing && pace.picture(performance.now())) draw(pace.share);
+    if (player.playing || pace.share === 1) return;
+    pace = new Pace();
+    draw(1);
+  });
+}
+
 // top: shown above the plots. end() takes it off the document.
-export function showRuns(runs: Run[], top: HTMLElement | null): { player: Player; scene: SceneView | null; end: () => void } {
+export function showRuns(runs: Run[], top: HTMLElement | null, heading = ""): { player: Player; scene: SceneView | null; end: () => void } {
   const run = runs[0], ended = new AbortController();
   const player = new Player(Math.max(...runs.map((one) => one.ticks)), run.stored.haptic_rate_hz);
-  const timeline = new Timeline(player, run.stored.events, firstTicksOfFrames(run),
+  const timeline = new Timeline(player, eventsOf(runs), firstTicksOfFrames(run),
     (tick) => run.column("time").value(Math.min(tick, run.ticks - 1)));
   const picture = makePicture(runs), values = new Values(runs);
   const dialogs = { help: helpDialog(), about: aboutDialog(runs, licence) };
   const head = document.createElement("header"), title = document.createElement("h1"), side = document.createElement("aside");
-  title.textContent = run.stored.title || run.stored.file;
+  title.textContent = title.title = heading || run.stored.title || run.stored.file;
   head.append(title, ...(picture.scene ? cameraButtons(picture.scene) : []));
   head.append(button("What is this of?", "configuration and command (i)", () => dialogs.about.showModal()),
     button("Keys", "mouse and keys (h)", () => dialogs.help.showModal()));
   const details = document.createElement("details"), summary = document.createElement("summary");
   summary.textContent = "All columns at this tick";
   details.append(summary, values.element);
-  side.append(...notes(runs), ...(top ? [top] : []), makePlots(runs, player), legend(run, picture.scene?.mmPerN ?? 5), details);
-  for (const one of runs) {
+  side.append(...notes(runs), ...(runs.length === 2 ? [whichIsWhich(runs)] : []), legend(runs, picture.scene?.mmPerN ?? 5),
+    ...(top ? [top] : []), makePlots(runs, player), details);
+  runs.forEach((one, i) => {
     const shown = document.createElement("p");
     shown.className = "shown";
-    shown.textContent = one.stored.shown;
+    shown.textContent = runs.length === 2 ? `Run ${i + 1}: ${one.stored.shown}` : one.stored.shown;
     side.append(shown);
-  }
+  });
   const parts = [head, picture.box, side, timeline.element, dialogs.help, dialogs.about];
   document.body.append(...parts);
   player.onChange(() => {
     picture.show(player.tick);
     if (details.open) values.show(player.tick);
   });
+  if (picture.scene) keepPace(player, timeline, picture.scene);
   details.addEventListener("toggle", () => values.show(player.tick));
   listenToKeys(player, timeline, picture.scene, dialogs, ended.signal);
   player.step(opensAt(run));

@@ -3,9 +3,11 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { CloudView } from "./cloud";
 import { round125, type Run, type Vector } from "./data";
-import { HandView } from "./hand";
+import { HandView, longestForce } from "./hand";
 import { TruthView } from "./truth";
 
+const fullForce = 0.2; // the arrow of the largest force to expect, as a part of the scene
+const seen = 0.86; // of the picture: what the camera is to see; the rest is for labels
 const labelHeight = 0.022; // where the camera sees 0.7 at a distance of 1
 
 export type CameraPreset = "sensor" | "side" | "follow";
@@ -45,8 +47,10 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly hands: HandView[];
   private readonly truths: TruthView[];
+  private readonly labels: THREE.Sprite[] = []; // of the axes
   private readonly middle = new THREE.Vector3();
   private readonly size: number;
+  private tick = 0;
   private follows = false;
   private followed = new THREE.Vector3();
 
@@ -59,7 +63,7 @@ export class SceneView {
     const box = this.actionBox();
     box.getCenter(this.middle);
     this.size = Math.max(box.getSize(new THREE.Vector3()).length(), 1);
-    this.mmPerN = (0.3 * this.size) / Math.max(fullN || largestForce(runs), 1e-9);
+    this.mmPerN = (fullForce * this.size) / Math.max(fullN || largestForce(runs), 1e-9);
     this.clouds = runs.slice(0, 1).map((run) => new CloudView(run, 0.005 * this.size));
     this.hands = runs.map((run, i) => new HandView(run, this.size, this.mmPerN, i > 0));
     this.truths = runs.slice(0, 1).map((run) => new TruthView(run));
@@ -68,18 +72,23 @@ export class SceneView {
     this.scene.add(this.axes());
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
-    this.setCamera(runs[0].stored.sensor ? "sensor" : "side");
+    this.setCamera(runs[0].stored.sensor ? "sensor" : this.goesFar() ? "follow" : "side");
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
+  // How long the arrow of a force is at most, mm.
+  get longestMm(): number {
+    return longestForce * this.size;
+  }
   show(tick: number): void {
+    this.tick = tick;
     for (const part of [...this.truths, ...this.clouds]) part.show(Math.min(tick, this.runs[0].ticks - 1));
     this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
     if (this.follows) this.followProxy(tick);
     this.draw();
   }
   setCamera(preset: CameraPreset): void {
-    const sensor = this.runs[0].stored.sensor, far = 1.1 * this.size;
+    const sensor = this.runs[0].stored.sensor;
     this.follows = preset === "follow";
     this.camera.up.set(0, 1, 0);
     if (sensor) this.camera.up.set(...sensor.up);
@@ -87,11 +96,13 @@ export class SceneView {
     if (preset === "sensor" && sensor) away.set(...sensor.forward).multiplyScalar(-1);
     else if (preset === "sensor") away.set(0, 1, 0.02);
     else if (sensor) away.set(...this.besides(sensor.forward, sensor.up));
-    this.camera.position.copy(this.middle).addScaledVector(away.normalize(), this.follows ? 0.5 * far : far);
+    const far = this.distance(away.normalize());
+    this.camera.position.copy(this.middle).addScaledVector(away, this.follows ? 0.5 * far : far);
     this.controls.target.copy(this.middle);
     this.followed.copy(this.middle);
     this.camera.near = 0.005 * far;
     this.camera.far = 50 * far;
+    if (this.follows) this.followProxy(this.tick);
     this.resize();
     this.controls.update();
   }
@@ -137,6 +148,8 @@ export class SceneView {
     this.renderer.forceContextLoss(); // a browser gives few contexts to a page
   }
   draw(): void {
+    const place = new THREE.Vector3(); // a label at the right edge is to the left of its arrow
+    for (const text of this.labels) text.center.x = place.setFromMatrixPosition(text.matrixWorld).project(this.camera).x > 0.6 ? 1.05 : -0.05;
     this.renderer.render(this.scene, this.camera);
     this.showBar();
   }
@@ -146,12 +159,33 @@ export class SceneView {
     const f = new THREE.Vector3(...forward), side = f.clone().cross(new THREE.Vector3(...up));
     return side.addScaledVector(f, -0.5).addScaledVector(new THREE.Vector3(...up), 0.35).toArray() as Vector;
   }
+  // The motion of the proxy takes most of the action: from where all of it is seen, the proxy is small.
+  private goesFar(): boolean {
+    const way = new THREE.Box3(), run = this.runs[0], place = new THREE.Vector3();
+    for (let tick = 0; tick < run.ticks; ++tick) {
+      place.set(...run.vector("proxy_position", tick)).multiplyScalar(1000);
+      if (Number.isFinite(place.length())) way.expandByPoint(place);
+    }
+    return way.getSize(place).length() > 0.6 * this.size;
+  }
   private actionBox(): THREE.Box3 {
     const { low_m: low, high_m: high } = this.runs[0].stored, corner = (p: Vector) => new THREE.Vector3(...p).multiplyScalar(1000);
     return new THREE.Box3(corner(low), corner(high));
   }
+  // From where a camera in that direction sees the whole action.
+  private distance(away: THREE.Vector3): number {
+    const right = this.camera.up.clone().cross(away).normalize(), up = away.clone().cross(right);
+    const high = seen * Math.tan((this.camera.fov * Math.PI) / 360), wide = high * (this.canvas.clientWidth / this.canvas.clientHeight || 1.5);
+    const { min, max } = this.actionBox();
+    let far = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const c = new THREE.Vector3(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z).sub(this.middle);
+      far = Math.max(far, c.dot(away) + Math.max(Math.abs(c.dot(right)) / wide, Math.abs(c.dot(up)) / high));
+    }
+    return far;
+  }
   private followProxy(tick: number): void {
-    const p = this.runs[0].vector("proxy_position", tick);
+    const run = this.runs[0], p = run.vector("proxy_position", Math.min(tick, run.ticks - 1));
     if (!p.every(Number.isFinite)) return;
     const now = new THREE.Vector3(1000 * p[0], 1000 * p[1], 1000 * p[2]), moved = now.clone().sub(this.followed);
     this.camera.position.add(moved);
@@ -172,6 +206,7 @@ export class SceneView {
       const along = new THREE.Vector3().setComponent(k, 1);
       const text = label(k === 0 ? `x, ${length} mm` : name);
       text.position.copy(along).multiplyScalar(1.2 * length);
+      this.labels.push(text);
       axes.add(new THREE.ArrowHelper(along, origin, length, 0xbbbbbb, 0.1 * length, 0.06 * length), text);
     });
     axes.name = "axes";

@@ -1,4 +1,5 @@
 // Sliders for the parameters that may change during a live run.
+import { button } from "./button";
 import { digits, type LiveParameter } from "./data";
 
 export interface Change { parameter: number; value: number }
@@ -36,7 +37,9 @@ export class Sliders {
 
   constructor(private readonly parameters: LiveParameter[], private readonly send: (changes: Change[]) => void) {
     const legend = document.createElement("legend");
-    legend.textContent = "Parameters";
+    legend.append("Parameters ", button("Reset", "as the run began", () => {
+      for (const group of together(parameters)) this.ask(group.map((i) => ({ parameter: i, value: parameters[i].value })));
+    }));
     this.refused.className = "warning";
     this.refused.hidden = true;
     this.element.className = "sliders";
@@ -54,6 +57,10 @@ export class Sliders {
     if (!waiting) return;
     this.next.delete(waiting[0]);
     this.ask(waiting[1]);
+  }
+
+  end(): void {
+    this.element.disabled = true;
   }
 
   // One at a time: each is checked with the whole experiment.

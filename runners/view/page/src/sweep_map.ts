@@ -1,13 +1,14 @@
 // The map of a sweep: a measure over two of its axes. Cells whose run is on the page have a frame and can be clicked.
-import { colours, rampColour } from "./colours";
+import { colours, measures, rampColour } from "./colours";
 import { digits, type Numbers, type Sweep } from "./data";
 
-const left = 64, bottom = 34;
+const left = 64, bottom = 34, margin = 4; // at the top and to the right, for frames of cells
 
 export class SweepMap {
   readonly element = document.createElement("section");
   private readonly canvas = document.createElement("canvas");
   private readonly caption = document.createElement("figcaption");
+  private readonly scale = document.createElement("figcaption");
   private readonly choice = document.createElement("select");
   private readonly runs = document.createElement("select");
   private readonly fixed: HTMLSelectElement[]; // the places on the axes that the map does not show
@@ -21,7 +22,10 @@ export class SweepMap {
     for (const measure of stored.measures) this.choice.add(new Option(measure.name, measure.name));
     this.choice.value = stored.judged;
     this.choice.title = "measure";
-    this.choice.addEventListener("change", () => this.setMeasure());
+    this.choice.addEventListener("change", () => {
+      this.setMeasure();
+      this.choice.blur(); // keys are for the time
+    });
     stored.runs.forEach((_, i) => { this.runs.add(new Option(sweep.text(sweep.cellOf(i)), String(i))); });
     this.runs.value = String(shown);
     this.runs.title = "the run that is shown";
@@ -32,16 +36,20 @@ export class SweepMap {
       select.title = axis.name;
       axis.values.forEach((value, i) => { select.add(new Option(`${axis.name} = ${value}`, String(i))); });
       select.value = String(place[k]);
-      select.addEventListener("change", () => this.draw());
+      select.addEventListener("change", () => {
+        this.draw();
+        select.blur();
+      });
       return select;
     });
     this.canvas.addEventListener("click", (event) => {
       const run = this.runAt(event);
       if (run >= 0) choose(run);
+      else this.tellAbsent(this.cellUnder(event));
     });
     this.canvas.addEventListener("pointermove", (event) => this.describe(this.cellUnder(event)));
     this.canvas.addEventListener("pointerleave", () => this.describe(sweep.cellOf(shown)));
-    figure.append(this.canvas, this.caption);
+    figure.append(this.scale, this.canvas, this.caption);
     this.element.append(this.choice, ...this.fixed, figure, this.runs);
     this.setMeasure();
     new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -55,8 +63,14 @@ export class SweepMap {
       if (Number.isFinite(mean)) [low, high] = [Math.min(low, mean), Math.max(high, mean)];
     }
     this.range = high > low ? [low, high] : [low, low + 1];
+    const unit = this.unit();
+    this.scale.textContent = high > low ? `purple ${digits(low)}${unit}, yellow ${digits(high)}${unit}; white frames: the runs of this page` : "";
     this.describe(this.sweep.cellOf(this.shown));
     this.draw();
+  }
+  private unit(): string {
+    const unit = this.sweep.stored.measures.find((measure) => measure.name === this.choice.value)?.unit ?? "1";
+    return unit === "1" ? "" : ` ${unit}`;
   }
   // The last axis to the right, the one before it up.
   private get size(): [number, number] {
@@ -69,16 +83,17 @@ export class SweepMap {
   }
   private cellUnder(event: MouseEvent): number {
     const box = this.canvas.getBoundingClientRect(), [columns, rows] = this.size;
-    const column = Math.floor(((event.clientX - box.left - left) / (box.width - left)) * columns);
-    const row = rows - 1 - Math.floor(((event.clientY - box.top) / (box.height - bottom)) * rows);
+    const column = Math.floor(((event.clientX - box.left - left) / (box.width - left - margin)) * columns);
+    const row = rows - 1 - Math.floor(((event.clientY - box.top - margin) / (box.height - bottom - margin)) * rows);
     return column >= 0 && column < columns && row >= 0 && row < rows ? this.cellAt(column, row) : -1;
   }
   // The shown run that is at most 12 pixels away, or -1: cells of a fine map are small.
   private runAt(event: MouseEvent): number {
     const box = this.canvas.getBoundingClientRect(), [columns, rows] = this.size;
-    let best = -1, least = 12 + 0.5 * Math.max((box.width - left) / columns, (box.height - bottom) / rows);
+    let best = -1, least = 12 + 0.5 * Math.max((box.width - left - margin) / columns, (box.height - bottom - margin) / rows);
     this.shownCells().forEach(([run, column, row]) => {
-      const x = left + ((column + 0.5) * (box.width - left)) / columns, y = ((rows - row - 0.5) * (box.height - bottom)) / rows;
+      const x = left + ((column + 0.5) * (box.width - left - margin)) / columns;
+      const y = margin + ((rows - row - 0.5) * (box.height - bottom - margin)) / rows;
       const distance = Math.hypot(event.clientX - box.left - x, event.clientY - box.top - y);
       if (distance < least) [best, least] = [run, distance];
     });
@@ -95,10 +110,12 @@ export class SweepMap {
   }
   private describe(cell: number): void {
     if (cell < 0) return;
-    const mean = this.sweep.mean(this.numbers, cell), { replicates, measures } = this.sweep.stored;
-    const unit = measures.find((measure) => measure.name === this.choice.value)?.unit ?? "";
-    const value = Number.isFinite(mean) ? `${digits(mean)}${unit === "1" ? "" : ` ${unit}`}` : "no value";
+    const mean = this.sweep.mean(this.numbers, cell), { replicates } = this.sweep.stored;
+    const value = Number.isFinite(mean) ? `${digits(mean)}${this.unit()}` : "no value";
     this.caption.textContent = `${this.choice.value} ${value} at ${this.sweep.text(cell)}${replicates > 1 ? `, mean of up to ${replicates} runs` : ""}`;
+  }
+  private tellAbsent(cell: number): void {
+    if (cell >= 0) this.caption.textContent = `${this.sweep.text(cell)}: not on this page. Click a framed cell, or make a page with --cells.`;
   }
 
   private draw(): void {
@@ -108,17 +125,17 @@ export class SweepMap {
     this.canvas.width = ratio * width;
     this.canvas.height = ratio * height;
     pen.scale(ratio, ratio);
-    const [columns, rows] = this.size, w = (width - left) / columns, h = (height - bottom) / rows, tint = new Uint8Array(3);
+    const [columns, rows] = this.size, w = (width - left - margin) / columns, h = (height - bottom - margin) / rows, tint = new Uint8Array(3);
     for (let row = 0; row < rows; ++row)
       for (let column = 0; column < columns; ++column) {
         const mean = this.sweep.mean(this.numbers, this.cellAt(column, row));
         if (!Number.isFinite(mean)) continue;
-        rampColour((mean - this.range[0]) / (this.range[1] - this.range[0]), tint, 0);
+        rampColour(measures, (mean - this.range[0]) / (this.range[1] - this.range[0]), tint, 0);
         pen.fillStyle = `rgb(${tint.join(" ")})`;
-        pen.fillRect(left + column * w, (rows - 1 - row) * h, w + 0.5, h + 0.5);
+        pen.fillRect(left + column * w, margin + (rows - 1 - row) * h, w + 0.5, h + 0.5);
       }
     for (const [run, column, row] of this.shownCells()) {
-      const now = run === this.shown, x = left + column * w, y = (rows - 1 - row) * h, room = Math.max(0, (9 - Math.min(w, h)) / 2);
+      const now = run === this.shown, x = left + column * w, y = margin + (rows - 1 - row) * h, room = Math.max(0, (9 - Math.min(w, h)) / 2);
       pen.lineWidth = now ? 3 : 1.5;
       pen.strokeStyle = now ? colours.force : "#fff";
       pen.strokeRect(x - room, y - room, w + 2 * room, h + 2 * room);
@@ -138,7 +155,7 @@ export class SweepMap {
       pen.fillText(what, x, y);
     };
     write(text(across.values[0]), left, height - bottom + 12, "left");
-    write(text(across.values.at(-1)), width, height - bottom + 12, "right");
+    write(text(across.values.at(-1)), width - margin, height - bottom + 12, "right");
     write(`${across.name}${across.unit === "1" ? "" : ` (${across.unit})`}`, (left + width) / 2, height - 6, "center");
     if (!up) return;
     write(text(up.values.at(-1)), left - 4, 10, "right");

@@ -12,6 +12,7 @@ export class Timeline {
   readonly element = document.createElement("footer");
   private readonly slider = document.createElement("input");
   private readonly clock = document.createElement("output");
+  private readonly note = document.createElement("small");
   private readonly play: HTMLButtonElement;
   private readonly speed = document.createElement("select");
 
@@ -26,17 +27,23 @@ export class Timeline {
     this.play = button("Play", "play or stop (space)", () => player.toggle());
     this.speed.title = "speed: 1x is real time";
     for (const speed of speeds) this.speed.add(new Option(speedText(speed), String(speed)));
-    this.speed.addEventListener("change", () => player.setSpeed(Number(this.speed.value)));
+    this.speed.addEventListener("change", () => {
+      player.setSpeed(Number(this.speed.value));
+      this.speed.blur(); // keys are for the time
+    });
     const track = document.createElement("div");
     track.className = "track";
     track.append(this.slider, ...this.marks());
     this.element.append(
       this.play, button("|<", "one tick back (,)", () => player.step(-1)), button(">|", "one tick on (.)", () => player.step(1)),
-      button("Next event", "to the next event (e)", () => this.nextEvent()), this.speed, track, this.clock);
+      button("Next event", "to the next event (e)", () => this.nextEvent()), this.speed, track, this.note, this.clock);
     player.onChange(() => this.show());
     this.show();
   }
 
+  tell(note: string): void {
+    this.note.textContent = note;
+  }
   nextEvent(): void {
     const next = this.events.find((event) => event.tick > this.player.tick) ?? this.events[0];
     if (next) this.player.step(next.tick - this.player.tick);
@@ -51,14 +58,16 @@ export class Timeline {
     if (speeds[at] !== undefined) this.player.setSpeed(speeds[at]);
   }
 
+  // Those of one tick beside each other.
   private marks(): HTMLElement[] {
-    return this.events.map((event) => {
+    return this.events.map((event, i) => {
+      const before = this.events.slice(0, i).filter((other) => other.tick === event.tick).length;
       const mark = document.createElement("button");
       mark.type = "button";
       mark.className = `mark ${event.kind.replace(" ", "-")}`;
       mark.title = `tick ${event.tick}: ${event.text}`;
       mark.ariaLabel = mark.title;
-      mark.style.left = `${(100 * event.tick) / Math.max(this.player.ticks - 1, 1)}%`;
+      mark.style.left = `calc(${(100 * event.tick) / Math.max(this.player.ticks - 1, 1)}% + ${8 * before}px)`;
       mark.addEventListener("click", () => this.player.step(event.tick - this.player.tick));
       return mark;
     });
