@@ -53,7 +53,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const SweepResult planned = sweep.plan();
   if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())
     throw InputError(request.map, "damaged (its arrays do not fit its configuration)");
-  const std::size_t cell = cell_of(request.cell, result);
+  const std::size_t cell = cell_of({"--cell", request.cell}, result);
   if (request.replicate < 0 || request.replicate >= result.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
                      "expected 0 to " + std::to_string(result.replicates - 1));

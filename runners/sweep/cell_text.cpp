@@ -12,8 +12,8 @@ namespace remote_touch {
 
 namespace {
 
-[[noreturn]] void refuse_cell(const std::string& text, const std::string& expected) {
-  throw InputError("cell " + text, "expected " + expected);
+[[noreturn]] void refuse_cell(const NamedCell& cell, const std::string& expected) {
+  throw InputError(cell.option + " " + cell.text, "expected " + expected);
 }
 
 std::vector<std::string> items_of(const std::string& text) {
@@ -61,9 +61,9 @@ std::optional<std::size_t> row_of(const Column& axis, const std::string& value) 
 }
 
 // NAME=VALUE of each axis, in any order.
-std::size_t cell_by_values(const std::string& text, const SweepResult& result) {
+std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
   std::vector<std::optional<std::size_t>> place(result.axes.size());
-  for (const std::string& item : items_of(text)) {
+  for (const std::string& item : items_of(cell.text)) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
     const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
@@ -71,7 +71,7 @@ std::size_t cell_by_values(const std::string& text, const SweepResult& result) {
     const auto i = static_cast<std::size_t>(axis - result.axes.begin());
     if (axis == result.axes.end() || place[i]) break;
     place[i] = row_of(*axis, value);
-    if (!place[i]) refuse_cell(text, "for " + name + " one of " + values_text(*axis));
+    if (!place[i]) refuse_cell(cell, "for " + name + " one of " + values_text(*axis));
   }
   std::string names;
   std::vector<std::size_t> found;
@@ -79,7 +79,7 @@ std::size_t cell_by_values(const std::string& text, const SweepResult& result) {
     names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
     if (place[i]) found.push_back(*place[i]);
   }
-  if (found.size() != place.size()) refuse_cell(text, names);
+  if (found.size() != place.size()) refuse_cell(cell, names);
   return result.cell_at(found);
 }
 
@@ -92,21 +92,21 @@ std::string cell_text(const SweepResult& result, std::size_t cell) {
   return text;
 }
 
-std::size_t cell_of(const std::string& text, const SweepResult& result) {
-  if (text.find('=') != std::string::npos) return cell_by_values(text, result);
+std::size_t cell_of(const NamedCell& cell, const SweepResult& result) {
+  if (cell.text.find('=') != std::string::npos) return cell_by_values(cell, result);
   std::string allowed;
   for (const Column& axis : result.axes)
     allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
   std::vector<std::size_t> place;
-  for (const std::string& item : items_of(text)) {
+  for (const std::string& item : items_of(cell.text)) {
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), number);
     if (error != std::errc() || end != item.data() + item.size() || place.size() == result.axes.size() ||
         number >= result.axes[place.size()].length())
-      refuse_cell(text, allowed);
+      refuse_cell(cell, allowed);
     place.push_back(number);
   }
-  if (place.size() != result.axes.size()) refuse_cell(text, allowed);
+  if (place.size() != result.axes.size()) refuse_cell(cell, allowed);
   return result.cell_at(place);
 }
 

@@ -11,7 +11,13 @@ namespace remote_touch {
 std::string cell_text(const SweepResult& result, std::size_t cell);
 
 // text: a place as cell_text() writes it, or a value of each axis, "noise_sigma_m=0.003,rule=none". A number
-// stands for the value that prints alike with six digits. Throws InputError.
-std::size_t cell_of(const std::string& text, const SweepResult& result);
+// stands for the value that prints alike with six digits.
+struct NamedCell {
+  std::string option;  // with which the user named it, for errors: "--cell"
+  std::string text;
+};
+
+// Throws InputError.
+std::size_t cell_of(const NamedCell& cell, const SweepResult& result);
 
 }  // namespace remote_touch

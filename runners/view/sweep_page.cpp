@@ -57,7 +57,7 @@ Judged judged(const Sweep& sweep, const SweepResult& result) {
 // Of the finished runs of the cell the first that failed, or the first.
 std::size_t run_of_cell(const SweepResult& result, const std::string& text, const Judged& judged) {
   const std::vector<double>& measure = result.measure(judged.measure);
-  const std::size_t begin = result.run(cell_of(text, result), 0);
+  const std::size_t begin = result.run(cell_of({"--cells", text}, result), 0);
   std::vector<std::size_t> done;
   for (std::size_t run = begin; run < begin + static_cast<std::size_t>(result.replicates); ++run)
     if (result.state[run] == RunState::done) done.push_back(run);
