@@ -5,6 +5,7 @@ import type { Frame, Run } from "./data";
 import { PointsBuffer } from "./points_buffer";
 
 const maxRegions = 3000;
+const near = 0.05; // of the radius: of regions in a cube of this size one is drawn
 
 // Of the heights, in the numbers of positions.
 function rangeOf(all: Uint16Array[]): [number, number] {
@@ -15,6 +16,11 @@ function rangeOf(all: Uint16Array[]): [number, number] {
       high = Math.max(high, positions[i]);
     }
   return [low, Math.max(high, low + 1)];
+}
+
+function everyNth(list: number[], max: number): number[] {
+  const every = Math.max(Math.ceil(list.length / max), 1);
+  return every === 1 ? list : list.filter((_, i) => i % every === 0);
 }
 
 export class CloudView {
@@ -90,16 +96,24 @@ export class CloudView {
     const radii = frame?.fixtureRadiusM;
     this.regions.count = this.tint.count = 0;
     if (!frame || !radii) return;
-    const inside: number[] = [];
-    radii.forEach((radius, i) => { if (radius > 0) inside.push(i); });
-    const every = Math.max(Math.ceil(inside.length / (maxRegions * this.share)), 1), matrix = new THREE.Matrix4();
-    for (let i = 0; i < inside.length; i += every) {
-      const at = inside[i], r = 1000 * radii[at], [x, y, z] = this.run.point(frame, at);
+    const all: number[] = [];
+    radii.forEach((radius, i) => { if (radius > 0) all.push(i); });
+    const drawn = everyNth(this.apart(frame, radii, everyNth(all, 4 * maxRegions)), maxRegions * this.share), matrix = new THREE.Matrix4();
+    for (const at of drawn) {
+      const r = 1000 * radii[at], [x, y, z] = this.run.point(frame, at);
       matrix.makeScale(r, r, r).setPosition(1000 * x, 1000 * y, 1000 * z);
       this.regions.setMatrixAt(this.regions.count++, matrix);
     }
     this.tint.count = this.regions.count;
     this.regions.instanceMatrix.needsUpdate = true;
+  }
+  // Without those that nearly coincide with another: each costs as much to draw as one that is seen.
+  private apart(frame: Frame, radii: Float32Array, points: number[]): number[] {
+    const taken = new Set<string>();
+    return points.filter((i) => {
+      const place = this.run.point(frame, i).map((x) => Math.floor(x / (near * radii[i]))).join();
+      return !taken.has(place) && taken.add(place);
+    });
   }
   private showTouching(frame: Frame | undefined, tick: number): void {
     const found = frame ? this.run.touching(frame, tick).flatMap((i) => this.run.point(frame, i)) : [];

@@ -50,16 +50,19 @@ export class SceneView {
   private readonly labels: THREE.Sprite[] = []; // of the axes
   private readonly middle = new THREE.Vector3();
   private readonly size: number;
+  private drawing = 0; // the browser's number of the call; 0: none
+  private readonly isLive: boolean;
   private tick = 0;
   private follows = false;
   private followed = new THREE.Vector3();
 
   // Throws where the browser has no WebGL 2.
-  // fullN: the largest force to expect; 0: that of the runs.
+  // fullN: the largest force to expect in a live run; 0: that of the runs.
   constructor(private readonly canvas: HTMLCanvasElement, private readonly bar: HTMLElement, private readonly runs: Run[],
     fullN = 0) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.isLive = fullN > 0;
     const box = this.actionBox();
     box.getCenter(this.middle);
     this.size = Math.max(box.getSize(new THREE.Vector3()).length(), 1);
@@ -71,7 +74,7 @@ export class SceneView {
     this.light();
     this.scene.add(this.axes());
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => this.drawSoon());
     this.setCamera(runs[0].stored.sensor ? "sensor" : this.goesFar() ? "follow" : "side");
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
@@ -85,7 +88,8 @@ export class SceneView {
     for (const part of [...this.truths, ...this.clouds]) part.show(Math.min(tick, this.runs[0].ticks - 1));
     this.hands.forEach((hand, i) => { hand.show(Math.min(tick, this.runs[i].ticks - 1)); });
     if (this.follows) this.followProxy(tick);
-    this.draw();
+    if (this.isLive) this.draw();
+    else this.drawSoon();
   }
   setCamera(preset: CameraPreset): void {
     const sensor = this.runs[0].stored.sensor;
@@ -112,7 +116,7 @@ export class SceneView {
     else if (what === "points") for (const cloud of this.clouds) cloud.object.visible = visible;
     else if (what === "truth") for (const truth of this.truths) truth.object.visible = visible && truth.known;
     else this.scene.getObjectByName("axes")?.traverse((o) => { o.visible = visible; });
-    this.draw();
+    this.drawSoon();
   }
   get touching(): number {
     return this.clouds[0]?.touching ?? 0;
@@ -143,9 +147,18 @@ export class SceneView {
     return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / Math.max(this.canvas.clientHeight, 1);
   }
   dispose(): void {
+    cancelAnimationFrame(this.drawing);
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss(); // a browser gives few contexts to a page
+  }
+  // Once before the next picture of the browser, however much has changed till then.
+  private drawSoon(): void {
+    if (this.drawing !== 0) return;
+    this.drawing = requestAnimationFrame(() => {
+      this.drawing = 0;
+      this.draw();
+    });
   }
   draw(): void {
     const place = new THREE.Vector3(); // a label at the right edge is to the left of its arrow
@@ -219,7 +232,7 @@ export class SceneView {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    this.drawSoon();
   }
   // How long a millimetre is where the camera looks.
   private showBar(): void {
