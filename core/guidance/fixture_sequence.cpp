@@ -23,6 +23,12 @@ Parameters parameters(SequenceStep& s) {
   };
 }
 
+std::string name_of(const SequenceStep& s) {
+  SequenceStep step = s;
+  const auto action = std::get<Choice>(parameters(step).front().value);
+  return action.names[static_cast<std::size_t>(action.get())] + (s.fixture.empty() ? "" : " ") + s.fixture;
+}
+
 std::string validate(const SequenceStep& s) {
   const bool needs_fixture = s.action != FixtureAction::wait || s.done == StepEnd::reached;
   if (needs_fixture && s.fixture.empty()) return "fixture = \"\": expected the label of a fixture";

@@ -33,6 +33,8 @@ struct SequenceStep {
 
 Parameters parameters(SequenceStep& s);
 std::string validate(const SequenceStep& s);
+// "activate right": its action and its fixture, for people.
+std::string name_of(const SequenceStep& s);
 
 class FixtureSequence {
  public:

@@ -20,10 +20,7 @@ namespace {
 // The log of a task: a line for every step.
 void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    SequenceStep step = steps[i];
-    const auto action = std::get<Choice>(parameters(step).front().value);
-    std::printf("  sequence.%zu %s%s%s: ", i, action.names[static_cast<std::size_t>(action.get())].c_str(),
-                step.fixture.empty() ? "" : " ", step.fixture.c_str());
+    std::printf("  sequence.%zu %s: ", i, name_of(steps[i]).c_str());
     if (i >= log.size()) {
       std::puts("has not begun");
       continue;
@@ -34,7 +31,7 @@ void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<Se
       std::printf(", has not ended");
     else
       std::printf(", %s at %.3f s", entry.missed ? "missed" : "done", entry.ended_s);
-    if (step.done == StepEnd::reached && !std::isnan(entry.distance_m))
+    if (steps[i].done == StepEnd::reached && !std::isnan(entry.distance_m))
       std::printf(", %.2g m and %.2g deg from the goal", entry.distance_m,
                   entry.angle_rad / kRadiansPerDegree);
     std::puts("");

@@ -161,9 +161,7 @@ struct ShownRun::State {
   // "activate right" of each step of the task.
   std::vector<std::string> steps() const {
     std::vector<std::string> list;
-    for (const Json& step : configuration.value("sequence", Json::array()))
-      list.push_back(step.value("action", "") + (step.value("fixture", "").empty() ? "" : " ") +
-                     step.value("fixture", ""));
+    for (const SequenceStep& step : experiment.sequence()) list.push_back(name_of(step));
     return list;
   }
   Json events() const {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/geometry/rotation.h"
+
 namespace remote_touch {
 
 namespace {
@@ -67,7 +69,7 @@ std::string from_goal(double distance_m, double angle_rad) {
   if (!std::isfinite(distance_m) || !std::isfinite(angle_rad)) return {};
   char text[80];
   std::snprintf(text, sizeof text, ", %.2g mm and %.2g deg from its goal", 1000 * distance_m,
-                angle_rad * 180 / M_PI);
+                angle_rad / kRadiansPerDegree);
   return text;
 }
 

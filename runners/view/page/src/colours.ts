@@ -27,6 +27,10 @@ export const heights: Ramp = [[62, 86, 150], [74, 118, 172], [104, 152, 196], [1
 // Measures on the map of a sweep: five colours of viridis.
 export const measures: Ramp = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
+export function rampStyle(ramp: Ramp): string {
+  return `linear-gradient(90deg, ${ramp.map((colour) => `rgb(${colour.join(" ")})`).join()})`;
+}
+
 export function rampColour(ramp: Ramp, fraction: number, out: Uint8Array, at: number): void {
   const place = Math.min(Math.max(fraction, 0), 1) * (ramp.length - 1);
   const low = Math.min(Math.floor(place), ramp.length - 2), part = place - low;

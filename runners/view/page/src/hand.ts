@@ -6,6 +6,8 @@ import type { Run, Vector } from "./data";
 const wayS = 0.3;
 // The arrow of a force, as a part of the scene; that of a greater force is no longer.
 export const longestForce = 0.3;
+// The arrow of a velocity of 1 m/s, mm: how far the surface moves in 1/15 s.
+export const mmPerMetreASecond = 1000 / 15;
 
 function ball(radius: number, colour: string, opacity = 1): THREE.Mesh {
   return new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20),
@@ -96,7 +98,7 @@ export class HandView {
     const away: Vector = [0, 1, 2].map((k) => proxy[k] + (radius / 1000) * normal[k]) as Vector;
     this.normal.show(away, normal, 2 * radius);
     const speed = this.run.column("surface_velocity").value(tick);
-    this.velocity.show(proxy, normal.map((n) => n * speed) as Vector, 1000 / 15); // what a fifteenth of a second makes
+    this.velocity.show(proxy, normal.map((n) => n * speed) as Vector, mmPerMetreASecond);
     this.setLine(this.spring, [hip, proxy]);
     this.showWay(tick);
   }

@@ -1,6 +1,7 @@
 // Text beside the pictures: values at the tick, what the page is of, the legend and the keys.
-import { colours, curveColour } from "./colours";
+import { colours, curveColour, heights, rampStyle } from "./colours";
 import { type Claim, type Run, digits } from "./data";
+import { mmPerMetreASecond } from "./hand";
 
 function element(name: string, text = "", className = ""): HTMLElement {
   const made = document.createElement(name);
@@ -45,9 +46,9 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   add(colours.force, `force: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
   add(colours.normal, "surface normal");
   add(colours.touching, "points that touch");
-  if (frames.length === 0 || frames.some((frame) => !frame.colours)) add("linear-gradient(90deg, #3e5696, #deeaf2)", frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
+  if (frames.length === 0 || frames.some((frame) => !frame.colours)) add(rampStyle(heights), frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
   if (run.stored.truth) add(colours.truth, "true surface");
-  if (isUsed(run, "surface_velocity")) add(colours.velocity, "velocity estimate: 67 mm per m/s");
+  if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s`);
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");
   if (slaveDiffers(run)) add(colours.slave, "slave command, if not the proxy");
