@@ -1,8 +1,9 @@
 // Measures: scalars of a trace that summarise a run.
 #pragma once
 
-#include <span>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "analysis/trace/trace.h"
 
@@ -41,15 +42,17 @@ double max_force_N(const Trace& trace);
 // Trace::contact was computed, those with a tool, those with guidance.
 enum class MeasuredRuns { all, proxy, contact, tool, guidance };
 
-// The measures that need only a trace, by name: for summaries and for sweeps.
+// A measure that needs only a trace, by name: for summaries and for sweeps.
 struct Measure {
-  const char* name;
-  const char* unit;
-  const char* meaning;
-  MeasuredRuns runs;
-  double (*of)(const Trace&);
+  std::string name;
+  std::string unit;     // "m", "N/s"; of a ratio or a count "1"
+  std::string meaning;  // one line that continues "the measure is the ..."
+  MeasuredRuns runs = MeasuredRuns::all;
+  std::function<double(const Trace&)> of;  // NaN where nothing can be said; called from many threads
 };
-std::span<const Measure> measures();
+// Those of this program, in the order in which summaries print them. A program may have more, see
+// runners/experiment/catalog.h.
+const std::vector<Measure>& built_in_measures();
 bool applies(const Measure& measure, const Trace& trace);
 const char* name_of(MeasuredRuns runs);  // "all runs", "runs without a tool", ...
 // NaN where the measure does not apply.

@@ -4,8 +4,11 @@
 #include <functional>
 #include <sstream>
 
+#include "analysis/storage/sha256.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/other_kinds.h"
+#include "runners/experiment/catalog.h"
+#include "runners/plugins/plugin_library.h"
 #include "runners/provenance/provenance.h"
 
 namespace remote_touch {
@@ -323,6 +326,19 @@ void add_cache(Subcommands& commands) {
       ->check(between(0, 1e9));
 }
 
+// Their renderers join the catalog; results name them.
+void take_plugins(const std::vector<std::string>& files) {
+  if (files.empty()) return;
+  Catalog catalog = catalog_in_use();
+  ProgramIdentity program = program_identity();
+  for (const std::string& file : files) {
+    for (RendererEntry& entry : load_plugin(file)) catalog.add(std::move(entry));
+    program.plugins.push_back({file, sha256_of_file(file)});
+  }
+  use_catalog(std::move(catalog));
+  identify_program(std::move(program));
+}
+
 // An unknown command is named, which CLI11 leaves to guess.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
@@ -347,6 +363,11 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.add_flag(
       "--force", line.force,
       "also overwrite files that are not results of this program; an input file is never overwritten");
+  std::vector<std::string> plugins;
+  app.add_option("--plugin", plugins,
+                 "a shared library with renderers, one for each --plugin; see runners/plugins/README.md")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   std::function<int()> act;
   Subcommands commands{app, line, act};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,
@@ -359,6 +380,7 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
     throw usage_error(app, error);
   }
   line.kernels = &choose_kernels();
+  take_plugins(plugins);
   return act();
 }
 

@@ -3,10 +3,10 @@
 #include <optional>
 #include <string_view>
 
-#include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/tool/mesh/generated_tools.h"
 #include "runners/cli/commands.h"
+#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/experiment/sections.h"
 #include "runners/figures/figures.h"
@@ -177,8 +177,8 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
     if (name == entry.name) found = std::printf("%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())
     if (name == measure.name)
-      found = std::printf("%s: a measure: %s; unit: %s; %s\n", measure.name, measure.meaning, measure.unit,
-                          name_of(measure.runs)) > 0;
+      found = std::printf("%s: a measure: %s; unit: %s; %s\n", measure.name.c_str(), measure.meaning.c_str(),
+                          measure.unit.c_str(), name_of(measure.runs)) > 0;
   if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
   return kDone;
 }

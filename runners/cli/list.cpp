@@ -1,7 +1,7 @@
 #include <cstdio>
 
-#include "analysis/measures/measures.h"
 #include "runners/cli/commands.h"
+#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/experiment/sections.h"
 #include "runners/figures/figures.h"
@@ -37,8 +37,7 @@ int command_list(const CommandLine&, const ListRequest&) {
   for (const auto& entry : figures()) row(entry.name, entry.summary);
   std::puts("measures");
   for (const auto& measure : measures())
-    row(measure.name,
-        std::string(measure.meaning) + "; unit: " + measure.unit + "; " + name_of(measure.runs));
+    row(measure.name.c_str(), measure.meaning + "; unit: " + measure.unit + "; " + name_of(measure.runs));
   return kDone;
 }
 

@@ -29,8 +29,9 @@ std::string device_of(const LiveRequest& request) {
 }
 
 std::string normalised(const LiveRequest& request) {
-  std::vector<std::string> words = {"remote-touch",     "live",    request.experiment, "--device",
-                                    device_of(request), "--depth", request.depth};
+  std::vector<std::string> words = program_words();
+  words.insert(words.end(),
+               {"live", request.experiment, "--device", device_of(request), "--depth", request.depth});
   for (const std::string& assignment : request.overrides) words.insert(words.end(), {"--set", assignment});
   return shell_command(words);
 }

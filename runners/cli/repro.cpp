@@ -95,7 +95,7 @@ class Repro {
     add_shard(all[0]);
     std::printf("%s\n", shell_command(all[0]).c_str());
     if (all.size() < 2) return;
-    all[1].insert(all[1].begin() + 2, "map.h5");
+    all[1].insert(std::find(all[1].begin(), all[1].end(), "replay") + 1, "map.h5");
     all[1].insert(all[1].end(), {"-o", "again.h5"});
     std::printf("%s\n", shell_command(all[1]).c_str());
   }
@@ -111,15 +111,15 @@ class Repro {
 
   // From the configuration alone.
   void print_detour() const {
-    if (of("command").starts_with("remote-touch scorecard "))
+    if (of("command").find(" scorecard ") != std::string::npos)
       comment("it is of a scorecard, " + of("command") + " -o FOLDER; alone:");
     else
       comment("its command no longer makes this configuration (another file, or another default)");
-    std::vector<std::string> words = {"remote-touch", kind_ == "sweep" ? "sweep" : "run", "again.json", "-o",
-                                      "again.h5"};
+    std::vector<std::string> words = program_words(), config = words;
+    words.insert(words.end(), {kind_ == "sweep" ? "sweep" : "run", "again.json", "-o", "again.h5"});
+    config.insert(config.end(), {"repro", file_, "--config", "again.json"});
     add_shard(words);
-    std::printf("%s\n%s\n", shell_command({"remote-touch", "repro", file_, "--config", "again.json"}).c_str(),
-                shell_command(words).c_str());
+    std::printf("%s\n%s\n", shell_command(config).c_str(), shell_command(words).c_str());
   }
   void add_shard(std::vector<std::string>& words) const {
     if (!of("shard").empty()) words.insert(words.end(), {"--shard", of("shard")});

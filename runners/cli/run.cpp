@@ -2,12 +2,12 @@
 #include <cstdio>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/measures/measures.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/geometry/rotation.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
+#include "runners/experiment/catalog.h"
 #include "runners/experiment/experiment.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -61,7 +61,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   for (const Measure& measure : measures())
     if (applies(measure, trace))
-      std::printf("  %-23s %12.6g %s\n", measure.name, measure.of(trace), measure.unit);
+      std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.of(trace), measure.unit.c_str());
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }

@@ -44,7 +44,7 @@ void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan
 }
 
 std::string normalised(const ScorecardRequest& request) {
-  std::string command = "remote-touch scorecard";
+  std::string command = program_text() + " scorecard";
   for (const std::string& name : request.methods) command += " " + name;
   if (!request.scenes.empty()) command += " --scene";
   for (const std::string& name : request.scenes) command += " " + name;

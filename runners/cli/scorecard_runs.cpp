@@ -6,6 +6,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/progress.h"
+#include "runners/provenance/provenance.h"
 #include "runners/view/trace_page.h"
 
 namespace remote_touch {
@@ -68,9 +69,8 @@ int report_failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
 }
 
 int report_interrupted(const std::string& folder) {
-  std::fprintf(stderr,
-               "remote-touch: interrupted; finished runs are kept in %s, and the same command goes on\n",
-               folder.c_str());
+  std::fprintf(stderr, "%s: interrupted; finished runs are kept in %s, and the same command goes on\n",
+               program_identity().name.c_str(), folder.c_str());
   return kInterrupted;
 }
 

@@ -52,7 +52,7 @@ int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest
     const Scorecard card = scored(line, plan, request.threads);
     const std::string config = configuration_of(plan);
     const std::string sum =
-        write_stored_card(request.file, card, provenance(config, "remote-touch scorecard store", ""));
+        write_stored_card(request.file, card, provenance(config, program_text() + " scorecard store", ""));
     std::printf("%s: %zu scenes, %zu methods, digest %s\n", request.file.c_str(), card.scenes.size(),
                 card.methods.size(), sum.c_str());
     return kDone;

@@ -106,9 +106,9 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     });
     if (!any) std::printf("%s: nothing left to do\n", file.c_str());
   } catch (const Interrupted&) {
-    std::fprintf(
-        stderr, "remote-touch: interrupted; %zu finished runs are kept in %s, and the same command goes on\n",
-        session.result().runs_in(RunState::done).size(), file.c_str());
+    std::fprintf(stderr, "%s: interrupted; %zu finished runs are kept in %s, and the same command goes on\n",
+                 program_identity().name.c_str(), session.result().runs_in(RunState::done).size(),
+                 file.c_str());
     return kInterrupted;
   }
   return print_summary(file, session.result());

@@ -73,7 +73,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
   bool all_pass = true;
   for (const RendererEntry* entry : chosen) {
     const auto results = verify_renderer(*entry, request.overrides, *line.kernels, line.stop);
-    std::printf("%s: %zu checks\n", entry->name, results.size());
+    std::printf("%s: %zu checks\n", entry->name.c_str(), results.size());
     for (const CheckName& check : check_names()) print_check(check, results);
     for (const CheckResult& result : results) all_pass &= result.passed();
     suites.push_back(suite_of(entry->name, results));

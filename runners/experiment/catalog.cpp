@@ -1,5 +1,7 @@
 #include "runners/experiment/catalog.h"
 
+#include <algorithm>
+
 #include "core/proxy/proxy_renderer.h"
 #include "core/rivals/averaged_proxy_renderer.h"
 #include "core/rivals/density_proxy_renderer.h"
@@ -45,138 +47,208 @@ namespace remote_touch {
 
 namespace {
 
-template <class Product, class Settings, class... Seam>
-std::unique_ptr<Factory<Seam...>> factory() {
-  return std::make_unique<FactoryFor<Product, Settings, Seam...>>();
+std::vector<ScenarioEntry> built_in_scenarios() {
+  return {
+      scenario_entry<FlatGrid>("flat-grid", "a flat 100 x 100 cloud at rest, 4.3.1"),
+      scenario_entry<MovingLift>("moving-lift",
+                                 "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
+      scenario_entry<MovingShape>(
+          "moving-shape", "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
+      scenario_entry<Plates>("plates",
+                             "flat plates seen from above that hide each other, pass or move apart"),
+      scenario_entry<TriangleWave>("triangle-wave",
+                                   "a triangle wave of growing height at rest, with sharp edges, 4.3.3"),
+      scenario_entry<CameraScene>("camera-scene",
+                                  "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
+      scenario_entry<ListedPoints>("points",
+                                   "a list of points at rest; the default, one point, is the cloud of 5.3.1"),
+      scenario_entry<BeatingHeart>("beating-heart",
+                                   "a simulated depth camera looks down on a beating organ on a table"),
+      scenario_entry<ValveTank>(
+          "valve-tank", "a simulated colour and depth camera looks at two valves in turbid water, 7.5.1"),
+      scenario_entry<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
+      scenario_entry<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
+      scenario_entry<Wedge>("wedge", "two inclined walls that close on a tool and open again"),
+      scenario_entry<MovingPlane>("moving-plane",
+                                  "a flat cloud with normals that waits, then rises and lifts a tool"),
+      scenario_entry<Sheet>("sheet", "one flat panel with normals that can be touched from both sides"),
+      scenario_entry<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
+      scenario_entry<SessionScene>(
+          "live-session",
+          "the frames of a recorded live session, at the times when the live renderer received them"),
+  };
 }
 
-template <class Product>
-ScenarioEntry scenario(const char* name, const char* summary) {
-  return {name, summary,
-          factory<Product, typename Product::Settings, Scenario, const NoiseKey&, const Kernels&>};
+std::vector<FixtureEntry> built_in_fixtures() {
+  return {
+      fixture_entry<Everywhere>("everywhere", "selects every point, 5.3.3"),
+      fixture_entry<HalfSpace>("half-space", "selects the points on one side of a plane, 5.3.2"),
+      fixture_entry<NearPoint>(
+          "near-point", "selects the points near a given position, or near the point that a pixel sees"),
+      fixture_entry<HueRange>("hue-range", "selects the points of a colour (a range of hues)"),
+      fixture_entry<ImageMask>("image-mask", "selects the points whose pixels a mask image marks"),
+  };
 }
 
-template <class Product>
-FixtureEntry fixture(const char* name, const char* summary) {
-  return {name, summary, factory<Product, typename Product::Settings, FixtureRule>};
+std::vector<TrajectoryEntry> built_in_trajectories() {
+  return {
+      trajectory_entry<Waypoints>("waypoints",
+                                  "a list of positions, each with the speed of the motion to it"),
+      trajectory_entry<Poses>(
+          "poses", "a list of poses (position and orientation), each with the duration of the motion to it"),
+      trajectory_entry<SessionHand>("live-session",
+                                    "the motion of the hand in a recorded live session, tick by tick", true),
+      trajectory_entry<RandomWalk>("random-walk", "a smooth random motion with six degrees of freedom"),
+      trajectory_entry<Press>("press", "waits, then presses to a given depth below the surface, 4.3.2"),
+      trajectory_entry<FollowSurface>("follow-surface",
+                                      "moves along a line at a given depth below the true surface"),
+      trajectory_entry<ImageScan>(
+          "image-scan", "moves along an image row at a given depth behind the surface of the first frame"),
+      trajectory_entry<ImagePress>(
+          "image-press", "presses at one pixel, at a given depth behind the surface of the newest frame"),
+  };
 }
 
-template <class Product>
-TrajectoryEntry trajectory(const char* name, const char* summary, bool has_buttons = false) {
-  return {{name, summary, factory<Product, typename Product::Settings, Trajectory, const Scenario&>},
-          has_buttons};
+std::vector<RendererEntry> built_in_renderers() {
+  return {
+      renderer_entry<ProxyRenderer, ProxyParameters>("proxy", DegreesOfFreedom::three, ContactModel::points,
+                                                     "3-DOF point cloud proxy, chapters 4 and 5"),
+      renderer_entry<TrackedSheetRenderer, TrackedSheetParameters>(
+          "tracked-sheet", DegreesOfFreedom::three, ContactModel::sheet,
+          "3-DOF proxy on a surface that is tracked from frame to frame and denoised; beyond the dissertation"),
+      renderer_entry<PenaltyRenderer, PenaltyParameters>(
+          "penalty", DegreesOfFreedom::three, ContactModel::nothing,
+          "3-DOF method for comparison: direct (penalty) rendering, a spring without a proxy"),
+      renderer_entry<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
+          "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
+          "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
+      renderer_entry<SurfelRenderer, SurfelParameters>(
+          "surfels", DegreesOfFreedom::three, ContactModel::oriented,
+          "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]"),
+      renderer_entry<AveragedProxyRenderer, AveragedProxyParameters>(
+          "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
+          "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames"),
+      renderer_entry<DensityProxyRenderer, DensityProxyParameters>(
+          "density-proxy", DegreesOfFreedom::three, ContactModel::points,
+          "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
+      renderer_entry<OracleProxyRenderer, OracleProxyParameters>(
+          "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
+          "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
+      renderer_entry<GodObjectRenderer, GodObjectParameters>(
+          "god-object", DegreesOfFreedom::three, ContactModel::mesh,
+          "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
+      renderer_entry<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
+                                                       "6-DOF rendering of a rigid tool, chapter 6"),
+      renderer_entry<LoadedToolPenalty, LoadedToolPenalty::Settings>(
+          "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
+          "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
+      renderer_entry<LoadedSpheres, LoadedSpheres::Settings>(
+          "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
+          "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7"),
+  };
 }
 
-template <class Product, class Settings>
-RendererEntry renderer(const char* name, DegreesOfFreedom degrees_of_freedom, ContactModel contact_model,
-                       const char* summary) {
-  return {{name, summary, factory<Product, Settings, Renderer, double, const Kernels&>},
-          degrees_of_freedom,
-          contact_model};
+// Of an own entry: a name that --set, lists and files can hold.
+bool is_name(const std::string& name) {
+  return !name.empty() &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_.") == std::string::npos;
 }
 
-const ScenarioEntry kScenarios[] = {
-    scenario<FlatGrid>("flat-grid", "a flat 100 x 100 cloud at rest, 4.3.1"),
-    scenario<MovingLift>("moving-lift", "a noisy flat 200 x 200 cloud that rises and accelerates, 4.3.2"),
-    scenario<MovingShape>("moving-shape",
-                          "a plane, ridge, valley, ball or ripple that is lifted, slid, shaken or rocked"),
-    scenario<Plates>("plates", "flat plates seen from above that hide each other, pass or move apart"),
-    scenario<TriangleWave>("triangle-wave",
-                           "a triangle wave of growing height at rest, with sharp edges, 4.3.3"),
-    scenario<CameraScene>("camera-scene",
-                          "a simulated depth camera looks at a ramp and a box on a table, 4.3.4"),
-    scenario<ListedPoints>("points",
-                           "a list of points at rest; the default, one point, is the cloud of 5.3.1"),
-    scenario<BeatingHeart>("beating-heart",
-                           "a simulated depth camera looks down on a beating organ on a table"),
-    scenario<ValveTank>("valve-tank",
-                        "a simulated colour and depth camera looks at two valves in turbid water, 7.5.1"),
-    scenario<OpenBox>("box", "a box open at the top, seen from inside, 6.3.1"),
-    scenario<Slot>("slot", "two parallel walls: a bar turned between them stops at a known angle"),
-    scenario<Wedge>("wedge", "two inclined walls that close on a tool and open again"),
-    scenario<MovingPlane>("moving-plane",
-                          "a flat cloud with normals that waits, then rises and lifts a tool"),
-    scenario<Sheet>("sheet", "one flat panel with normals that can be touched from both sides"),
-    scenario<RecordedScene>("recording", "a recorded sequence of depth images or organised clouds"),
-    scenario<SessionScene>(
-        "live-session",
-        "the frames of a recorded live session, at the times when the live renderer received them"),
-};
+template <class Entry>
+void append(std::vector<Entry>& entries, Entry entry, const std::string& kind) {
+  if (!is_name(entry.name))
+    throw InputError(kind + " \"" + entry.name + "\"",
+                     "expected a name of lower case letters, digits, - and _");
+  for (const Entry& other : entries)
+    if (other.name == entry.name)
+      throw InputError(kind + " \"" + entry.name + "\"", "is in the catalog already");
+  entries.push_back(std::move(entry));
+}
 
-const FixtureEntry kFixtures[] = {
-    fixture<Everywhere>("everywhere", "selects every point, 5.3.3"),
-    fixture<HalfSpace>("half-space", "selects the points on one side of a plane, 5.3.2"),
-    fixture<NearPoint>("near-point",
-                       "selects the points near a given position, or near the point that a pixel sees"),
-    fixture<HueRange>("hue-range", "selects the points of a colour (a range of hues)"),
-    fixture<ImageMask>("image-mask", "selects the points whose pixels a mask image marks"),
-};
+template <class Entry>
+void add_new(std::span<const Entry> entries, std::span<const Entry> known, Catalog& own) {
+  for (const Entry& entry : entries)
+    if (std::none_of(known.begin(), known.end(),
+                     [&](const Entry& other) { return other.name == entry.name; }))
+      own.add(entry);
+}
 
-const TrajectoryEntry kTrajectories[] = {
-    trajectory<Waypoints>("waypoints", "a list of positions, each with the speed of the motion to it"),
-    trajectory<Poses>(
-        "poses", "a list of poses (position and orientation), each with the duration of the motion to it"),
-    trajectory<SessionHand>("live-session", "the motion of the hand in a recorded live session, tick by tick",
-                            true),
-    trajectory<RandomWalk>("random-walk", "a smooth random motion with six degrees of freedom"),
-    trajectory<Press>("press", "waits, then presses to a given depth below the surface, 4.3.2"),
-    trajectory<FollowSurface>("follow-surface", "moves along a line at a given depth below the true surface"),
-    trajectory<ImageScan>("image-scan",
-                          "moves along an image row at a given depth behind the surface of the first frame"),
-    trajectory<ImagePress>("image-press",
-                           "presses at one pixel, at a given depth behind the surface of the newest frame"),
-};
-
-const RendererEntry kRenderers[] = {
-    renderer<ProxyRenderer, ProxyParameters>("proxy", DegreesOfFreedom::three, ContactModel::points,
-                                             "3-DOF point cloud proxy, chapters 4 and 5"),
-    renderer<TrackedSheetRenderer, TrackedSheetParameters>(
-        "tracked-sheet", DegreesOfFreedom::three, ContactModel::sheet,
-        "3-DOF proxy on a surface that is tracked from frame to frame and denoised; beyond the dissertation"),
-    renderer<PenaltyRenderer, PenaltyParameters>(
-        "penalty", DegreesOfFreedom::three, ContactModel::nothing,
-        "3-DOF method for comparison: direct (penalty) rendering, a spring without a proxy"),
-    renderer<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
-        "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
-        "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
-    renderer<SurfelRenderer, SurfelParameters>(
-        "surfels", DegreesOfFreedom::three, ContactModel::oriented,
-        "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]"),
-    renderer<AveragedProxyRenderer, AveragedProxyParameters>(
-        "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
-        "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames"),
-    renderer<DensityProxyRenderer, DensityProxyParameters>(
-        "density-proxy", DegreesOfFreedom::three, ContactModel::points,
-        "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
-    renderer<OracleProxyRenderer, OracleProxyParameters>(
-        "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
-        "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
-    renderer<GodObjectRenderer, GodObjectParameters>(
-        "god-object", DegreesOfFreedom::three, ContactModel::mesh,
-        "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
-    renderer<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
-                                               "6-DOF rendering of a rigid tool, chapter 6"),
-    renderer<LoadedToolPenalty, LoadedToolPenalty::Settings>(
-        "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
-        "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
-    renderer<LoadedSpheres, LoadedSpheres::Settings>(
-        "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
-        "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7"),
-};
+Catalog& current() {
+  static Catalog catalog = built_in_catalog();
+  return catalog;
+}
 
 }  // namespace
 
+Catalog& Catalog::add(ScenarioEntry entry) {
+  append(scenarios_, std::move(entry), "scenario");
+  return *this;
+}
+Catalog& Catalog::add(FixtureEntry entry) {
+  append(fixtures_, std::move(entry), "fixture rule");
+  return *this;
+}
+Catalog& Catalog::add(TrajectoryEntry entry) {
+  append(trajectories_, std::move(entry), "trajectory");
+  return *this;
+}
+Catalog& Catalog::add(RendererEntry entry) {
+  append(renderers_, std::move(entry), "renderer");
+  return *this;
+}
+Catalog& Catalog::add(Measure measure) {
+  append(measures_, std::move(measure), "measure");
+  return *this;
+}
+
+Catalog built_in_catalog() {
+  Catalog catalog;
+  for (ScenarioEntry& entry : built_in_scenarios()) catalog.add(std::move(entry));
+  for (FixtureEntry& entry : built_in_fixtures()) catalog.add(std::move(entry));
+  for (TrajectoryEntry& entry : built_in_trajectories()) catalog.add(std::move(entry));
+  for (RendererEntry& entry : built_in_renderers()) catalog.add(std::move(entry));
+  for (const Measure& measure : built_in_measures()) catalog.add(measure);
+  return catalog;
+}
+
+bool Catalog::is_empty() const {
+  return scenarios_.empty() && fixtures_.empty() && trajectories_.empty() && renderers_.empty() &&
+         measures_.empty();
+}
+
+Catalog own_entries(const Catalog& catalog) {
+  const Catalog built_in = built_in_catalog();
+  Catalog own;
+  add_new(catalog.scenarios(), built_in.scenarios(), own);
+  add_new(catalog.fixtures(), built_in.fixtures(), own);
+  add_new(catalog.trajectories(), built_in.trajectories(), own);
+  add_new(catalog.renderers(), built_in.renderers(), own);
+  add_new(catalog.measures(), built_in.measures(), own);
+  return own;
+}
+
+void use_catalog(Catalog catalog) {
+  current() = std::move(catalog);
+}
+
+const Catalog& catalog_in_use() {
+  return current();
+}
+
 std::span<const ScenarioEntry> scenarios() {
-  return kScenarios;
+  return current().scenarios();
 }
 std::span<const FixtureEntry> fixtures() {
-  return kFixtures;
+  return current().fixtures();
 }
 std::span<const TrajectoryEntry> trajectories() {
-  return kTrajectories;
+  return current().trajectories();
 }
 std::span<const RendererEntry> renderers() {
-  return kRenderers;
+  return current().renderers();
+}
+std::span<const Measure> measures() {
+  return current().measures();
 }
 
 }  // namespace remote_touch

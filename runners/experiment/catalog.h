@@ -1,20 +1,61 @@
-// Everything that an experiment can name. A new scenario, fixture rule, trajectory or renderer is one file
-// pair and one line here; tests/runners/experiment/contract_test.cpp, or renderer_contract_test.cpp, then
-// checks it against the contract of its interface.
+// Everything that an experiment can name, and the measures of its trace. A new scenario, fixture rule,
+// trajectory or renderer of this project is one file pair and one line in catalog.cpp; a program of yours
+// adds its own to built_in_catalog(), see runners/cli/program.h. The contract tests (runners/contract) then
+// check it.
 #pragma once
 
 #include <span>
 #include <string>
+#include <vector>
 
+#include "analysis/measures/measures.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/factory.h"
 
 namespace remote_touch {
 
+class Catalog {
+ public:
+  // Each throws InputError for a name that is taken, or is not of lower case letters, digits, - and _.
+  Catalog& add(ScenarioEntry entry);
+  Catalog& add(FixtureEntry entry);
+  Catalog& add(TrajectoryEntry entry);
+  Catalog& add(RendererEntry entry);
+  Catalog& add(Measure measure);
+
+  std::span<const ScenarioEntry> scenarios() const { return scenarios_; }
+  std::span<const FixtureEntry> fixtures() const { return fixtures_; }
+  std::span<const TrajectoryEntry> trajectories() const { return trajectories_; }
+  std::span<const RendererEntry> renderers() const { return renderers_; }
+  std::span<const Measure> measures() const { return measures_; }
+  bool is_empty() const;
+
+ private:
+  std::vector<ScenarioEntry> scenarios_;
+  std::vector<FixtureEntry> fixtures_;
+  std::vector<TrajectoryEntry> trajectories_;
+  std::vector<RendererEntry> renderers_;
+  std::vector<Measure> measures_;
+};
+
+// What comes with this project.
+Catalog built_in_catalog();
+
+// Those of this catalog that the built-in one does not have.
+Catalog own_entries(const Catalog& catalog);
+
+// From now on the whole program uses this catalog; until then the built-in one. Before the first experiment,
+// and from one thread: what the functions below returned before is invalid afterwards.
+void use_catalog(Catalog catalog);
+
+const Catalog& catalog_in_use();
+
+// Those of the catalog in use.
 std::span<const ScenarioEntry> scenarios();
 std::span<const FixtureEntry> fixtures();
 std::span<const TrajectoryEntry> trajectories();
 std::span<const RendererEntry> renderers();
+std::span<const Measure> measures();
 
 // The entry of that name; throws InputError with the known names.
 template <class Entry>
@@ -22,7 +63,7 @@ const Entry& find_entry(std::span<const Entry> entries, const std::string& name,
   std::string known;
   for (const Entry& entry : entries) {
     if (name == entry.name) return entry;
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    known += (known.empty() ? "" : ", ") + entry.name;
   }
   throw InputError(path + " = \"" + name + "\"", "expected " + known);
 }

@@ -1,6 +1,7 @@
 // Factories of catalog entries: they hold settings and build the object from them.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -37,9 +38,13 @@ class Factory : public Configurable {
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
-// For a product with a constructor (Settings, Arguments...) and functions parameters(Settings&),
-// validate(Settings); max_stiffness_N_per_m(Settings) and rendered_contact(Settings) for every renderer; and
-// input_files(Settings) if the settings name files.
+// For a product with a constructor (Settings, Arguments...). In the namespace of the settings are the
+// functions
+//   Parameters parameters(Settings&)                  the settings by name
+//   std::string validate(const Settings&)             empty, or the first problem
+//   double max_stiffness_N_per_m(const Settings&)     of every renderer
+//   RenderedContact rendered_contact(const Settings&) of a renderer whose rest distance is known
+//   RecordingPart input_files(const Settings&)        if the settings name files
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -61,7 +66,7 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
       return 0;
   }
   RenderedContact contact() const override {
-    if constexpr (std::is_base_of_v<Renderer, Product>)
+    if constexpr (requires { rendered_contact(values_); })
       return rendered_contact(values_);
     else
       return {};
@@ -76,9 +81,9 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
 
 template <class... Seam>
 struct CatalogEntry {
-  const char* name;
-  const char* summary;
-  std::unique_ptr<Factory<Seam...>> (*make)();
+  std::string name;     // lower case letters, digits and hyphens
+  std::string summary;  // one line, for lists
+  std::function<std::unique_ptr<Factory<Seam...>>()> make;
 };
 
 using ScenarioEntry = CatalogEntry<Scenario, const NoiseKey&, const Kernels&>;
@@ -103,5 +108,37 @@ struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the 
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;
   ContactModel contact_model = ContactModel::points;
 };
+
+// --- entries from classes ---
+
+template <class Product, class Settings, class... Seam>
+std::unique_ptr<Factory<Seam...>> factory() {
+  return std::make_unique<FactoryFor<Product, Settings, Seam...>>();
+}
+
+template <class Product, class Settings = typename Product::Settings>
+ScenarioEntry scenario_entry(std::string name, std::string summary) {
+  return {std::move(name), std::move(summary),
+          factory<Product, Settings, Scenario, const NoiseKey&, const Kernels&>};
+}
+
+template <class Product, class Settings = typename Product::Settings>
+FixtureEntry fixture_entry(std::string name, std::string summary) {
+  return {std::move(name), std::move(summary), factory<Product, Settings, FixtureRule>};
+}
+
+template <class Product, class Settings = typename Product::Settings>
+TrajectoryEntry trajectory_entry(std::string name, std::string summary, bool has_buttons = false) {
+  return {{std::move(name), std::move(summary), factory<Product, Settings, Trajectory, const Scenario&>},
+          has_buttons};
+}
+
+template <class Product, class Settings = typename Product::Settings>
+RendererEntry renderer_entry(std::string name, DegreesOfFreedom degrees_of_freedom,
+                             ContactModel contact_model, std::string summary) {
+  return {{std::move(name), std::move(summary), factory<Product, Settings, Renderer, double, const Kernels&>},
+          degrees_of_freedom,
+          contact_model};
+}
 
 }  // namespace remote_touch

@@ -3,8 +3,38 @@
 #include <fstream>
 
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/shell_command.h"
 
 namespace remote_touch {
+
+namespace {
+
+ProgramIdentity& this_program() {
+  static ProgramIdentity program;
+  return program;
+}
+
+}  // namespace
+
+void identify_program(ProgramIdentity identity) {
+  this_program() = std::move(identity);
+}
+
+const ProgramIdentity& program_identity() {
+  return this_program();
+}
+
+std::vector<std::string> program_words() {
+  std::vector<std::string> words = {this_program().name};
+  for (const ProgramIdentity::Plugin& plugin : this_program().plugins)
+    words.insert(words.end(), {"--plugin", plugin.file});
+  return words;
+}
+
+std::string program_text() {
+  return shell_command(program_words());
+}
 
 std::string version() {
   return REMOTE_TOUCH_VERSION;
@@ -29,6 +59,15 @@ TextAttributes provenance(const std::string& config, const std::string& command,
                          {"source_digest", REMOTE_TOUCH_SOURCES},
                          {"compiler", REMOTE_TOUCH_COMPILER},
                          {"flags", REMOTE_TOUCH_FLAGS}};
+  const ProgramIdentity& program = this_program();
+  if (!program.sha256.empty()) {
+    list.emplace_back("program", program.name);
+    list.emplace_back("program_sha256", program.sha256);
+  }
+  std::string plugins;
+  for (const ProgramIdentity::Plugin& plugin : program.plugins)
+    plugins += in_one_line(plugin.file) + ": sha256 " + plugin.sha256 + "\n";
+  if (!plugins.empty()) list.emplace_back("plugins", plugins);
   if (!isa.empty()) list.emplace_back("isa", isa);
   if (!inputs.empty()) list.emplace_back("input_digests", inputs);
   return list;

@@ -2,14 +2,33 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/storage/hdf5_file.h"
 #include "runners/provenance/recipe.h"
 
 namespace remote_touch {
 
-std::string version();   // "0.2.0"
+std::string version();   // "0.3.0"
 std::string cpu_name();  // as the system reports it; empty if it does not
+
+// What made a result beside the sources of this project.
+struct ProgramIdentity {
+  struct Plugin {
+    std::string file, sha256;
+  };
+  std::string name = "remote-touch";
+  std::string sha256 = {};  // of the program's file, if its catalog has entries of its own; else empty
+  std::vector<Plugin> plugins = {};  // shared libraries with renderers
+};
+// From now on every result has the attributes `program` and `program_sha256` if there is a SHA-256, and
+// `plugins` (a line "FILE: sha256 HASH" for each) if there are any; commands begin with program_words().
+// Before the first result.
+void identify_program(ProgramIdentity identity);
+const ProgramIdentity& program_identity();
+// "remote-touch", "--plugin", "mine.so"
+std::vector<std::string> program_words();
+std::string program_text();  // the same for a shell
 
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON. isa may be
 // empty, for results that several machines made together; it is then left out. inputs: the text of

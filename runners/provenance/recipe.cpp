@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
+#include "runners/provenance/provenance.h"
 #include "runners/provenance/shell_command.h"
 #include "scenarios/text_files/json_text.h"
 
@@ -67,15 +68,17 @@ bool is_known(const std::string& action) {
 
 std::vector<Words> commands(const Recipe& recipe) {
   const bool is_replay = recipe.action == "replay";
-  Words words{"remote-touch", is_replay ? "sweep" : recipe.action, recipe.subject};
+  Words words = program_words();
+  words.insert(words.end(), {is_replay ? "sweep" : recipe.action, recipe.subject});
   if (recipe.action == "compare") words.push_back(recipe.candidate);
   add_options(words, "--set", recipe.overrides);
   add_options(words, "--tolerance", recipe.tolerances);
   if (recipe.coarse != 1) add_options(words, "--coarse", {std::to_string(recipe.coarse)});
   if (!is_replay) return {words};
-  return {words,
-          {"remote-touch", "replay", "--cell", cell_text(recipe), "--replicate",
-           std::to_string(recipe.replicate)}};
+  Words again = program_words();
+  again.insert(again.end(),
+               {"replay", "--cell", cell_text(recipe), "--replicate", std::to_string(recipe.replicate)});
+  return {words, again};
 }
 
 std::string command_text(const Recipe& recipe) {

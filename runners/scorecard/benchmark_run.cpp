@@ -11,7 +11,7 @@ namespace {
 
 // What makes the file again, in any folder.
 std::string command_of(const Benchmark& benchmark, const BenchmarkScene& scene, const Method& method) {
-  return "remote-touch scorecard " + method.name + " --scene " + scene.name + " --seeds " +
+  return program_text() + " scorecard " + method.name + " --scene " + scene.name + " --seeds " +
          std::to_string(benchmark.replicates);
 }
 

@@ -2,6 +2,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
+#include "runners/provenance/provenance.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
 
@@ -37,8 +38,9 @@ std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const Sto
     if (result.state[run] == RunState::failed)
       return FailureTrace{level, result.replicate_of(run), {}, {}, result.error[run]};
     FailureTrace failure{level, result.replicate_of(run), "traces/" + sweep.name + ".h5", {}};
-    failure.command = "remote-touch replay runs/" + sweep.name + ".h5 --cell " + cell_text(result, level) +
-                      " --replicate " + std::to_string(failure.replicate) + " -o " + failure.file;
+    failure.command = program_text() + " replay runs/" + sweep.name + ".h5 --cell " +
+                      cell_text(result, level) + " --replicate " + std::to_string(failure.replicate) +
+                      " -o " + failure.file;
     const std::filesystem::path file = folder / failure.file;
     SimulationOptions options;
     options.kernels = &kernels, options.stop = stop;

@@ -109,7 +109,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   std::string known;
   std::vector<std::string> names;
   for (const Measure& measure : measures()) {
-    known += (known.empty() ? "" : ", ") + std::string(measure.name);
+    known += (known.empty() ? "" : ", ") + measure.name;
     names.push_back(measure.name);
   }
   const auto refuse = [&](const std::string& what) {

@@ -26,8 +26,8 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
   };
   if (attribute(theirs, "config") != attribute(ours, "config"))
     refuse("is of another configuration, first in " + first_difference(theirs, ours));
-  for (const char* name :
-       {"shard", "version", "git_commit", "git_dirty", "source_digest", "compiler", "flags"})
+  for (const char* name : {"shard", "version", "git_commit", "git_dirty", "source_digest", "compiler",
+                           "flags", "program", "program_sha256", "plugins"})
     if (attribute(theirs, name) != attribute(ours, name))
       refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
              attribute(ours, name) + "\"");

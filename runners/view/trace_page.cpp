@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
+#include "runners/provenance/recipe.h"
 #include "runners/view/shown_claims.h"
 
 namespace remote_touch {
@@ -11,7 +12,8 @@ namespace {
 
 // The frames of a live run came from a sensor, at times that only its recording knows.
 void require_simulated(const std::filesystem::path& file, const StoredTrace& trace) {
-  if (attribute(trace.attributes(), "command").starts_with("remote-touch live"))
+  const std::string command = attribute(trace.attributes(), "command");
+  if (!recipe_of(trace.attributes()) && command.find(" live ") != std::string::npos)
     throw InputError(
         file.string(),
         "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");

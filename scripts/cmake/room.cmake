@@ -40,6 +40,13 @@ function(room)
     target_link_libraries(${name} PUBLIC ${target})
   endforeach()
   set_property(GLOBAL APPEND PROPERTY ROOMS ${path})
+  links_of(${path} ${ROOM_LINKS})
+endfunction()
+
+# links_of(runners/view ZLIB::ZLIB ...): what a program has to link that uses this room installed.
+function(links_of path)
+  string(REGEX MATCH "^[a-z]+" top ${path})
+  set_property(GLOBAL APPEND PROPERTY LINKS_OF_${top} ${ARGN})
 endfunction()
 
 # rooms(core geometry kernels ... tool/mesh): the rooms below this folder, and `core`, which links them all.

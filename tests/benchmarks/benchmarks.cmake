@@ -32,6 +32,11 @@ add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
 
+add_executable(plugin_benchmark benchmarks/checked_benchmark.cpp benchmarks/plugin_benchmark.cpp)
+target_link_libraries(plugin_benchmark PRIVATE runners benchmark::benchmark)
+target_compile_definitions(plugin_benchmark PRIVATE PLUGIN_RENDERERS="$<TARGET_FILE:plugin_renderers>")
+add_dependencies(plugin_benchmark plugin_renderers)
+
 # Benchmarks beside others' libraries are built only when asked for, and say so where those are not installed.
 function(peers_missing name packages)
   add_custom_target(${name} COMMAND ${CMAKE_COMMAND} -E echo "${name} needs ${packages}"

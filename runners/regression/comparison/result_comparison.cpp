@@ -23,8 +23,8 @@ ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
     return text.empty() ? std::string("null") : text;
   };
   result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
-  for (const char* name :
-       {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler", "flags", "isa"})
+  for (const char* name : {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler",
+                           "flags", "isa", "program", "program_sha256", "plugins"})
     if (attribute(baseline, name) != attribute(candidate, name))
       result.provenance.push_back(std::string(name) + " " + attribute(baseline, name) + " against " +
                                   attribute(candidate, name));

@@ -81,7 +81,7 @@ TEST(PerceivedForce, AForceThatEndsIsSentOnceAndNoMore) {
 TEST(PerceivedForce, AreInTheTableAtThreeFractions) {
   const Trace trace = trace_along(200, [](int i) { return 1 + 0.01 * (i / 10) * (i % 20 < 10 ? 1 : -1); });
   const auto value = [&](const std::string& name) {
-    for (const Measure& measure : measures())
+    for (const Measure& measure : built_in_measures())
       if (measure.name == name) return measure.of(trace);
     return std::nan("");
   };

@@ -86,7 +86,7 @@ TEST(SettledContact, MeansNothingWhereTheContactWasNotComputed) {
   Trace trace;
   trace.append(0, {}, {}, {});
   int found = 0;
-  for (const Measure& measure : measures()) {
+  for (const Measure& measure : built_in_measures()) {
     if (measure.runs != MeasuredRuns::contact) continue;
     ++found;
     EXPECT_FALSE(applies(measure, trace)) << measure.name;

@@ -13,10 +13,10 @@ namespace remote_touch::tool_measures_test {
 namespace {
 
 const Measure& measure(const std::string& name) {
-  for (const Measure& each : measures())
+  for (const Measure& each : built_in_measures())
     if (each.name == name) return each;
   ADD_FAILURE() << "no measure " << name;
-  return measures().front();
+  return built_in_measures().front();
 }
 
 struct Tick {
@@ -104,7 +104,7 @@ TEST(ToolMeasures, ApplyToTheirRunsOnly) {
   Trace point;
   point.append(0, {}, {}, {});
   const Trace tool = trace_of({{}, {}});
-  for (const Measure& each : measures()) {
+  for (const Measure& each : built_in_measures()) {
     const bool of_tool = each.runs == MeasuredRuns::tool, of_proxy = each.runs == MeasuredRuns::proxy,
                of_guidance = each.runs == MeasuredRuns::guidance,
                of_contact = each.runs == MeasuredRuns::contact;  // which this trace does not have

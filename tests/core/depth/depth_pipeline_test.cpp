@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tests/core/depth/depth_cases.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 
 namespace remote_touch::depth_pipeline_test {
 namespace {

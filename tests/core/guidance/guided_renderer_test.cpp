@@ -12,7 +12,7 @@
 
 #include "core/geometry/rotation.h"
 #include "core/tool/motion/tool_renderer.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "tests/core/solve/program_problems.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 
 namespace remote_touch::quadratic_program_test {
 namespace {

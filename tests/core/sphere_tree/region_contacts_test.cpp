@@ -10,7 +10,7 @@
 
 #include "core/sphere_tree/tool_spheres.h"
 #include "core/tool/motion/look_ahead_motion.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"

@@ -9,7 +9,7 @@
 
 #include "core/sphere_tree/region_tree.h"
 #include "core/sphere_tree/tree_collision.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::sphere_tree_test {

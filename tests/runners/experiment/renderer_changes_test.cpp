@@ -11,7 +11,7 @@
 #include "analysis/storage/digest.h"
 #include "runners/experiment/experiment.h"
 #include "runners/simulation/simulation.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -12,7 +12,7 @@
 #include "runners/live/timing/steady_clock.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 

@@ -16,7 +16,7 @@
 #include "tests/doubles/simulated_clock.h"
 #include "tests/doubles/spacenav_daemon.h"
 #include "tests/doubles/spacenav_socket.h"
-#include "tests/support/allocation_counter.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 

@@ -1,4 +1,5 @@
-// remote-touch: signals, the choice of kernels, errors.
+#include "runners/cli/program.h"
+
 #include <malloc.h>
 
 #include <atomic>
@@ -6,21 +7,24 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
+#include "analysis/storage/sha256.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/command_line.h"
 #include "runners/cli/last_resorts.h"
+#include "runners/provenance/provenance.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
 
-namespace {
+namespace remote_touch {
 
-using namespace remote_touch;
+namespace {
 
 std::atomic<bool> stop_requested{false}, report_requested{false}, rearm_requested{false};
 
@@ -53,7 +57,7 @@ void take_data_folder() {
 }
 
 void complain(const std::string& problem) {
-  std::fprintf(stderr, "remote-touch: %s\n", printable(problem).c_str());
+  std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(problem).c_str());
 }
 
 // Before the constants of all files are made, which may find no memory.
@@ -66,27 +70,43 @@ int interrupted() {
   return kInterrupted;
 }
 
-}  // namespace
+// With entries of its own it is another program than the one that the sources describe.
+void take_catalog(Catalog catalog, const std::string& called) {
+  if (!own_entries(catalog).is_empty())
+    identify_program({std::filesystem::path(called).filename().string(), sha256_of_file("/proc/self/exe")});
+  use_catalog(std::move(catalog));
+}
 
-int main(int argc, char** argv) {
-  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
-  mallopt(M_TRIM_THRESHOLD, 256 << 20);
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+CommandLine with_signals() {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
   std::signal(SIGUSR1, request_report);
   std::signal(SIGUSR2, request_rearm);
+  CommandLine line;
+  line.stop = &stop_requested;
+  line.report = &report_requested;
+  line.rearm = &rearm_requested;
+  return line;
+}
+
+int flushed(int code) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw InputError("standard output", "cannot be written: expected a place with room");
+  return code;
+}
+
+}  // namespace
+
+int command_line(Catalog catalog, int argc, char** argv) {
+  // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  const CommandLine line = with_signals();
   try {
+    take_catalog(std::move(catalog), argc > 0 ? argv[0] : "");
     take_data_folder();
-    CommandLine line;
-    line.stop = &stop_requested;
-    line.report = &report_requested;
-    line.rearm = &rearm_requested;
-    const int code = run_command_line(argc, argv, line, chosen_kernels);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout))
-      throw InputError("standard output", "cannot be written: expected a place with room");
-    return code;
+    return flushed(run_command_line(argc, argv, line, chosen_kernels));
   } catch (const Interrupted&) {
     return interrupted();
   } catch (const InputError& error) {
@@ -104,3 +124,5 @@ int main(int argc, char** argv) {
   }
   return kBadInput;
 }
+
+}  // namespace remote_touch

@@ -1,0 +1,42 @@
+// A renderer of a shared library as one of this program.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/rendering/renderer.h"
+#include "runners/experiment/factory.h"
+#include "runners/plugins/remote_touch_plugin.h"
+
+namespace remote_touch {
+
+// on_frame() and step() throw InputError where the library reports a problem or throws.
+class PluginRenderer final : public Renderer {
+ public:
+  // functions outlives this. Throws InputError if the library makes none of these values.
+  PluginRenderer(const remote_touch_renderer& functions, const std::vector<double>& values,
+                 double haptic_rate_hz, const Kernels& kernels);
+  ~PluginRenderer() override;
+
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  const remote_touch_renderer& functions_;
+  const Kernels& kernels_;
+  std::vector<double> values_;
+  PointCloud buffer_;  // for frames that are not stored as a cloud
+  void* renderer_ = nullptr;
+  int newest_ = -1;
+};
+
+using RendererFactory = Factory<Renderer, double, const Kernels&>;
+
+// With the default values of the settings.
+std::unique_ptr<RendererFactory> plugin_factory(const remote_touch_renderer& functions);
+
+}  // namespace remote_touch

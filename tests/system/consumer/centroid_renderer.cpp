@@ -1,0 +1,57 @@
+#include "centroid_renderer.h"
+
+namespace lab {
+
+using namespace remote_touch;
+
+Parameters parameters(CentroidSettings& settings) {
+  return {{"radius_m", &settings.radius_m, 1e-6, 1, "radius r of the ball around the HIP"},
+          {"stiffness_N_per_m", &settings.stiffness_N_per_m, 0, 10000, "spring k", kLive}};
+}
+
+std::string validate(const CentroidSettings&) {
+  return {};
+}
+
+CentroidRenderer::CentroidRenderer(const Settings& settings, double, const Kernels& kernels)
+    : settings_(settings), kernels_(kernels) {}
+
+void CentroidRenderer::on_frame(const Frame& frame) {
+  if (!order_.take(frame)) return;
+  points_ = frame.points;
+  near_.reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
+}
+
+RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
+  RenderOutput out;
+  out.frame_index = order_.newest();
+  out.converged = true;
+  if (!device.position_W.allFinite()) {
+    out.proxy_W = rest_W_;
+    out.status = RenderStatus::device_not_finite;
+    return out;
+  }
+  out.proxy_W = rest_W_ = device.position_W;
+  out.status = order_.status(points_ ? RenderStatus::ok : RenderStatus::no_frame);
+  if (!points_) return out;
+  near_.clear();
+  points_->gather({device.position_W, settings_.radius_m}, kernels_, near_);
+  out.contact_count = static_cast<int>(near_.size());
+  if (near_.size() == 0) return out;
+  const PointsView points = near_.view();
+  Vec3 sum_m = Vec3::Zero();  // from the HIP, in whole nanometres: such a sum does not depend on the order
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const Vec3 offset_m = Vec3(points.x[i], points.y[i], points.z[i]) - device.position_W;
+    sum_m += Vec3((1e9 * offset_m).array().round());
+  }
+  const Vec3 away_m = -1e-9 / static_cast<double>(near_.size()) * sum_m;
+  const double distance_m = away_m.norm();
+  if (distance_m == 0) return out;
+  out.nearest_distance_m = distance_m;
+  out.normal_W = away_m / distance_m;
+  out.force_N = settings_.stiffness_N_per_m * (settings_.radius_m - distance_m) * out.normal_W;
+  out.state = ContactState::contact;
+  return out;
+}
+
+}  // namespace lab

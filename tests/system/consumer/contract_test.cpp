@@ -1,0 +1,13 @@
+// The contracts, held against what this laboratory adds.
+#include <gtest/gtest.h>
+#include <runners/contract/contract_tests.h>
+
+#include "entries.h"
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  remote_touch::Catalog own;
+  lab::add_entries(own);
+  remote_touch::contract_tests(own);
+  return RUN_ALL_TESTS();
+}
