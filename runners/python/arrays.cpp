@@ -129,11 +129,11 @@ py::array_t<double> array_of(const Eigen::Quaterniond& q) {
   return array;
 }
 
-PointColumns points_of(const py::handle& array, const Subject& subject) {
+PythonPoints points_of(const py::handle& array, const Subject& subject) {
   const char* const expected = "an array of shape (n, 3) of finite numbers, NaN for a missing point";
   const Doubles numbers = checked_array(array, {-1, 3}, subject, expected);
   const auto n = static_cast<std::size_t>(numbers.shape(0));
-  PointColumns columns{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  PythonPoints columns{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
   const double* row = numbers.data();
   for (std::size_t i = 0; i < n; ++i, row += 3) {
     const int missing = std::isnan(row[0]) + std::isnan(row[1]) + std::isnan(row[2]);

@@ -45,10 +45,10 @@ pybind11::array_t<double> array_of(const Eigen::Quaterniond& quaternion);
 
 // The columns of an array of n rows of three finite numbers; a row of three NaN is a point that is missing.
 // Throws InputError.
-struct PointColumns {
+struct PythonPoints {
   std::vector<double> x, y, z;
 };
-PointColumns points_of(const pybind11::handle& array, const Subject& subject);
+PythonPoints points_of(const pybind11::handle& array, const Subject& subject);
 // n numbers of 0 or more; where may_be_missing, NaN too. Throws InputError.
 std::vector<double> lengths_of(const pybind11::handle& array, std::size_t n, bool may_be_missing,
                                const Subject& subject);

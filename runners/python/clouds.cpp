@@ -46,11 +46,11 @@ std::unique_ptr<PythonCloud> make_cloud(const py::object& points, const py::obje
                                         const py::object& stiffness_N_per_m, int columns) {
   const auto named = [](const char* name) { return [name] { return std::string("Cloud: ") + name; }; };
   PointCloud cloud;
-  PointColumns xyz = points_of(points, named("points"));
+  PythonPoints xyz = points_of(points, named("points"));
   const std::size_t n = xyz.x.size();
   cloud.x = std::move(xyz.x), cloud.y = std::move(xyz.y), cloud.z = std::move(xyz.z);
   if (!normals.is_none()) {
-    PointColumns given = points_of(normals, named("normals"));
+    PythonPoints given = points_of(normals, named("normals"));
     if (given.x.size() != n) throw InputError("Cloud: normals", "expected one for each point");
     cloud.nx = std::move(given.x), cloud.ny = std::move(given.y), cloud.nz = std::move(given.z);
   }
@@ -239,7 +239,7 @@ PythonFrame::PythonFrame(const Frame& frame, const Kernels& kernels)
 
 PointCloud cloud_of(const py::handle& value, const Subject& subject) {
   if (py::isinstance<PythonCloud>(value)) return *value.cast<const PythonCloud&>().shown;
-  PointColumns xyz = points_of(value, subject);
+  PythonPoints xyz = points_of(value, subject);
   PointCloud cloud;
   cloud.x = std::move(xyz.x), cloud.y = std::move(xyz.y), cloud.z = std::move(xyz.z);
   return cloud;

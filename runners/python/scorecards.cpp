@@ -10,6 +10,7 @@
 #include "runners/python/bindings.h"
 #include "runners/python/long_work.h"
 #include "runners/scorecard/benchmark_choice.h"
+#include "runners/scorecard/card_folder.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/report_json.h"
 #include "runners/scorecard/stored_card.h"
@@ -22,16 +23,6 @@ namespace py = pybind11;
 namespace {
 
 using Texts = std::vector<std::string>;
-
-void make_folders(const std::filesystem::path& folder) {
-  for (const char* part : {"runs", "traces"}) {
-    std::error_code failure;
-    std::filesystem::create_directories(folder / part, failure);
-    if (failure)
-      throw InputError((folder / part).string(),
-                       "cannot be made (" + failure.message() + "): expected a writable folder");
-  }
-}
 
 std::string command_of(const Texts& methods, const Texts& scenes, int seeds) {
   std::string command = program_text() + " scorecard";
@@ -64,12 +55,13 @@ FailedRuns make_scorecard(const Texts& methods, const Texts& scenes, int seeds,
   const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
   const FileTurn turn(FileTurn::For::a_sweep);
   require_same_benchmark(sweeps);
-  make_folders(folder);
+  require_all_of(folder / kScorecardFile, plan);
+  make_scorecard_folder(folder.string());
   do_sweeps(sweeps, work.kernels, &work.stop, [&](std::size_t done, std::size_t all, double fraction) {
     work.progress((static_cast<double>(done) + fraction) / static_cast<double>(all + 1));
   });
-  const ScorecardReport report = evaluate(plan, work.kernels, &work.stop, {});
-  write_figure(folder / "scorecard.h5", scorecard_figure(report.card),
+  const ScorecardReport report = evaluate(plan, work.kernels, &work.stop, [](std::size_t, std::size_t) {});
+  write_figure(folder / kScorecardFile, scorecard_figure(report.card),
                provenance(configuration_of(plan), command_of(methods, scenes, seeds), ""));
   const std::string text = to_json(report);
   write_file_atomically(folder / "scorecard.json", text.data(), text.size());

@@ -174,15 +174,14 @@ def _plain(value):
     raise InputError(f"{value!r}: expected a number, a text, a list or a dict")
 
 
-def _json(value):
+def _json(value, subject=""):
     try:
         return json.dumps(value, default=_plain, allow_nan=False)
-    except (TypeError, RecursionError) as error:
-        raise InputError(f"{type(value).__name__}: {error}: expected what JSON can hold") from None
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{value!r}: expected finite numbers and no circle") from None
+    except InputError:
+        raise
+    except (TypeError, ValueError, RecursionError) as error:  # of a key, NaN, a circle
+        raise InputError(f"{subject}{type(value).__name__}: {error}: expected finite numbers, texts, lists or dicts "
+                         "with texts as keys") from None
 
 
 def _overrides(given, seed=None):
@@ -190,12 +189,14 @@ def _overrides(given, seed=None):
     pairs = [*(given or {}).items()]
     if seed is not None:
         pairs.append(("seed", seed))
-    return [f"{path}={_text(value)}" for path, value in pairs]
+    return [f"{path}={_text(value, path)}" for path, value in pairs]
 
 
-def _text(value):
+def _text(value, path):
     value = name_of(value) if isinstance(value, type) else value
-    return value if isinstance(value, str) else os.fspath(value) if isinstance(value, os.PathLike) else _json(value)
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    return _json(value, f"{path} = ")
 
 
 def _path(output):
@@ -204,7 +205,7 @@ def _path(output):
 
 def _cell(cell):
     if isinstance(cell, dict):
-        return ",".join(f"{name}={_text(value)}" for name, value in cell.items())
+        return ",".join(f"{name}={_text(value, name)}" for name, value in cell.items())
     if isinstance(cell, str):
         return cell
     return ",".join(str(int(place)) for place in (cell if hasattr(cell, "__iter__") else (cell,)))
