@@ -110,9 +110,10 @@ Eigen::Quaterniond quaternion_of(const py::handle& value, const Subject& subject
   const Doubles numbers = checked_array(value, {4}, subject, "a quaternion w, x, y, z");
   const double* p = numbers.data();
   const Eigen::Quaterniond q(p[0], p[1], p[2], p[3]);
-  if (!(std::abs(q.norm() - 1) <= 1e-6))
+  const double off = std::abs(q.norm() - 1);
+  if (!(off <= 1e-6))
     throw InputError(subject(), "its length is not 1: expected a unit quaternion w, x, y, z");
-  return q.normalized();
+  return off > 1e-12 ? q.normalized() : q;  // one that comes from here keeps its bits
 }
 
 py::array_t<double> array_of(const Vec3& vector) {

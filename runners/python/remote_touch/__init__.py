@@ -19,6 +19,8 @@ __all__ = ["Cloud", "Comparison", "Device", "Frame", "InputError", "NoiseKey", "
            "Setting", "Trajectory", "compare", "describe", "list", "open", "register", "replay", "run", "scene",
            "scorecard", "sweep"]
 
+InputError.__module__ = __name__  # where users find it
+InputError.__doc__ = "Input that cannot be used: one line, what is wrong: what is expected."
 # The same variables as for the command line.
 _core.choose_kernels(_os.environ.get("REMOTE_TOUCH_ISA", ""))
 _core.set_data_folder(_os.environ.get("REMOTE_TOUCH_DATA", ""))

@@ -40,7 +40,7 @@ def sweep(sweep, *, set=None, threads=None, output=None, progress=None):
     if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 4096):
         raise InputError(f"threads = {threads}: expected 1 to 4096, or None")
     result = _core.sweep(subject, text, _overrides(set), threads or 0, _path(output), _report(progress, subject))
-    return dataset.warned(dataset.of_sweep(result), subject)
+    return dataset.warned(dataset.of_sweep(result), os.fsdecode(subject))
 
 
 def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None):
@@ -51,7 +51,7 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     from remote_touch import dataset
     file, attributes = "", []
     if isinstance(sweep, (str, os.PathLike)):
-        file = os.fspath(sweep)
+        file = _native(sweep)
     else:
         attributes = [(name, value) for name, value in sweep.attrs.items() if isinstance(value, str)]
     result = _core.replay(file, attributes, _cell(cell), int(replicate), _path(output), bool(force),
@@ -65,9 +65,9 @@ def open(path):
     A folder of a scorecard stands for the file scorecard.h5 in it.
     """
     from remote_touch import dataset
-    file = os.fspath(path)
+    file = _native(path)
     if os.path.isdir(file):
-        file = os.path.join(file, "scorecard.h5")
+        file = os.path.join(file, b"scorecard.h5")
     result = _core.open(file)
     return {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "figure": dataset.of_figure}[result["kind"]](result)
 
@@ -102,7 +102,7 @@ def compare(baseline, candidate, *, tolerance=None, paired=False):
     absolute and relative; "*" is every column. All else must be equal bit for bit."""
     tolerances = {name: _tolerance(name, value) for name, value in (tolerance or {}).items()}
     if isinstance(baseline, (str, os.PathLike)) and isinstance(candidate, (str, os.PathLike)):
-        return _comparison(_core.compare_files(os.fspath(baseline), os.fspath(candidate), tolerances, bool(paired)))
+        return _comparison(_core.compare_files(_native(baseline), _native(candidate), tolerances, bool(paired)))
     from remote_touch import dataset
     sides = []
     for side in (baseline, candidate):
@@ -112,7 +112,7 @@ def compare(baseline, candidate, *, tolerance=None, paired=False):
 
 def describe(name):
     """All that has the name, as text: parameters of a renderer, the configuration of an experiment, and so on."""
-    return _core.describe(name)
+    return _core.describe(_native(name))
 
 
 def list():
@@ -129,19 +129,19 @@ def scorecard(methods=(), *, scenes=(), seeds=10, output, threads=None, progress
     """
     import tempfile
     import warnings
-    folder = os.fspath(output)
+    folder = _native(output)
     with tempfile.TemporaryDirectory() as files:
         names = [_method(method, files) for method in methods]
-        failed, first = _core.scorecard(names, [os.fspath(scene) for scene in scenes], int(seeds), threads or 0, folder,
+        failed, first = _core.scorecard(names, [_native(scene) for scene in scenes], int(seeds), threads or 0, folder,
                                         _report(progress, "scorecard"))
     if failed:
-        warnings.warn(f"{folder}: {failed} runs failed, the first: {first}", stacklevel=2)
-    return open(folder)
+        warnings.warn(f"{os.fspath(output)}: {failed} runs failed, the first: {first}", stacklevel=2)
+    return open(output)
 
 
 def _method(method, folder):
     if isinstance(method, (str, os.PathLike)):
-        return os.fspath(method)
+        return _native(method)
     if not (isinstance(method, type) and issubclass(method, Renderer)):
         raise InputError(f"method {method!r}: expected a name, a JSON file or a registered class of a renderer")
     name = name_of(method)
@@ -156,12 +156,22 @@ def _open_text(file):
     return io.open(file, "w", encoding="utf-8")
 
 
+def _native(text):
+    """A text or path as bytes: a file may have a name that is no UTF-8."""
+    if not isinstance(text, (str, os.PathLike)):
+        raise InputError(f"{text!r}: expected a text or a path")
+    try:
+        return os.fsencode(text)
+    except UnicodeEncodeError:
+        raise InputError(f"{text!r}: expected text that can be written as UTF-8") from None
+
+
 def _subject(given):
     """The name of what is run, and its JSON text if it is a dict."""
     if isinstance(given, dict):
-        return "configuration", _json(given)
+        return b"configuration", _json(given)
     if isinstance(given, (str, os.PathLike)):
-        return os.fspath(given), None
+        return _native(given), None
     raise InputError(f"{given!r}: expected a name, a path or a dict")
 
 
@@ -189,7 +199,7 @@ def _overrides(given, seed=None):
     pairs = [*(given or {}).items()]
     if seed is not None:
         pairs.append(("seed", seed))
-    return [f"{path}={_text(value, path)}" for path, value in pairs]
+    return [_native(f"{path}={_text(value, path)}") for path, value in pairs]
 
 
 def _text(value, path):
@@ -200,14 +210,14 @@ def _text(value, path):
 
 
 def _path(output):
-    return "" if output is None else os.fspath(output)
+    return b"" if output is None else _native(output)
 
 
 def _cell(cell):
     if isinstance(cell, dict):
-        return ",".join(f"{name}={_text(value, name)}" for name, value in cell.items())
+        return _native(",".join(f"{name}={_text(value, name)}" for name, value in cell.items()))
     if isinstance(cell, str):
-        return cell
+        return cell.encode("utf-8", "replace")
     return ",".join(str(int(place)) for place in (cell if hasattr(cell, "__iter__") else (cell,)))
 
 
@@ -230,9 +240,10 @@ def _report(progress, subject):
     if callable(progress):
         return progress
     import sys
+    name = subject if isinstance(subject, str) else os.fsdecode(subject)
 
     def line(fraction):
         end = "\n" if fraction >= 1 else ""
-        sys.stderr.write(f"\r{subject}: {100 * fraction:3.0f} %{end}")
+        sys.stderr.write(f"\r{name}: {100 * fraction:3.0f} %{end}")
         sys.stderr.flush()
     return line

@@ -133,8 +133,8 @@ def name_of(cls):
 
 def scene(name, *, key=None, **settings):
     """A scenario of the catalog with settings, to be asked for clouds and distances: rt.scene("moving-lift")."""
-    import json
-    return _core.Scene(name, json.dumps(settings), key if key is not None else _core.NoiseKey())
+    from remote_touch.calls import _json, _native
+    return _core.Scene(_native(name), _json(settings, "scene: "), key if key is not None else _core.NoiseKey())
 
 
 def _kind_of(cls):
