@@ -165,7 +165,7 @@ auto checked() {
 }
 
 void bind_noise(py::module_& module) {
-  py::class_<NoiseKey>(module, "NoiseKey")
+  py::class_<NoiseKey>(module, "NoiseKey", "What the random numbers of a run are made from.")
       .def(py::init([](std::uint64_t seed, std::uint32_t cell, std::uint32_t replicate) {
              return NoiseKey{seed, cell, replicate};
            }),
