@@ -21,7 +21,7 @@ void bind_errors(py::module_& module) {
   // Asked before the one above: what a class raised is the cause.
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
-      if (thrown) std::rethrow_exception(thrown);
+      if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const PythonProblem& problem) {
       problem.raised().restore();
       py::raise_from(input_error_type, problem.what());

@@ -1,6 +1,7 @@
 """The package itself: import time, stubs, docstrings, examples, and what its page shows."""
 import ast
 import inspect
+import pathlib
 import re
 import statistics
 import subprocess
@@ -135,6 +136,27 @@ def test_every_block_of_the_page_runs(tmp_path, monkeypatch):
     assert len(blocks) >= 5
     (tmp_path / "page.py").write_text("\n".join(blocks))
     output_of([sys.executable, "-B", "page.py"], tmp_path)
+
+
+def test_no_other_page_has_python():
+    """Which no test would run."""
+    sys.path.insert(0, str(ROOT / "tests" / "system"))
+    from page_files import pages
+    assert [page for page in pages(ROOT) if re.search(r"^```python", page.read_text(), re.MULTILINE)] == [PAGE]
+
+
+def test_an_installed_copy(tmp_path):
+    """cmake --install --component python: the package alone, without the build folder."""
+    build = pathlib.Path(_core.__file__).parents[2]
+    output_of(["cmake", "--install", build, "--component", "python", "--prefix", tmp_path], tmp_path)
+    package = tmp_path / "lib" / "python3" / "dist-packages"
+    assert {file.name for file in PACKAGE.iterdir() if file.suffix != ".pyc" and file.is_file()} < {
+        file.name for file in (package / "remote_touch").iterdir()}
+    script = ("import sys; sys.path.insert(0, sys.argv[1]); import remote_touch as rt; "
+              "print(rt.__file__, rt.run('fig4.12').attrs['digest'])")
+    file, digest = output_of([sys.executable, "-B", "-c", script, str(package)], tmp_path).split()
+    assert file == str(package / "remote_touch" / "__init__.py")
+    assert digest == rt.run("fig4.12").attrs["digest"]
 
 
 def test_examples_are_on_the_page():
