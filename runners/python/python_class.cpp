@@ -2,7 +2,8 @@
 
 #include <pybind11/numpy.h>
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 
 #include "runners/python/arrays.h"
 
@@ -59,6 +60,19 @@ std::string problem_text(const py::error_already_set& raised) {
   const std::string file = py::str(place.attr("tb_frame").attr("f_code").attr("co_filename"));
   const std::string line = py::str(place.attr("tb_lineno"));
   return text + " (" + file.substr(file.rfind('/') + 1) + ", line " + line + ")";
+}
+
+double real_of(const py::handle& value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (number == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return number;
+}
+
+int integer_of(const py::handle& value) {
+  const long number = PyLong_AsLong(value.ptr());
+  if (number == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return static_cast<int>(
+      std::clamp<long>(number, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
 PythonSettings::PythonSettings(const std::string& subject, const py::list& settings) {

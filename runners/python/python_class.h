@@ -30,6 +30,10 @@ class PythonProblem : public InputError {
 // Says what an exception was: "ValueError: the spring broke (mine.py, line 12)".
 std::string problem_text(const pybind11::error_already_set& raised);
 
+// A number of Python; throws error_already_set where it is none, with Python's own words.
+double real_of(const pybind11::handle& value);
+int integer_of(const pybind11::handle& value);
+
 // One setting of a class, and its present value.
 struct PythonSetting {
   std::string name, help;
@@ -71,8 +75,8 @@ class PythonClass {
       return work();
     } catch (pybind11::error_already_set& raised) {
       throw PythonProblem(subject(method), problem_text(raised), raised);
-    } catch (const pybind11::cast_error& error) {
-      throw InputError(subject(method), error.what());
+    } catch (const pybind11::cast_error&) {
+      throw InputError(subject(method), "gave a value of another type than expected");
     }
   }
 

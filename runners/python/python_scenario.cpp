@@ -31,9 +31,8 @@ class PythonScenario final : public Scenario {
       given["key"] = key;
       object_.hold(type_->object(settings, PythonClass::Made::yes, given));
     });
-    type_->call("frame_rate_hz",
-                [&] { frame_rate_hz_ = value_of(*object_, "frame_rate_hz").cast<double>(); });
-    type_->call("frame_count", [&] { frame_count_ = value_of(*object_, "frame_count").cast<int>(); });
+    type_->call("frame_rate_hz", [&] { frame_rate_hz_ = real_of(value_of(*object_, "frame_rate_hz")); });
+    type_->call("frame_count", [&] { frame_count_ = integer_of(value_of(*object_, "frame_count")); });
     if (!(frame_rate_hz_ > 0) || !std::isfinite(frame_rate_hz_))
       throw InputError(type_->subject("frame_rate_hz"), "expected a number above 0");
     if (frame_count_ < 1 || frame_count_ >= kMaxFrames)
@@ -52,13 +51,12 @@ class PythonScenario final : public Scenario {
     });
   }
   double signed_distance(const Vec3& p_W, double time_s) const override {
-    return type_->call("signed_distance", [&] {
-      return (*object_).attr("signed_distance")(array_of(p_W), time_s).cast<double>();
-    });
+    return type_->call("signed_distance",
+                       [&] { return real_of((*object_).attr("signed_distance")(array_of(p_W), time_s)); });
   }
   double surface_height(double x, double z, double time_s) const override {
     return type_->call("surface_height",
-                       [&] { return (*object_).attr("surface_height")(x, z, time_s).cast<double>(); });
+                       [&] { return real_of((*object_).attr("surface_height")(x, z, time_s)); });
   }
 
  private:
@@ -79,7 +77,7 @@ class PythonTrajectory final : public Trajectory {
       object_.hold(type_->object(settings, PythonClass::Made::yes, given));
       at_.hold((*object_).attr("at"));
     });
-    type_->call("duration_s", [&] { duration_s_ = value_of(*object_, "duration_s").cast<double>(); });
+    type_->call("duration_s", [&] { duration_s_ = real_of(value_of(*object_, "duration_s")); });
     if (!(duration_s_ >= 0) || std::isinf(duration_s_))
       throw InputError(type_->subject("duration_s"), "expected a number of 0 or more");
   }

@@ -1,60 +1,9 @@
 """Classes of Python in experiments: renderers, scenarios, trajectories. Each script runs in a Python of its own."""
 import hashlib
-import json
 import statistics
 
-import pytest
+from class_scripts import COMMON, PENALTY
 from conftest import digest_in
-
-COMMON = '''
-import json, sys
-import numpy as np
-import remote_touch as rt
-PRESS = {"scenario": {"name": "moving-lift", "noise_sigma_m": 0.001}, "renderer": {"name": "proxy"},
-         "trajectory": {"name": "press", "press_at_s": 0.05, "depth_m": 0.004}, "duration_s": 0.2}
-'''
-
-# The penalty method from its equations, by brute force: (4.1), (4.2), (5.5).
-PENALTY = COMMON + '''
-class Penalty(rt.Renderer):
-    """A spring out of the nearest point."""
-    contact_model = "nothing"
-    settings = {"stiffness_N_per_m": rt.Setting(600, low=0, high=1e4, help="of the spring", live=True),
-                "contact_radius_m": rt.Setting(0.005, low=1e-6, high=1), "r3_m": rt.Setting(0.01, low=1e-6, high=1)}
-
-    def __init__(self):
-        self.points, self.normal = None, np.zeros(3)
-
-    def validate(self):
-        return None if self.contact_radius_m < self.r3_m else f"contact_radius_m = {self.contact_radius_m}: expected below r3_m"
-
-    def on_frame(self, frame):
-        self.points = frame.points
-
-    def step(self, device, time_s):
-        hip = device.position_m
-        away = hip - self.points
-        r = np.sqrt((away ** 2).sum(1))
-        near = r <= self.r3_m
-        t = np.clip((r[near] - self.contact_radius_m) / (self.r3_m - self.contact_radius_m), 0, 1)
-        total = (away[near] * ((1 - t) ** 4 * (4 * t + 1) / r[near])[:, None]).sum(0)
-        if np.linalg.norm(total) > 0:
-            self.normal = total / np.linalg.norm(total)
-        depth = self.contact_radius_m - r.min()
-        force = max(self.stiffness_N_per_m * depth, 0) * self.normal if depth > 0 else np.zeros(3)
-        return rt.Output(force_N=force, slave_m=hip, normal=self.normal, state="contact" if depth > 0 else "free",
-                         nearest_distance_m=r.min() if near.any() else np.inf, steps=1, converged=True,
-                         contact_count=int((r <= self.contact_radius_m).sum()))
-
-    def rest_distance_m(self):
-        return self.contact_radius_m
-
-    def spring_N_per_m(self):
-        return self.stiffness_N_per_m
-
-rt.register(Penalty, "python-penalty")
-'''
-
 
 def test_a_renderer_is_the_built_in_one(in_python):
     in_python(PENALTY + '''
@@ -283,82 +232,6 @@ for name in ("nothing", "python-penalty", "penalty"):
     print("\ntick of a renderer in Python that does nothing: {nothing:.3g} s; penalty method in NumPy {python-penalty:.3g} s, "
           "built in {penalty:.3g} s".format_map(ticks))
     assert statistics.median(ticks.values()) > 0
-
-
-ERRORS = [  # the class or the call, and how its one line begins
-    ('class A(rt.Renderer):\n def step(self, d, t): raise ValueError("the spring broke")', "renderer a: A.step: ValueError: the spring broke (<string>, line "),
-    ('class A(rt.Renderer):\n def step(self, d, t): raise KeyError("two\\nlines")', "renderer a: A.step: KeyError: 'two"),
-    ('class A(rt.Renderer):\n def step(self, d, t): return (1, 2, 3)', "renderer a: A.step: returned <class 'tuple'>: expected rt.Output"),
-    ('class A(rt.Renderer):\n def step(self, d, t): return rt.Output(force_N=[1, 2])', "renderer a: A.step: InputError: Output: force_N: an array of shape (2)"),
-    ('class A(rt.Renderer):\n def step(self, d, t): return rt.Output(force_N="abc")', "renderer a: A.step: InputError: Output: force_N: an array of <U3: expected three numbers"),
-    ('class A(rt.Renderer):\n def step(self, d, t): return rt.Output(state="in")', "renderer a: A.step: InputError: Output: state = in: expected free, contact, entrenched"),
-    ('class A(rt.Renderer):\n def step(self, d, t): return rt.Output(torque_Nm=(0, 0, 1))', "renderer a: A.step: returned a torque"),
-    ('class A(rt.Renderer):\n def step(self, d): return rt.Output()', "renderer a: A.step: TypeError: "),
-    ('class A(rt.Renderer): pass', "renderer a: A.step: NotImplementedError: step(self, device, time_s) is missing"),
-    ('class A(rt.Renderer):\n def on_frame(self, frame): frame.x[0] = 1\n def step(self, d, t): return rt.Output()', "renderer a: A.on_frame: ValueError: assignment destination is read-only"),
-    ('class A(rt.Renderer):\n def __init__(self): 1 / 0', "renderer a: A.__init__: ZeroDivisionError: division by zero"),
-    ('class A(rt.Renderer):\n def step(self, d, t): sys.exit(3)', "renderer a: A.step: SystemExit: 3"),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return np.zeros((4, 2))', "scenario a: A.cloud: points: an array of shape (4, 2): expected"),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return [[0, 0, np.inf]]', "scenario a: A.cloud: points: row 0: a number is not finite"),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return [[0, np.nan, 1]]', "scenario a: A.cloud: points: row 0: a number is not finite"),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return np.zeros((4, 3), complex)', "scenario a: A.cloud: points: an array of complex128"),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return None', "scenario a: A.cloud: points: an array of object"),
-    ('class A(rt.Scenario):\n frame_count = 0\n def cloud(self, frame): return [[0, 0, 0]]', "scenario a: A.frame_count: expected 1 to"),
-    ('class A(rt.Scenario):\n frame_rate_hz = "fast"\n def cloud(self, frame): return [[0, 0, 0]]', "scenario a: A.frame_rate_hz: "),
-    ('class A(rt.Scenario):\n def cloud(self, frame): return np.zeros((1, 3))\n def signed_distance(self, p, t): return "far"', "scenario a: A.signed_distance: "),
-    ('class A(rt.Trajectory):\n duration_s = 1\n def at(self, t): return (0, np.nan, 0)', "trajectory a: A.at: a number is not finite"),
-    ('class A(rt.Trajectory):\n duration_s = 1\n def at(self, t): return (0, 0, 0), (1, 1, 0, 0)', "trajectory a: A.at: its length is not 1"),
-    ('class A(rt.Trajectory):\n duration_s = -1\n def at(self, t): return (0, 0, 0)', "trajectory a: A.duration_s: expected a number of 0 or more"),
-]
-
-
-@pytest.mark.parametrize("source, line", ERRORS, ids=range(len(ERRORS)))
-def test_an_error_in_a_class_is_one_line_with_its_cause(source, line, in_python):
-    kind = source.split("(rt.")[1].split(")")[0].lower()
-    out = in_python(COMMON + f'''
-{source}
-if "renderer" == {kind!r} and "max_stiffness" not in {source!r}:
-    A.max_stiffness_N_per_m = lambda self: 1.0
-rt.register(A)
-try:
-    rt.run({{**PRESS, "trajectory": {{"name": "waypoints", "waypoints": [[0, 0, 0, 0], [0, 0, 0.1, 0.1]]}}}},
-           set={{{kind!r}: {{"name": A}}}}, output="a.h5")
-except rt.InputError as error:
-    print(json.dumps([str(error), error.__cause__ is not None]))
-import os
-assert not os.path.exists("a.h5") and os.listdir(".") == [], os.listdir(".")
-''')
-    said, has_cause = json.loads(out)
-    assert said.startswith(line), said
-    assert "\n" not in said
-    assert has_cause == (": InputError: " in said or "Error: " in said.replace("InputError", "") or "SystemExit" in said), said
-
-
-REFUSED = [  # what cannot be registered
-    ('rt.register(rt.Renderer)', "Renderer: expected a class derived from"),
-    ('rt.register(int)', "int: expected a class derived from"),
-    ('rt.register(type("A", (rt.Renderer,), {}), "proxy")', 'renderer "proxy": is in the catalog already'),
-    ('rt.register(type("A", (rt.Renderer,), {}), "Two Words")', 'renderer "Two Words": '),
-    ('rt.register(type("A", (rt.Renderer,), {"settings": {"x": 3}}), "a")', "renderer a: setting x: expected rt.Setting(...)"),
-    ('rt.register(type("A", (rt.Renderer,), {"settings": {"x": rt.Setting(3, high=2)}}), "a")', "renderer a: setting x: its value is not in its range"),
-    ('rt.register(type("A", (rt.Renderer,), {"settings": {"a b": rt.Setting(3)}}), "a")', "renderer a: setting a b: expected the name of an attribute"),
-    ('rt.register(type("A", (rt.Renderer,), {"settings": {"x": rt.Setting("t", live=True)}}), "a")', "renderer a: setting x: is live"),
-    ('rt.register(type("A", (rt.Renderer,), {"degrees_of_freedom": 4}), "a")', "a: degrees_of_freedom: expected 3 or 6"),
-    ('rt.register(type("A", (rt.Renderer,), {"contact_model": "air"}), "a")', "a: contact_model = air: expected points"),
-    ('rt.run(PRESS, set={"renderer": {"name": type("A", (rt.Renderer,), {})}})', "class A: is not in the catalog"),
-]
-
-
-@pytest.mark.parametrize("call, line", REFUSED, ids=range(len(REFUSED)))
-def test_what_cannot_be_registered(call, line, in_python):
-    out = in_python(COMMON + f'''
-try:
-    {call}
-except rt.InputError as error:
-    print(error)
-assert "a" not in rt.list()["renderers"] and rt.run("fig4.12", set={{"duration_s": 0.01}}).sizes["time"] == 10
-''')
-    assert out.startswith(line), out
 
 
 def test_settings_are_checked(in_python):
