@@ -18,14 +18,17 @@ std::string loader_says(const std::string& name) {
   return text.rfind(name + ": ", 0) == 0 ? text.substr(name.size() + 2) : text;
 }
 
-// Names that fail for the same reason one after the other share it: "a, b: no such file; c: not for this
-// machine".
+// Of names that fail for the same reason one after the other, and there are many, the middle is left out:
+// "a.so, a.so.9 to a.so.1: no such file; b.so: not for this machine".
 std::string failed_names(const std::vector<std::pair<std::string, std::string>>& failures) {
   std::string text;
-  for (std::size_t i = 0; i < failures.size(); ++i) {
-    const auto& [name, reason] = failures[i];
-    const bool goes_on = i + 1 < failures.size() && failures[i + 1].second == reason;
-    text += name + (goes_on ? ", " : ": " + reason + (i + 1 < failures.size() ? "; " : ""));
+  for (std::size_t begin = 0, end = 0; begin < failures.size(); begin = end) {
+    const auto& [name, reason] = failures[begin];
+    while (end < failures.size() && failures[end].second == reason) ++end;
+    text += (begin == 0 ? "" : "; ") + name;
+    if (end - begin > 1) text += ", " + failures[begin + 1].first;
+    if (end - begin > 2) text += " to " + failures[end - 1].first;
+    text += ": " + reason;
   }
   return text;
 }

@@ -90,7 +90,7 @@ class K4aCamera final : public DepthSource {
 
   const Clock& host_;
   const K4aAddress address_;
-  const k4a::Library k4a_;
+  const k4a::K4aLibrary k4a_;
   k4a::OpenDevice device_{nullptr, {&k4a_}};
   k4a::Calibration calibration_{};
   std::optional<Undistortion> undistortion_;
@@ -272,7 +272,7 @@ std::unique_ptr<DepthSource> open_k4a(const std::string& address, Clock& clock) 
 
 Availability k4a_availability() {
   try {
-    const k4a::Library k4a;
+    const k4a::K4aLibrary k4a;
     const std::uint32_t count = k4a.device_get_installed_count();
     const bool found = count > 0 && count <= kMaxCameras;
     return {.found = found,

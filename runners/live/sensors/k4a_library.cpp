@@ -28,7 +28,7 @@ void keep_first_error(void*, LogLevel, const char*, int, const char* message) {
 
 }  // namespace
 
-Library::Library() : library(kK4aLibrary) {
+K4aLibrary::K4aLibrary() : library(kK4aLibrary) {
   library.find("k4a_device_get_installed_count", device_get_installed_count);
   library.find("k4a_device_open", device_open);
   library.find("k4a_device_close", device_close);
@@ -55,7 +55,7 @@ Library::Library() : library(kK4aLibrary) {
   if (set_debug_message_handler != nullptr) set_debug_message_handler(keep_first_error, nullptr, log_error);
 }
 
-std::string Library::take_error() const {
+std::string K4aLibrary::take_error() const {
   const std::lock_guard lock(k4a_log().mutex);
   return std::exchange(k4a_log().first_error, {});
 }

@@ -55,8 +55,8 @@ struct alignas(16) Calibration {
   std::byte bytes[8192];
 };
 
-struct Library {
-  Library();  // throws InputError if it is not found
+struct K4aLibrary {
+  K4aLibrary();  // throws InputError if it is not found
 
   // What the library said of its first error since the last call; in one line, empty: nothing. Of all threads
   // and devices, as the library has one log.
@@ -92,7 +92,7 @@ struct Library {
 
 // Handles that are given back once. The library has to outlive them.
 struct Close {
-  const Library* k4a;
+  const K4aLibrary* k4a;
   void operator()(Device device) const { k4a->device_close(device); }
   void operator()(Capture capture) const { k4a->capture_release(capture); }
   void operator()(Image image) const { k4a->image_release(image); }

@@ -30,7 +30,7 @@ struct RealSense {
   std::vector<std::string> serials() const;
   std::string info(const rs2::Device* device, rs2::CameraInfo what) const;
 
-  const rs2::Library rs2;
+  const rs2::RealSenseLibrary rs2;
   const rs2::Calls call;
   const rs2::Held<rs2::Context> context;
 };
@@ -59,7 +59,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 // Stops a pipeline that has been started.
 struct StopPipeline {
-  const rs2::Library* rs2;
+  const rs2::RealSenseLibrary* rs2;
   void operator()(rs2::Pipeline* pipeline) const {
     rs2::Error* error = nullptr;
     rs2->pipeline_stop(pipeline, &error);
@@ -92,7 +92,7 @@ class RealSenseCamera final : public DepthSource {
   Clock& host_;
   const std::string name_;
   const RealSense real_sense_;
-  const rs2::Library& rs2_ = real_sense_.rs2;
+  const rs2::RealSenseLibrary& rs2_ = real_sense_.rs2;
   const rs2::Calls& call_ = real_sense_.call;
   // Given back from the last to the first.
   rs2::Held<rs2::Config> config_;

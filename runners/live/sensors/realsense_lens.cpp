@@ -13,7 +13,7 @@ bool has_distortion(const Intrinsics& intrinsics) {
                      [](float coefficient) { return coefficient != 0; });
 }
 
-Lens lens_of(const std::string& name, const Library& rs2, const Intrinsics& intrinsics) {
+Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics) {
   if (rs2.project_point_to_pixel == nullptr || rs2.deproject_pixel_to_point == nullptr)
     throw InputError(name, "has a lens that distorts: expected librealsense 2.46 or newer, which tells how");
   if (intrinsics.model != brown_conrady && intrinsics.model != inverse_brown_conrady)

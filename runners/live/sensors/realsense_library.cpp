@@ -8,7 +8,7 @@ namespace {
 
 // The name of its file has the minor version; one without comes with the packages for development only. Older
 // ones than these can be named by the variable.
-constexpr int kOldestMinor = 50, kNewestMinor = 59;
+constexpr int kOldestMinor = 50, kNewestMinor = 69;
 constexpr int kMajor = 2;
 
 SharedLibrary::Place realsense_place() {
@@ -19,7 +19,7 @@ SharedLibrary::Place realsense_place() {
   return place;
 }
 
-void find_devices(Library& rs2) {
+void find_devices(RealSenseLibrary& rs2) {
   const SharedLibrary& library = rs2.library;
   library.find("rs2_create_context", rs2.create_context);
   library.find("rs2_delete_context", rs2.delete_context);
@@ -42,7 +42,7 @@ void find_devices(Library& rs2) {
   library.find("rs2_get_depth_scale", rs2.get_depth_scale);
 }
 
-void find_pipeline(Library& rs2) {
+void find_pipeline(RealSenseLibrary& rs2) {
   const SharedLibrary& library = rs2.library;
   library.find("rs2_create_pipeline", rs2.create_pipeline);
   library.find("rs2_delete_pipeline", rs2.delete_pipeline);
@@ -62,7 +62,7 @@ void find_pipeline(Library& rs2) {
   library.find("rs2_get_video_stream_intrinsics", rs2.get_video_stream_intrinsics);
 }
 
-void find_frames(Library& rs2) {
+void find_frames(RealSenseLibrary& rs2) {
   const SharedLibrary& library = rs2.library;
   library.find("rs2_pipeline_poll_for_frames", rs2.pipeline_poll_for_frames);
   library.find("rs2_is_frame_extendable_to", rs2.is_frame_extendable_to);
@@ -83,7 +83,7 @@ void find_frames(Library& rs2) {
 
 }  // namespace
 
-Library::Library() : library(realsense_place()) {
+RealSenseLibrary::RealSenseLibrary() : library(realsense_place()) {
   library.find("rs2_get_api_version", get_api_version);
   library.find("rs2_get_error_message", get_error_message);
   library.find("rs2_get_failed_function", get_failed_function);
@@ -97,12 +97,12 @@ Library::Library() : library(realsense_place()) {
   find_frames(*this);
 }
 
-std::string Library::version_text() const {
+std::string RealSenseLibrary::version_text() const {
   return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
          std::to_string(version % 100);
 }
 
-std::string Library::text_of(Error* error) const {
+std::string RealSenseLibrary::text_of(Error* error) const {
   const char *message = get_error_message(error), *function = get_failed_function(error);
   std::string text = function != nullptr ? function : "";
   if (message != nullptr) text += (text.empty() ? "" : ": ") + std::string(message);

@@ -40,9 +40,9 @@ struct Intrinsics {
 };
 static_assert(sizeof(Intrinsics) == 48 && offsetof(Intrinsics, model) == 24);
 
-struct Library {
+struct RealSenseLibrary {
   // Throws InputError if it is not found or has another major version.
-  Library();
+  RealSenseLibrary();
 
   // As the library tells it: 25605 is 2.56.5. A context is asked for in this very version: it refuses an
   // application that was compiled for a newer one.
@@ -117,7 +117,7 @@ struct Library {
 
 // Handles that are given back once. The library has to outlive them.
 struct Delete {
-  const Library* rs2;
+  const RealSenseLibrary* rs2;
   void operator()(Context* context) const { rs2->delete_context(context); }
   void operator()(DeviceList* list) const { rs2->delete_device_list(list); }
   void operator()(Device* device) const { rs2->delete_device(device); }
@@ -137,7 +137,7 @@ using Held = std::unique_ptr<Thing, Delete>;
 // library's reason.
 class Calls {
  public:
-  Calls(const Library& rs2, std::string name) : rs2_(rs2), name_(std::move(name)) {}
+  Calls(const RealSenseLibrary& rs2, std::string name) : rs2_(rs2), name_(std::move(name)) {}
 
   // What function returns for these arguments and an error. what: fails, as "depth does not start".
   template <class Result, class... Parameters, class... Arguments>
@@ -164,7 +164,7 @@ class Calls {
  private:
   void check(const char* what, Error* error) const;
 
-  const Library& rs2_;
+  const RealSenseLibrary& rs2_;
   const std::string name_;
 };
 
