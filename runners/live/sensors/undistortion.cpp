@@ -18,7 +18,7 @@ constexpr double kSamePlace_px = 1e-3;
 constexpr double kMaxContradiction_px = 0.05;
 // Neighbours on one surface differ by less, which is a surface seen at 75 degrees with a focal length of 320
 // pixels or more.
-constexpr double kMaxStep = 0.02;
+constexpr float kMaxStep = 0.02f;
 
 constexpr int kMaxSide_px = 8192;
 
@@ -104,15 +104,14 @@ std::uint16_t Undistortion::depth_at(const std::vector<std::uint16_t>& seen, con
   if (place.pixel < 0) return 0;
   const std::uint16_t* upper = seen.data() + place.pixel;
   const std::uint16_t* lower = upper + camera_.width;
-  const auto [least, most] = std::minmax({upper[0], upper[1], lower[0], lower[1]});
-  if (least == 0 || most - least > std::max(1.0, kMaxStep * least)) {
+  const int a = upper[0], b = upper[1], c = lower[0], d = lower[1];
+  const int least = std::min(std::min(a, b), std::min(c, d)), most = std::max(std::max(a, b), std::max(c, d));
+  const float step = static_cast<float>(most - least);
+  if (least == 0 || (step > 1 && step > kMaxStep * static_cast<float>(least)))
     return (place.down < 0.5f ? upper : lower)[place.right < 0.5f ? 0 : 1];
-  }
-  const float above =
-      static_cast<float>(upper[0]) * (1 - place.right) + static_cast<float>(upper[1]) * place.right;
-  const float below =
-      static_cast<float>(lower[0]) * (1 - place.right) + static_cast<float>(lower[1]) * place.right;
-  return static_cast<std::uint16_t>(std::lround(above * (1 - place.down) + below * place.down));
+  const float above = static_cast<float>(a) + place.right * static_cast<float>(b - a);
+  const float below = static_cast<float>(c) + place.right * static_cast<float>(d - c);
+  return static_cast<std::uint16_t>(above + place.down * (below - above) + 0.5f);
 }
 
 void Undistortion::apply(const std::vector<std::uint16_t>& seen, std::vector<std::uint16_t>& depth) const {
