@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <numeric>
+#include <stdexcept>
 
 #include "analysis/storage/hdf5_values.h"
 
@@ -66,10 +67,12 @@ void attach_dimension(hid_t file, const std::string& dataset, const std::string&
   check(H5DSattach_scale(values, along, place));
 }
 
-bool only_names_a_dimension(hid_t file, const std::string& dataset) {
+bool only_names_a_dimension(hid_t file, const std::string& dataset) try {
   const Handle opened(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose);
   const std::string name = text_attribute(opened, "NAME");  // of a dimension scale
   return name == kLabels || name.starts_with(kNoVariable);
+} catch (const std::runtime_error&) {
+  return false;  // who reads it is told what is wrong
 }
 
 Handle character_type() {

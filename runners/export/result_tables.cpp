@@ -78,6 +78,17 @@ std::vector<Table> tables_of_figure(const Hdf5Reader& result) {
   return tables;
 }
 
+void require_exportable(const Hdf5Reader& result, const Table& table) {
+  constexpr int kMaxWidth = 4096;  // each of them gets a name
+  if (table.columns.empty()) result.damaged("it names no columns");
+  for (const Column& column : table.columns) {
+    if (column.length() != table.columns.front().length())
+      result.damaged(column.name + " is not as long as " + table.columns.front().name);
+    if (column.width > kMaxWidth)
+      result.damaged(column.name + " has rows of " + std::to_string(column.width) + " numbers");
+  }
+}
+
 }  // namespace
 
 std::string exported_kind(const Hdf5Reader& result) {
@@ -94,10 +105,7 @@ std::vector<Table> result_tables(const Hdf5Reader& result) {
   std::vector<Table> tables = kind == "trace"   ? std::vector{table_of_trace(result)}
                               : kind == "sweep" ? std::vector{table_of_sweep(result)}
                                                 : tables_of_figure(result);
-  for (const Table& table : tables)
-    for (const Column& column : table.columns)
-      if (column.length() != table.columns.front().length())
-        result.damaged(column.name + " is not as long as " + table.columns.front().name);
+  for (const Table& table : tables) require_exportable(result, table);
   return tables;
 }
 
