@@ -52,26 +52,46 @@ void NewFiles::close() {
   if (error != 0) refuse(files_.back(), error);
 }
 
+// A second name for the file that is replaced, so that at every moment the target is the old one or the new
+// one.
+void NewFiles::keep_old(File& file) {
+  std::error_code absent, failure;
+  if (!std::filesystem::exists(file.place, absent)) return;
+  const std::filesystem::path old = file.temporary.string() + "-old";
+  if (::link(file.place.c_str(), old.c_str()) != 0 &&
+      !std::filesystem::copy_file(file.place, old, failure)) {  // a file system without links
+    ::unlink(old.c_str());
+    refuse(file, failure.value());
+  }
+  file.old = old;
+}
+
 void NewFiles::finish() {
   close();
+  if (files_.size() > 1)
+    for (File& file : files_) keep_old(file);
   for (File& file : files_) {
-    const std::filesystem::path old = file.temporary.string() + "-old";
-    if (::rename(file.place.c_str(), old.c_str()) == 0)
-      file.old = old;
-    else if (errno != ENOENT)
-      refuse(file, errno);
     if (::rename(file.temporary.c_str(), file.place.c_str()) != 0) refuse(file, errno);
     file.is_new = true;
   }
-  for (const File& file : files_)
+  for (const File& file : files_) {
     if (!file.old.empty()) ::unlink(file.old.c_str());
+    flush_folder(file.place);
+  }
   files_.clear();
 }
 
 void NewFiles::put_back() {
   for (const File& file : files_) {
-    ::unlink(file.is_new ? file.place.c_str() : file.temporary.c_str());
-    if (!file.old.empty()) ::rename(file.old.c_str(), file.place.c_str());
+    if (!file.is_new)
+      ::unlink(file.temporary.c_str());
+    else if (file.old.empty())
+      ::unlink(file.place.c_str());
+    if (file.old.empty()) continue;
+    if (file.is_new)
+      ::rename(file.old.c_str(), file.place.c_str());
+    else
+      ::unlink(file.old.c_str());
   }
 }
 

@@ -32,6 +32,7 @@ class NewFiles {
     bool is_new = false;  // renamed
   };
   void close();
+  void keep_old(File& file);
   void put_back();
   [[noreturn]] void refuse(const File& file, int error) const;
   std::vector<File> files_;
