@@ -74,11 +74,11 @@ void NewFiles::finish() {
     if (::rename(file.temporary.c_str(), file.place.c_str()) != 0) refuse(file, errno);
     file.is_new = true;
   }
-  for (const File& file : files_) {
-    if (!file.old.empty()) ::unlink(file.old.c_str());
-    flush_folder(file.place);
-  }
+  const std::vector<File> done = std::move(files_);  // from here on they stay
   files_.clear();
+  for (const File& file : done)
+    if (!file.old.empty()) ::unlink(file.old.c_str());
+  for (const File& file : done) flush_folder(file.place);
 }
 
 void NewFiles::put_back() {

@@ -24,6 +24,17 @@ const std::vector<ExportFormat>& export_formats() {
   return formats;
 }
 
+std::string known_formats() {
+  std::string list;
+  for (const ExportFormat& format : export_formats())
+    list.append(list.empty() ? "" : ", ")
+        .append(format.ending)
+        .append(" (")
+        .append(format.meaning)
+        .append(format.traces_only ? "; of traces)" : ")");
+  return list;
+}
+
 const ExportFormat& export_format(const std::filesystem::path& output) {
   std::string known;
   for (const ExportFormat& format : export_formats()) {

@@ -17,6 +17,8 @@ struct ExportFormat {
 };
 
 const std::vector<ExportFormat>& export_formats();
+// All of them in one line, for the help of the command.
+std::string known_formats();
 
 // By the ending of the output. Throws InputError naming the known ones.
 const ExportFormat& export_format(const std::filesystem::path& output);

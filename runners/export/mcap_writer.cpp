@@ -78,7 +78,7 @@ std::string McapWriter::opening(const std::string& profile, const std::string& l
   return kMagic + header_record(profile, library);
 }
 
-McapWriter::McapWriter(std::string profile, std::string library,
+McapWriter::McapWriter(const std::string& profile, const std::string& library,
                        std::function<void(const std::string&)> write)
     : write_(std::move(write)) {
   emit(opening(profile, library));

@@ -20,7 +20,8 @@ class McapWriter {
  public:
   using Texts = std::vector<std::pair<std::string, std::string>>;
 
-  McapWriter(std::string profile, std::string library, std::function<void(const std::string&)> write);
+  McapWriter(const std::string& profile, const std::string& library,
+             std::function<void(const std::string&)> write);
   // Topics with a schema of the same name share it. Returns the number of its channel.
   std::uint16_t add_topic(const McapTopic& topic);
   void add_metadata(const std::string& name, const Texts& texts);
