@@ -26,6 +26,7 @@ class RecordedScene final : public Scenario {
     double truth_radius_m = 0.006;
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
+    BagChoice bag;  // where the path is a bag of ROS
   };
 
   // Throws InputError when the recording cannot be read.
@@ -47,8 +48,8 @@ class RecordedScene final : public Scenario {
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
-  const RigidTransform X_WC_;
   RecordingIndex recording_;
+  const RigidTransform X_WC_;
   int first_ = 0, count_ = 0;
   double rate_hz_ = 0;
   // The frames used last, the newest in front: renderer, trajectory and truth use them in turn, and a short
