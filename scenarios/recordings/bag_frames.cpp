@@ -86,17 +86,18 @@ void BagFrames::order_frames() {
   const auto add_remark = [&](const std::string& text) { remark_ += (remark_.empty() ? "" : "; ") + text; };
   if (!all_stamped) {
     for (auto& [stamp_ns, place] : stamped) stamp_ns = place.logged_ns;
-    add_remark("messages without a stamp: the times of the recorder are used");
+    add_remark("has messages without a stamp: the times of the recorder are used");
   }
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
   if (!std::is_sorted(stamped.begin(), stamped.end(), earlier)) {
     std::stable_sort(stamped.begin(), stamped.end(), earlier);
-    add_remark("messages out of order: they were sorted by their stamps");
+    add_remark("has messages out of order: they were sorted by their stamps");
   }
   const auto last = std::unique(stamped.begin(), stamped.end(),
                                 [](const auto& a, const auto& b) { return a.first == b.first; });
   if (last != stamped.end())
-    add_remark(std::to_string(stamped.end() - last) + " message(s) have the stamp of another: not used");
+    add_remark("has " + std::to_string(stamped.end() - last) +
+               " message(s) with the stamp of another: not used");
   stamped.erase(last, stamped.end());
   frames_.clear();
   for (const auto& [stamp_ns, place] : stamped) {

@@ -112,8 +112,9 @@ std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const s
            (type == kCloudType || type == kImageType || type == kCompressedType);
   });
   if (named.size() == 1) return named.front();
+  const std::string damage = bag.remark().empty() ? "" : bag.remark() + "; ";
   const std::string problem =
-      name.empty() ? "has no topic of clouds or depth images" : "scenario.topic = " + name;
+      damage + (name.empty() ? "has no topic of clouds or depth images" : "scenario.topic = " + name);
   throw InputError(
       path,
       problem + ": expected a topic of " + kCloudType + ", " + kImageType + " or " + kCompressedType +

@@ -100,6 +100,11 @@ double RecordedScene::captured_s(int frame) const {
   return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
 }
 
+std::string RecordedScene::remark() const {
+  const std::string remark = recording_.bag ? recording_.bag->remark() : "";
+  return remark.empty() ? remark : settings_.path + ": " + remark;
+}
+
 // Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...
 std::size_t RecordedScene::source_frame(int frame) const {
   int place = 0;

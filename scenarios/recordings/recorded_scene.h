@@ -35,6 +35,7 @@ class RecordedScene final : public Scenario {
   double frame_rate_hz() const override { return rate_hz_; }
   int frame_count() const override;
   double captured_s(int frame) const override;
+  std::string remark() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // The only truth is the measurement: distance to a plane through the points of the newest frame around p's

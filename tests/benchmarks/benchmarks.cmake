@@ -32,6 +32,9 @@ add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
 
+add_executable(bag_benchmark benchmarks/bag_benchmark.cpp benchmarks/checked_benchmark.cpp)
+target_link_libraries(bag_benchmark PRIVATE scenarios test_bags benchmark::benchmark)
+
 # Benchmarks beside others' libraries are built only when asked for, and say so where those are not installed.
 function(peers_missing name packages)
   add_custom_target(${name} COMMAND ${CMAKE_COMMAND} -E echo "${name} needs ${packages}"

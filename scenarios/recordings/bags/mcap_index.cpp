@@ -45,7 +45,7 @@ bool McapFile::index_by_summary() {
   const std::uint32_t crc = cursor.u32();
   if (summary_at < kMcapMagic.size() || summary_at > footer_at) return false;
   if (crc != 0 && crc != crc_of(file_, summary_at, footer.end() - 4)) {
-    remark_ = "the index at its end is damaged: it was read from end to end";
+    remark_ = "has a damaged index: it was read from end to end";
     return false;
   }
   bool any_chunk = false;
@@ -67,7 +67,7 @@ bool McapFile::index_by_summary() {
     }
     return statistics.empty() ? any_chunk : agrees_with(statistics);
   } catch (const InputError&) {  // what is wrong with it is no matter where a scan succeeds
-    remark_ = "the index at its end is damaged: it was read from end to end";
+    remark_ = "has a damaged index: it was read from end to end";
     return false;
   }
 }
