@@ -14,11 +14,13 @@
 namespace remote_touch {
 namespace {
 
-void check_image_size(const std::string& subject, const DepthImage& depth, const CameraIntrinsics& camera) {
-  if (depth.width == camera.width && depth.height == camera.height) return;
+void check_image_size(const std::string& subject, const DepthImage& depth, std::uint32_t width,
+                      std::uint32_t height) {
+  if (static_cast<std::uint32_t>(depth.width) == width && static_cast<std::uint32_t>(depth.height) == height)
+    return;
   throw InputError(subject, "has " + std::to_string(depth.width) + " x " + std::to_string(depth.height) +
-                                " pixels: expected " + std::to_string(camera.width) + " x " +
-                                std::to_string(camera.height) + ", as its CameraInfo has");
+                                " pixels: expected " + std::to_string(width) + " x " +
+                                std::to_string(height) + ", as its CameraInfo has");
 }
 
 void drop_beyond(double max_depth_m, PointCloud& cloud) {
@@ -35,8 +37,8 @@ BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
   topic_ = topic_of_frames(path_, *bag_, choice.topic);
   remark_ = bag_->remark();
   if (topic().type != kCloudType) {
-    choose_camera(choice);
     choose_unit();
+    choose_camera(choice);
   }
   order_frames();
   if (!choice.frame_id.empty()) choose_frame_id(choice.frame_id);
@@ -50,6 +52,7 @@ std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) con
   return path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(same - places.begin());
 }
 
+// What the camera claims is compared with an image before a table of that size is made.
 void BagFrames::choose_camera(const BagChoice& choice) {
   const std::size_t camera = topic_of_camera(path_, *bag_, topic_, choice.camera_info);
   const MessagePlace& first = bag_->places(camera).front();
@@ -57,7 +60,10 @@ void BagFrames::choose_camera(const BagChoice& choice) {
   const bool rectified = choice.images == BagChoice::Images::by_name
                              ? is_rectified_by_name(topic().name)
                              : choice.images == BagChoice::Images::rectified;
-  rays_.emplace(read_camera_info({message, wire_format(bag_->topics()[camera]), name}), rectified, name);
+  const CameraInfoMessage info = read_camera_info({message, wire_format(bag_->topics()[camera]), name});
+  const MessagePlace& image = bag_->places(topic_).front();
+  check_image_size(subject(topic_, image), depth_of(image, 1), info.width, info.height);
+  rays_.emplace(info, rectified, name);
 }
 
 void BagFrames::choose_unit() {
@@ -127,25 +133,33 @@ void BagFrames::check_frame_id(const MessageHeader& header, const std::string& s
       subject, "frame_id = " + header.frame_id + ": expected " + frame_id_ + ", as the first message has");
 }
 
-PointCloud BagFrames::cloud(std::size_t frame, double max_depth_m) const {
-  assert(frame < frames_.size());
-  const std::string name = subject(topic_, frames_[frame]), bytes = bag_->message(frames_[frame]);
+DepthImage BagFrames::depth_of(const MessagePlace& place, double max_depth_m) const {
+  const std::string name = subject(topic_, place), bytes = bag_->message(place);
   const MessageCursor cursor(bytes, wire_format(topic()), name);
-  if (topic().type == kCloudType) {
-    const PointCloudMessage message = read_point_cloud(cursor);
-    check_frame_id(message.header, name);
-    PointCloud cloud = cloud_from_message(message, name);
-    drop_beyond(max_depth_m, cloud);
-    return cloud;
-  }
-  const auto depth_of = [&](const auto& message) {
+  const auto depth = [&](const auto& message) {
     check_frame_id(message.header, name);
     return depth_from_message(message, metres_per_unit_, max_depth_m, name);
   };
-  const DepthImage depth =
-      topic().type == kImageType ? depth_of(read_image(cursor)) : depth_of(read_compressed_image(cursor));
-  check_image_size(name, depth, rays_->camera());
-  return rays_->cloud(depth);
+  return topic().type == kImageType ? depth(read_image(cursor)) : depth(read_compressed_image(cursor));
+}
+
+PointCloud BagFrames::cloud(std::size_t frame, double max_depth_m) const {
+  assert(frame < frames_.size());
+  const MessagePlace& place = frames_[frame];
+  const std::string name = subject(topic_, place);
+  if (rays_) {
+    const CameraIntrinsics camera = rays_->camera();
+    const DepthImage depth = depth_of(place, max_depth_m);
+    check_image_size(name, depth, static_cast<std::uint32_t>(camera.width),
+                     static_cast<std::uint32_t>(camera.height));
+    return rays_->cloud(depth);
+  }
+  const std::string bytes = bag_->message(place);
+  const PointCloudMessage message = read_point_cloud({bytes, wire_format(topic()), name});
+  check_frame_id(message.header, name);
+  PointCloud cloud = cloud_from_message(message, name);
+  drop_beyond(max_depth_m, cloud);
+  return cloud;
 }
 
 }  // namespace remote_touch

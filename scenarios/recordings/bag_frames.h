@@ -24,7 +24,8 @@ namespace remote_touch {
 class BagFrames {
  public:
   // Throws InputError, about the path and a topic, when there is no topic of frames, several, or the chosen
-  // one has none; when the camera or the transform is missing or cannot be used. Frames are not read here.
+  // one has none; when the camera or the transform is missing or cannot be used. Of depth images
+  // the first is read here.
   BagFrames(const std::filesystem::path& path, const BagChoice& choice);
 
   const std::vector<double>& captured_s() const { return captured_s_; }
@@ -43,6 +44,7 @@ class BagFrames {
  private:
   const BagTopic& topic() const { return bag_->topics()[topic_]; }
   std::string subject(std::size_t topic, const MessagePlace& place) const;
+  DepthImage depth_of(const MessagePlace& place, double max_depth_m) const;
   void choose_camera(const BagChoice& choice);
   void choose_unit();
   void choose_frame_id(const std::string& frame_id);
