@@ -216,6 +216,9 @@ std::string describe(const fs::path& path, const RecordingIndex& index) {
 // The layouts in the order that index_recording promises.
 RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (fs::exists(path) && is_bag(path)) return index_bag(path, choice);
+  for (const auto& [name, value] :
+       {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
+    if (!value.empty()) refuse(path, "is no bag of ROS: expected scenario." + std::string(name) + " = \"\"");
   if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +

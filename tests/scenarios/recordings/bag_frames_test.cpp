@@ -124,6 +124,14 @@ TEST_F(Frames, OfDepthHaveTheCameraBesideThem) {
              "/x/image_raw, message 0: has 4 x 3 pixels: expected 5 x 3, as its CameraInfo has");
 }
 
+TEST_F(Frames, AreChosenInBagsOnly) {
+  folder_.write("x.pcd", "");
+  EXPECT_HAS(refusal([&] {
+               index_recording(folder_ / "x.pcd", {"/points", "", {}, ""});
+             }),
+             "is no bag of ROS: expected scenario.topic = \"\"");
+}
+
 BagMessage transforms() {
   MessageBytes bytes;
   bytes.add(std::uint32_t{2}).header(0, "base").text("body");
