@@ -108,7 +108,10 @@ void BagFrames::order_frames() {
   frames_.clear();
   for (const auto& [stamp_ns, place] : stamped) {
     frames_.push_back(place);
-    captured_s_.push_back(static_cast<double>(stamp_ns - stamped.front().first) / 1e9);
+    // Sorted: the difference is not negative, but may be more than half of all 64-bit numbers.
+    const auto since_first =
+        static_cast<std::uint64_t>(stamp_ns) - static_cast<std::uint64_t>(stamped.front().first);
+    captured_s_.push_back(static_cast<double>(since_first) / 1e9);
   }
 }
 

@@ -194,7 +194,7 @@ RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
   RecordingIndex index{RecordingIndex::Kind::bag, {}, 1, kNominalRate_hz, {}, {}, {}, {}};
   index.bag = std::make_shared<const BagFrames>(path, choice);
   index.camera = index.bag->camera();
-  for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, path, {}});
+  for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, {}, {}});
   index.frame_rate_hz = mean_rate_hz(path.string(), index.frames.size(), index.frames.back().captured_s);
   return index;
 }
@@ -228,7 +228,9 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (fs::is_directory(path / "depth")) return index_depth_folder(path);
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
   if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
-  refuse(path, "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png or *.pcd");
+  refuse(path,
+         "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or "
+         "metadata.yaml with a bag of ROS 2");
 }
 
 // Pixel (u, v) must be point v * width + u in depth, colour and camera alike.

@@ -16,7 +16,7 @@ class BagFrames;
 
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
-  std::filesystem::path depth;   // a depth PNG or a PCD file; the bag
+  std::filesystem::path depth;   // a depth PNG or a PCD file; of a bag: empty
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 

@@ -54,10 +54,11 @@ bool is_bag_file(const fs::path& file) {
 }
 
 // Those of a folder: a long recording of ROS 2 is divided into several. Longer names have greater numbers:
-// name_10 comes after name_9.
+// name_10 comes after name_9. None in a folder that may not be entered.
 std::vector<fs::path> parts_of(const fs::path& folder) {
   std::vector<fs::path> parts;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+  std::error_code refused;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
     if (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")) parts.push_back(entry.path());
   std::sort(parts.begin(), parts.end(), [](const fs::path& a, const fs::path& b) {
     const std::string &x = a.native(), &y = b.native();
@@ -75,8 +76,9 @@ std::unique_ptr<BagFile> open_file(const fs::path& file, const WantedTopic& want
 }  // namespace
 
 bool is_bag(const fs::path& path) {
-  if (!fs::is_directory(path)) return is_bag_file(path);
-  return fs::exists(path / "metadata.yaml") && !parts_of(path).empty();
+  std::error_code refused;
+  if (!fs::is_directory(path, refused)) return is_bag_file(path);
+  return fs::exists(path / "metadata.yaml", refused) && !parts_of(path).empty();
 }
 
 std::vector<fs::path> files_of_bag(const fs::path& path) {

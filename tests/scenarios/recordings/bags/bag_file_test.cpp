@@ -200,9 +200,8 @@ TEST_F(Bags, HostileDatabasesAreRefused) {
                   "CREATE VIEW messages AS WITH RECURSIVE c(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM c) "
                   "SELECT id, 1 topic_id, 1 timestamp, 1 data FROM c"),
              "has no plain table 'messages'");
-  EXPECT_HAS(
-      made(topics + "CREATE TABLE messages(id, topic_id, timestamp, data AS (zeroblob(1000000000)))"),
-      "has no plain table 'messages'");
+  EXPECT_HAS(made(topics + "CREATE TABLE messages(id, topic_id, timestamp, data AS (zeroblob(1000000000)))"),
+             "has no plain table 'messages'");
   EXPECT_HAS(made(topics + "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data);"
                            "INSERT INTO messages VALUES (1, 1, 1, NULL)"),
              "cannot be read as a bag: cannot open value of type null");
