@@ -31,8 +31,8 @@ class BagFrames {
   const std::vector<double>& captured_s() const { return captured_s_; }
   // Of depth images; all 0 for clouds.
   CameraIntrinsics camera() const { return rays_ ? rays_->camera() : CameraIntrinsics{}; }
-  // From the frame of the messages to the chosen one.
-  const RigidTransform& X_chosen() const { return X_chosen_; }
+  // Of the messages' coordinate frame in the chosen one.
+  const RigidTransform& pose() const { return X_chosen_; }
   std::string kind() const { return topic().type + " " + topic().name; }
   // Empty, or what was wrong with the bag and what was done about it, in one line.
   const std::string& remark() const { return remark_; }

@@ -61,8 +61,8 @@ namespace {
 RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
   const RigidTransform X_registered =
       Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
-  if (!recording.bag || recording.bag->X_chosen().matrix().isIdentity(0)) return X_registered;
-  return X_registered * recording.bag->X_chosen();
+  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
+  return X_registered * recording.bag->pose();
 }
 
 }  // namespace

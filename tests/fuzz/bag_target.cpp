@@ -9,6 +9,10 @@
 namespace remote_touch::fuzz {
 
 void read_bag(const std::string& name, std::string_view bytes) {
+  // Zeros compress to almost nothing: such a message is read, but takes more than 1 s as a cloud, with
+  // sanitizers.
+  constexpr std::size_t kMaxMessages = 100, kMaxDecoded = 100'000;
+  std::size_t longest = 0;
   const auto file = scratch_file(name, bytes);
   accepts(bytes, [&] {
     const auto bag = open_bag(file, [](const BagTopic&) { return true; });
@@ -17,12 +21,14 @@ void read_bag(const std::string& name, std::string_view bytes) {
       require(std::is_sorted(places.begin(), places.end(),
                              [](const auto& a, const auto& b) { return a.logged_ns < b.logged_ns; }),
               "messages are in the order of their times");
-      for (std::size_t i = 0; i < std::min<std::size_t>(places.size(), 20); ++i) {
+      for (std::size_t i = 0; i < std::min(places.size(), kMaxMessages); ++i) {
         const std::string start = bag->start(places[i], 16), whole = bag->message(places[i]);
+        longest = std::max({longest, whole.size(), places.size() > kMaxMessages ? kMaxDecoded + 1 : 0});
         require(start == whole.substr(0, 16), "the start of a message is that of the message");
       }
     }
   });
+  if (longest > kMaxDecoded) return;
   accepts(bytes, [&] {
     BagChoice choice;
     choice.frame_id = bytes.size() % 2 == 0 ? "" : "base";

@@ -120,12 +120,13 @@ void mark_missing(PointCloud& cloud) {
 PointCloud cloud_from_message(const PointCloudMessage& message, const std::string& subject) {
   check_size(message, subject);
   PointCloud cloud;
+  if (message.width == 0) return cloud;  // of any number of rows
   read_coordinate(message, "x", subject, cloud.x);
   read_coordinate(message, "y", subject, cloud.y);
   read_coordinate(message, "z", subject, cloud.z);
   read_colour(message, subject, cloud.colour);
   mark_missing(cloud);
-  if (message.height > 1 && message.width > 0) {
+  if (message.height > 1) {
     cloud.grid_columns = static_cast<int>(message.width);
     cloud.image = fit_pinhole(cloud, cloud.grid_columns, static_cast<int>(message.height));
   }

@@ -89,7 +89,9 @@ void ImageRays::make_table(const CameraInfoMessage& info) {
     return Eigen::Vector2d(camera_.fx * ray.x() + camera_.cx, camera_.fy * ray.y() + camera_.cy);
   };
   for (std::size_t i = 0; i < pixels; ++i) {
-    const Eigen::Vector2d at(static_cast<double>(i % camera_.width), static_cast<double>(i / camera_.width));
+    const std::size_t u = i % static_cast<std::size_t>(camera_.width);
+    const std::size_t v = i / static_cast<std::size_t>(camera_.width);
+    const Eigen::Vector2d at(static_cast<double>(u), static_cast<double>(v));
     Eigen::Vector2d ray((at.x() - camera_.cx) / camera_.fx, (at.y() - camera_.cy) / camera_.fy);
     if (!lens.is_one_to_one_at(ray)) continue;
     const Eigen::Vector2d seen = pixel(lens.bent(ray)).array().round();

@@ -142,10 +142,9 @@ BagMessage transforms() {
 }
 
 TEST_F(Frames, ComeToTheChosenCoordinateFrame) {
-  const auto X = frames({cloud(0, 0), transforms()}, {"", "", {}, "base"}).X_chosen();
+  const auto X = frames({cloud(0, 0), transforms()}, {"", "", {}, "base"}).pose();
   EXPECT_TRUE((X * Vec3(1, 2, 3)).isApprox(Vec3(0, -2, 3)));
-  EXPECT_TRUE(
-      frames({cloud(0, 0), transforms()}, {"", "", {}, "/optical"}).X_chosen().matrix().isIdentity(0));
+  EXPECT_TRUE(frames({cloud(0, 0), transforms()}, {"", "", {}, "/optical"}).pose().matrix().isIdentity(0));
   EXPECT_HAS(error({cloud(0, 0), transforms()}, {"", "", {}, "moon"}),
              "it has body in base, optical in body");
   EXPECT_HAS(error({cloud(0, 0)}, {"", "", {}, "base"}), "it has none");

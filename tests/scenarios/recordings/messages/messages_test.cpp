@@ -109,6 +109,15 @@ TEST(Messages, RefuseCloudsThatDoNotFitTogether) {
   EXPECT_HAS(error([](auto& m) { m.height = 4, m.width = 1, m.row_step = 8; }), "row_step = 8: expected 16");
 }
 
+// However many rows it claims.
+TEST(Messages, HaveNoPointsWithoutColumns) {
+  PointCloudMessage message = four_points();
+  message.width = 0, message.height = 0xFFFFFFFF;
+  EXPECT_EQ(cloud_from_message(message, "m").size(), 0u);
+  message.width = 0xFFFFFFFF, message.height = 0;
+  EXPECT_EQ(cloud_from_message(message, "m").size(), 0u);
+}
+
 ImageMessage image(const std::string& encoding, std::uint32_t step, const std::string& data) {
   ImageMessage message;
   message.height = 1, message.width = 2, message.encoding = encoding, message.step = step,
