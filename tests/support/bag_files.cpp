@@ -131,67 +131,91 @@ std::string camera_message(int width, int height, const std::vector<double>& dis
   return message.add(std::uint32_t{0}).add(std::uint32_t{0}).done();
 }
 
-std::string mcap_file(const std::vector<BagMessage>& messages, const McapLayout& layout) {
-  const std::string magic("\x89MCAP0\r\n", 8);
-  std::map<std::string, std::uint16_t> ids;
-  std::map<std::uint16_t, std::uint64_t> counts;
-  std::string file = magic + record(1, with_length("ros2") + with_length("")), names, chunk, indexes;
-  std::map<std::uint16_t, std::string> offsets;
-  std::size_t in_chunk = 0, chunks = 0;
-  const auto end_chunk = [&] {
-    if (in_chunk == 0) return;
-    const std::string stored = compressed(layout.compression, chunk);
-    const std::uint64_t at = file.size(), size = chunk.size();
-    file += record(6, little(std::uint64_t{0}) + little(std::uint64_t{0}) + little(size) +
-                          little(layout.crc ? crc_of_bytes(chunk) : 0) + with_length(layout.compression) +
-                          little(static_cast<std::uint64_t>(stored.size())) + stored);
-    const std::uint64_t length = file.size() - at;
-    std::string places;
-    for (const auto& [id, list] : offsets) {
-      places += little(id) + little(static_cast<std::uint64_t>(file.size()));
-      file += record(7, little(id) + with_length(list));
-    }
-    indexes += record(8, little(std::uint64_t{0}) + little(std::uint64_t{0}) + little(at) + little(length) +
-                             with_length(places) + little(file.size() - at - length) +
-                             with_length(layout.compression) +
-                             little(static_cast<std::uint64_t>(stored.size())) + little(size));
-    chunk.clear(), offsets.clear(), in_chunk = 0, ++chunks;
-  };
-  for (const BagMessage& message : messages) {
-    std::string& to = layout.chunks ? chunk : file;
-    if (ids.count(message.topic) == 0) {
-      const auto id = static_cast<std::uint16_t>(ids.size() + 1);
-      ids[message.topic] = id;
+namespace {
+
+// A file of MCAP while it is written.
+class McapText {
+ public:
+  explicit McapText(const McapLayout& layout) : layout_(layout) {
+    file_ = kMagic + record(1, with_length("ros2") + with_length(""));
+  }
+
+  void add(const BagMessage& message) {
+    std::string& to = layout_.chunks ? chunk_ : file_;
+    const bool is_new = ids_.count(message.topic) == 0;
+    const auto id = is_new ? static_cast<std::uint16_t>(ids_.size() + 1) : ids_[message.topic];
+    if (is_new) {
       const std::string both =
           record(3, little(id) + with_length(message.type) + with_length("ros2msg") + with_length("")) +
           record(4,
                  little(id) + little(id) + with_length(message.topic) + with_length("cdr") + with_length(""));
-      to += both, names += both;
+      ids_[message.topic] = id, to += both, names_ += both;
     }
-    const std::uint16_t id = ids[message.topic];
-    ++counts[id];
-    offsets[id] += little(message.logged_ns) + little(static_cast<std::uint64_t>(to.size()));
+    ++counts_[id], ++messages_;
+    lists_[id] += little(message.logged_ns) + little(static_cast<std::uint64_t>(to.size()));
     to += record(5, little(id) + little(std::uint32_t{0}) + little(message.logged_ns) +
                         little(message.logged_ns) + message.bytes);
-    if (layout.chunks && ++in_chunk == layout.messages_per_chunk) end_chunk();
+    if (layout_.chunks && ++in_chunk_ == layout_.messages_per_chunk) end_chunk();
   }
-  end_chunk();
-  file += record(15, little(std::uint32_t{0}));
-  const std::uint64_t summary_at = file.size();
-  if (layout.index) {
-    std::string all;
-    for (const auto& [id, count] : counts) all += little(id) + little(count);
-    file +=
-        names + indexes +
-        record(11, little(static_cast<std::uint64_t>(messages.size())) +
-                       little(static_cast<std::uint16_t>(ids.size())) +
-                       little(static_cast<std::uint32_t>(ids.size())) + std::string(8, '\0') +
-                       little(static_cast<std::uint32_t>(chunks)) + std::string(16, '\0') + with_length(all));
+
+  std::string done() {
+    if (in_chunk_ > 0) end_chunk();
+    file_ += record(15, little(std::uint32_t{0}));
+    const std::uint64_t summary_at = file_.size();
+    if (layout_.index) file_ += names_ + indexes_ + statistics();
+    const std::string footer = std::string(1, 2) + little(std::uint64_t{20}) +
+                               little(layout_.index ? summary_at : std::uint64_t{0}) +
+                               little(std::uint64_t{0});
+    const bool has_crc = layout_.index && layout_.crc;
+    const std::uint32_t crc = has_crc ? crc_of_bytes(file_.substr(summary_at) + footer) : 0;
+    return file_ + footer + little(crc) + kMagic;
   }
-  std::string footer = std::string(1, 2) + little(std::uint64_t{20}) +
-                       little(layout.index ? summary_at : std::uint64_t{0}) + little(std::uint64_t{0});
-  const std::uint32_t crc = layout.index && layout.crc ? crc_of_bytes(file.substr(summary_at) + footer) : 0;
-  return file + footer + little(crc) + magic;
+
+ private:
+  void end_chunk() {
+    const std::string stored = compressed(layout_.compression, chunk_);
+    const auto stored_size = static_cast<std::uint64_t>(stored.size());
+    const std::uint64_t at = file_.size(), size = chunk_.size();
+    file_ += record(6, std::string(16, '\0') + little(size) + little(layout_.crc ? crc_of_bytes(chunk_) : 0) +
+                           with_length(layout_.compression) + little(stored_size) + stored);
+    const std::uint64_t length = file_.size() - at;
+    std::string places;
+    for (const auto& [id, list] : lists_) {
+      places += little(id) + little(static_cast<std::uint64_t>(file_.size()));
+      file_ += record(7, little(id) + with_length(list));
+    }
+    indexes_ += record(8, std::string(16, '\0') + little(at) + little(length) + with_length(places) +
+                              little(static_cast<std::uint64_t>(file_.size()) - at - length) +
+                              with_length(layout_.compression) + little(stored_size) + little(size));
+    chunk_.clear(), lists_.clear(), in_chunk_ = 0, ++chunks_;
+  }
+
+  std::string statistics() const {
+    std::string counts;
+    for (const auto& [id, count] : counts_) counts += little(id) + little(count);
+    const auto topics = static_cast<std::uint32_t>(ids_.size());
+    return record(11, little(messages_) + little(static_cast<std::uint16_t>(topics)) + little(topics) +
+                          std::string(8, '\0') + little(chunks_) + std::string(16, '\0') +
+                          with_length(counts));
+  }
+
+  const std::string kMagic{"\x89MCAP0\r\n", 8};
+  const McapLayout layout_;
+  std::string file_, names_, chunk_, indexes_;
+  std::map<std::string, std::uint16_t> ids_;
+  std::map<std::uint16_t, std::uint64_t> counts_;
+  std::map<std::uint16_t, std::string> lists_;  // of the messages in this chunk
+  std::size_t in_chunk_ = 0;
+  std::uint32_t chunks_ = 0;
+  std::uint64_t messages_ = 0;
+};
+
+}  // namespace
+
+std::string mcap_file(const std::vector<BagMessage>& messages, const McapLayout& layout) {
+  McapText text(layout);
+  for (const BagMessage& message : messages) text.add(message);
+  return text.done();
 }
 
 namespace {

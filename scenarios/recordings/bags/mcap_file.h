@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -23,6 +24,10 @@ class McapFile final : public BagFile {
   std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
 
  private:
+  struct Summary {
+    std::uint64_t begin = 0, end = 0;
+  };
+  std::optional<Summary> find_summary();
   // By the index: false where it is missing, damaged or not of all messages.
   bool index_by_summary();
   bool index_chunk(const McapRecord& chunk_index);

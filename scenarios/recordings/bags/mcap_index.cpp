@@ -13,6 +13,8 @@ constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two p
 constexpr std::uint64_t kNames = 4096;                                  // of a schema or a channel
 constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // of one record of an index
 
+constexpr const char* kDamagedIndex = "has a damaged index: it was read from end to end";
+
 std::uint32_t crc_of(const ByteFile& file, std::uint64_t at, std::uint64_t end) {
   uLong crc = 0;
   for (std::string piece; at < end; at += piece.size()) {
@@ -31,43 +33,56 @@ std::string McapFile::whole_body(const McapRecord& record) const {
   return file_.bytes(record.body_at, record.body_size);
 }
 
-bool McapFile::index_by_summary() {
+// Where the summary is, by the footer; none where the file has no footer, or no summary. A damaged one is
+// told of.
+std::optional<McapFile::Summary> McapFile::find_summary() {
   const std::uint64_t ends = kFooterBytes + kMcapMagic.size();
-  if (!file_.has(0, kMcapMagic.size() + ends)) return false;
+  if (!file_.has(0, kMcapMagic.size() + ends)) return std::nullopt;
   const std::uint64_t footer_at = file_.size() - ends;
-  if (file_.bytes(file_.size() - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) return false;
+  if (file_.bytes(file_.size() - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) return std::nullopt;
   const McapRecord footer = mcap_record(file_.bytes(footer_at, McapRecord::kStart), footer_at);
-  if (footer.opcode != McapRecord::footer || footer.end() != footer_at + kFooterBytes) return false;
+  if (footer.opcode != McapRecord::footer || footer.end() != footer_at + kFooterBytes) return std::nullopt;
   const std::string body = file_.bytes(footer.body_at, footer.body_size);
   MessageCursor cursor(body, WireFormat::ros1, file_.name());
   const std::uint64_t summary_at = cursor.u64();
   cursor.u64();
   const std::uint32_t crc = cursor.u32();
-  if (summary_at < kMcapMagic.size() || summary_at > footer_at) return false;
+  if (summary_at < kMcapMagic.size() || summary_at > footer_at) return std::nullopt;
   if (crc != 0 && crc != crc_of(file_, summary_at, footer.end() - 4)) {
-    remark_ = "has a damaged index: it was read from end to end";
-    return false;
+    remark_ = kDamagedIndex;
+    return std::nullopt;
   }
+  return Summary{summary_at, footer_at};
+}
+
+bool McapFile::index_by_summary() {
+  const auto summary = find_summary();
+  if (!summary) return false;
   bool any_chunk = false;
   std::string statistics;
-  try {
-    for (std::uint64_t at = summary_at; at < footer_at;) {
+  const auto for_records = [&](auto use) {
+    for (std::uint64_t at = summary->begin; at < summary->end;) {
       const McapRecord record = mcap_record_at(file_, at);
+      if (!use(record)) return false;
+      at = record.end();
+    }
+    return true;
+  };
+  try {
+    for_records([&](const McapRecord& record) {
       if (record.opcode == McapRecord::schema) add_schema(body_start(record, kNames));
       if (record.opcode == McapRecord::channel) add_channel(body_start(record, kNames));
       if (record.opcode == McapRecord::statistics) statistics = whole_body(record);
-      at = record.end();
-    }
+      return true;
+    });
     // A second time: channels may come after the chunks.
-    for (std::uint64_t at = summary_at; at < footer_at;) {
-      const McapRecord record = mcap_record_at(file_, at);
-      if (record.opcode == McapRecord::chunk_index && !index_chunk(record)) return false;
+    const bool all_indexed = for_records([&](const McapRecord& record) {
       any_chunk |= record.opcode == McapRecord::chunk_index;
-      at = record.end();
-    }
-    return statistics.empty() ? any_chunk : agrees_with(statistics);
+      return record.opcode != McapRecord::chunk_index || index_chunk(record);
+    });
+    return all_indexed && (statistics.empty() ? any_chunk : agrees_with(statistics));
   } catch (const InputError&) {  // what is wrong with it is no matter where a scan succeeds
-    remark_ = "has a damaged index: it was read from end to end";
+    remark_ = kDamagedIndex;
     return false;
   }
 }
