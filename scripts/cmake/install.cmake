@@ -57,7 +57,7 @@ foreach(header ${installed_headers})
 endforeach()
 
 # Those that the libraries above are linked to, beside Eigen and OpenMP.
-set(package_dependencies nlohmann_json PNG ZLIB liblzf OpenSSL assimp Threads)
+set(package_dependencies nlohmann_json PNG ZLIB liblzf OpenSSL assimp Threads SQLite3 BZip2 PkgConfig)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/remote_touch-config.cmake.in
   ${PROJECT_BINARY_DIR}/generated/remote_touch-config.cmake INSTALL_DESTINATION ${package_folder})
 # Before version 1 the interface may change with the minor version.
@@ -77,7 +77,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}
   COMPONENT development)
 
 # Debian's packages of all that the libraries are linked to; of cameras what this build found.
-set(package_libraries "libeigen3-dev, nlohmann-json3-dev, libhdf5-dev, libpng-dev, zlib1g-dev, liblzf-dev, libssl-dev, libassimp-dev")
+set(package_libraries "libeigen3-dev, nlohmann-json3-dev, libhdf5-dev, libpng-dev, zlib1g-dev, liblzf-dev, libssl-dev, libassimp-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev, pkgconf")
 if(TARGET openni2)
   string(APPEND package_libraries ", libopenni2-dev")
 endif()
