@@ -35,14 +35,6 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
   return target.has_parent_path() ? target.parent_path() : ".";
 }
 
-// The new name outlasts a power cut, where the file system can promise that.
-void flush_folder(const std::filesystem::path& target) {
-  const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;
-  ::fsync(folder);
-  ::close(folder);
-}
-
 [[noreturn]] void refuse(const std::filesystem::path& target, int error, const std::string& allowed) {
   throw InputError(target.string(),
                    std::string("cannot be written (") + std::strerror(error) + "): expected " + allowed);
@@ -114,6 +106,13 @@ class Replacement {
 };
 
 }  // namespace
+
+void flush_folder(const std::filesystem::path& target) {
+  const int folder = ::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
 
 void require_different_file(const std::filesystem::path& target, const std::filesystem::path& input) {
   std::error_code absent;

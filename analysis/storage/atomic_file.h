@@ -35,6 +35,10 @@ std::filesystem::path temporary_of(const std::filesystem::path& target);
 // Flushes the temporary file to the disk and renames it over the target. Fails as write_file_atomically().
 void move_into_place(const std::filesystem::path& temporary, const std::filesystem::path& target);
 
+// The names of the files in the target's folder outlast a power cut then, where the file system can promise
+// that.
+void flush_folder(const std::filesystem::path& target);
+
 // The file that a symbolic link leads to, whether it exists or not; any other name unchanged. Throws
 // InputError for a ring of links.
 std::filesystem::path resolved(const std::filesystem::path& target);

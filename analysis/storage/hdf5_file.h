@@ -58,7 +58,8 @@ class Hdf5Writer {
   void attribute(const std::string& object, const std::string& name, std::int32_t value);
   void attributes(const std::string& object, const TextAttributes& list);
   // Writes the columns as datasets of a group, with units and long_name. The column called rows becomes the
-  // dimension scale of the rows of all others; empty: none.
+  // dimension scale of the rows of all others, and rows of three or four are vectors x, y, z or quaternions
+  // w, x, y, z. rows empty: no column is the scale, and nothing is known of the components.
   void columns(const std::string& group, const std::vector<Column>& columns, const std::string& rows);
   // A column as an array over axes: names of datasets of the same group that scale() made scales. The last
   // axis runs fastest. in_place: stored in one piece, to be written in place later; compact: in compressed
@@ -73,8 +74,9 @@ class Hdf5Writer {
   void save(const std::filesystem::path& target);
 
  private:
-  void dataset(const std::string& path, const Column& column, const std::vector<unsigned long long>& extent,
+  void dataset(const std::string& path, const Column& column, std::vector<unsigned long long> extent,
                Storage storage);
+  std::string components(const std::string& group, int width, bool are_vectors);
   const Hdf5Work work_;
   bool sealed_;
   std::int64_t file_;

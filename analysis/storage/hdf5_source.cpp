@@ -6,6 +6,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "analysis/storage/hdf5_dimensions.h"
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_values.h"
 
@@ -50,6 +51,7 @@ class LibrarySource final : public Hdf5Source {
     use_hdf5();
     std::vector<std::string> names;
     check(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names, H5O_INFO_BASIC));
+    std::erase_if(names, [this](const std::string& name) { return only_names_a_dimension(file_, name); });
     return names;
   }
   Column column(const std::string& dataset) const override {

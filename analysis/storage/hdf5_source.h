@@ -16,7 +16,7 @@ class Hdf5Source {
  public:
   virtual ~Hdf5Source() = default;
   virtual TextAttributes attributes() const = 0;          // text attributes of the root
-  virtual std::vector<std::string> datasets() const = 0;  // paths, sorted
+  virtual std::vector<std::string> datasets() const = 0;  // paths of columns, sorted
   virtual Column column(const std::string& dataset) const = 0;
   // Rows first .. first + count - 1.
   virtual Column rows(const std::string& dataset, std::size_t first, std::size_t count) const = 0;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "analysis/storage/hdf5_dimensions.h"
+
 namespace remote_touch {
 
 namespace {
@@ -35,9 +37,7 @@ std::string text_in(const char* place, std::size_t length, H5T_str_t padding) {
   return text;
 }
 
-std::vector<std::string> texts_in(const std::string& packed, hid_t type) {
-  const std::size_t length = H5Tget_size(type);
-  const H5T_str_t padding = H5Tget_strpad(type);
+std::vector<std::string> texts_in(const std::string& packed, std::size_t length, H5T_str_t padding) {
   std::vector<std::string> texts;
   for (std::size_t at = 0; at < packed.size(); at += length)
     texts.push_back(text_in(packed.data() + at, length, padding));
@@ -59,7 +59,7 @@ std::string read_text(hid_t attribute) {
   std::string packed(*size, '\0');
   check(H5Aread(attribute, type, packed.data()));
   std::string joined;
-  for (const std::string& text : texts_in(packed, type))
+  for (const std::string& text : texts_in(packed, H5Tget_size(type), H5Tget_strpad(type)))
     joined.append(joined.empty() ? "" : ", ").append(text);
   return joined;
 }
@@ -77,13 +77,14 @@ namespace {
 // What of a dataset is read: all of it, or some rows.
 struct Selection {
   hid_t in_memory = H5S_ALL, in_file = H5S_ALL;
-  std::size_t count = 0;  // of values
+  std::size_t count = 0;        // of values
+  std::size_t text_length = 1;  // so many of them are one text
 };
 
 std::vector<std::string> read_texts(hid_t data, hid_t type, const Selection& wanted) {
   std::string packed(H5Tget_size(type) * wanted.count, '\0');
   check(H5Dread(data, type, wanted.in_memory, wanted.in_file, H5P_DEFAULT, packed.data()));
-  return texts_in(packed, type);
+  return texts_in(packed, H5Tget_size(type) * wanted.text_length, H5Tget_strpad(type));
 }
 
 template <class Number>
@@ -175,6 +176,12 @@ std::vector<hsize_t> checked_extent(hid_t data, hid_t type, hid_t space, const s
   return extent;
 }
 
+// As this program writes texts; others, and its earlier versions, store each in one place.
+bool has_texts_by_character(hid_t data, hid_t type, const std::vector<hsize_t>& extent) {
+  return extent.size() > 1 && extent.back() > 0 && has_fixed_texts(type) && H5Tget_size(type) == 1 &&
+         !text_attribute(data, kEncoding).empty();
+}
+
 }  // namespace
 
 Column read_dataset(hid_t data, const std::string& name, const RowRange* some) {
@@ -182,17 +189,21 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* some) {
   std::vector<hsize_t> size = checked_extent(data, type, space, name);
   std::vector<hsize_t> start(size.size(), 0);
   Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}, 1, {}};
-  column.width = static_cast<int>(size.size() == 2 ? size[1] : 1);
+  const bool by_character = has_texts_by_character(data, type, size);
+  column.width = static_cast<int>(size.size() == 2 && !by_character ? size[1] : 1);
   if (some) start[0] = some->first, size[0] = some->count;
-  const std::size_t count = product(size, 1).value();
+  Selection wanted;
+  wanted.count = product(size, 1).value();
+  if (by_character) wanted.text_length = size.back();
   if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type);
   if (!some) {
-    column.values = read_values(data, type, {H5S_ALL, H5S_ALL, count});
+    column.values = read_values(data, type, wanted);
     return column;
   }
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
   const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-  column.values = read_values(data, type, {memory, space, count});
+  wanted.in_memory = memory, wanted.in_file = space;
+  column.values = read_values(data, type, wanted);
   return column;
 }
 

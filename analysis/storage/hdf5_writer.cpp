@@ -9,6 +9,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_digest.h"
+#include "analysis/storage/hdf5_dimensions.h"
 #include "analysis/storage/hdf5_handle.h"
 
 namespace remote_touch {
@@ -19,31 +20,21 @@ namespace {
 // values.
 constexpr hsize_t kMaxContiguous = 256, kChunk = 4096, kMaxChunk = 32768;
 
-// Object time stamps off, so that equal contents are equal bytes.
-Handle creation_list(hid_t kind) {
-  Handle list(H5Pcreate(kind), H5Pclose);
-  check(H5Pset_obj_track_times(list, false));
-  return list;
-}
-
+// Of the longest, at least 1: a dimension of size 0 would hold no texts.
 std::size_t max_length(const std::vector<std::string>& texts) {
-  std::size_t length = 0;
+  std::size_t length = 1;
   for (const std::string& text : texts) length = std::max(length, text.size());
   return length;
 }
 
-Handle stored_type(const Column& column) {
+Handle stored_type(hid_t file, const Column& column) {
   if (std::holds_alternative<std::vector<double>>(column.values))
     return Handle(H5Tcopy(H5T_IEEE_F64LE), H5Tclose);
-  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values))
-    return text_type(max_length(*texts));
+  if (std::holds_alternative<std::vector<std::string>>(column.values)) return character_type();
   if (std::holds_alternative<std::vector<std::uint64_t>>(column.values))
     return Handle(H5Tcopy(H5T_STD_U64LE), H5Tclose);
   if (column.value_names.empty()) return Handle(H5Tcopy(H5T_STD_I32LE), H5Tclose);
-  Handle type(H5Tenum_create(H5T_STD_I32LE), H5Tclose);
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(column.value_names.size()); ++i)
-    check(H5Tenum_insert(type, column.value_names[static_cast<std::size_t>(i)].c_str(), &i));
-  return type;
+  return named_enumeration(file, column.name, column.value_names);
 }
 
 }  // namespace
@@ -112,7 +103,7 @@ void write_values(hid_t dataset, hid_t type, const Column& column) {
     check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, v.data()));
   };
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
-    const std::size_t length = H5Tget_size(type);
+    const std::size_t length = max_length(*texts);
     std::string packed(length * texts->size(), '\0');
     for (std::size_t i = 0; i < texts->size(); ++i) (*texts)[i].copy(packed.data() + i * length, length);
     write(packed);
@@ -123,12 +114,16 @@ void write_values(hid_t dataset, hid_t type, const Column& column) {
 
 }  // namespace
 
-void Hdf5Writer::dataset(const std::string& path, const Column& column, const std::vector<hsize_t>& extent,
+// Texts have one more dimension, that of their characters: the netCDF library crashes at texts of a fixed
+// length, and Octave refuses a file with texts of any length.
+void Hdf5Writer::dataset(const std::string& path, const Column& column, std::vector<hsize_t> extent,
                          Storage storage) {
+  const auto* const texts = std::get_if<std::vector<std::string>>(&column.values);
+  if (texts) extent.push_back(max_length(*texts));
   const int rank = static_cast<int>(extent.size());
   const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
   const Handle creation = creation_list(H5P_DATASET_CREATE);
-  const Handle type = stored_type(column);
+  const Handle type = stored_type(file_, column);
   if (storage == Storage::in_place) {
     check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
   } else if (column.length() > kMaxContiguous) {
@@ -137,11 +132,18 @@ void Hdf5Writer::dataset(const std::string& path, const Column& column, const st
     check(H5Pset_deflate(creation, 1));
     check(H5Pset_fletcher32(creation));
   }
-  const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                    H5Dclose);
-  write_values(made, type, column);
+  {
+    const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                      H5Dclose);
+    write_values(made, type, column);
+  }
   attribute(path, "units", column.units);
   attribute(path, "long_name", column.long_name);
+  if (!column.value_names.empty()) write_flags(file_, path, column.value_names);
+  if (!texts) return;
+  attribute(path, kEncoding, "utf-8");
+  add_dimension(file_, path + "_length", extent.back());
+  attach_dimension(file_, path, path + "_length", static_cast<unsigned>(rank) - 1);
 }
 
 void Hdf5Writer::scale(const std::string& path) {
@@ -150,10 +152,12 @@ void Hdf5Writer::scale(const std::string& path) {
 }
 
 namespace {
-void attach(hid_t file, const std::string& dataset, const std::string& scale, unsigned dimension) {
-  const Handle values(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose);
-  const Handle along(H5Dopen2(file, scale.c_str(), H5P_DEFAULT), H5Dclose);
-  check(H5DSattach_scale(values, along, dimension));
+// A name that no column has.
+std::string name_of_rows(const std::vector<Column>& columns) {
+  std::string name = "row";
+  const auto is_taken = [&](const Column& column) { return column.name == name; };
+  while (std::any_of(columns.begin(), columns.end(), is_taken)) name += '_';
+  return name;
 }
 }  // namespace
 
@@ -164,10 +168,21 @@ void Hdf5Writer::columns(const std::string& group, const std::vector<Column>& co
     if (column.width > 1) extent.push_back(static_cast<hsize_t>(column.width));
     dataset(group + "/" + column.name, column, extent, Storage::compact);
   }
-  if (rows.empty()) return;
-  scale(group + "/" + rows);
-  for (const Column& column : columns)
-    if (column.name != rows) attach(file_, group + "/" + column.name, group + "/" + rows, 0);
+  const std::string along = group + "/" + (rows.empty() ? name_of_rows(columns) : rows);
+  if (!rows.empty()) scale(along);
+  for (const Column& column : columns) {
+    const std::string path = group + "/" + column.name;
+    if (rows.empty()) add_dimension(file_, along, column.length());
+    if (path != along) attach_dimension(file_, path, along, 0);
+    if (column.width > 1) attach_dimension(file_, path, components(group, column.width, !rows.empty()), 1);
+  }
+}
+
+std::string Hdf5Writer::components(const std::string& group, int width, bool are_vectors) {
+  if (are_vectors && (width == 3 || width == 4)) return component_labels(file_, group, width);
+  const std::string path = group + "/components_" + std::to_string(width);
+  add_dimension(file_, path, static_cast<hsize_t>(width));
+  return path;
 }
 
 void Hdf5Writer::array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
@@ -180,7 +195,7 @@ void Hdf5Writer::array(const std::string& group, const Column& column, const std
   }
   const std::string path = group + "/" + column.name;
   dataset(path, column, extent, storage);
-  for (unsigned i = 0; i < axes.size(); ++i) attach(file_, path, group + "/" + axes[i], i);
+  for (unsigned i = 0; i < axes.size(); ++i) attach_dimension(file_, path, group + "/" + axes[i], i);
 }
 
 std::size_t Hdf5Writer::size() {

@@ -87,9 +87,8 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   hdf5.group("/sweep");
   std::vector<Column> scales = result.axes;
   if (result.replicates > 1) scales.push_back(replicate_column(result));
-  hdf5.columns("/sweep", scales, "");
   std::vector<std::string> axes;
-  for (const Column& scale : scales) hdf5.scale("/sweep/" + axes.emplace_back(scale.name));
+  for (const Column& scale : scales) hdf5.columns("/sweep", {scale}, axes.emplace_back(scale.name));
   for (const Column& measure : result.measures) hdf5.array("/sweep", measure, axes, storage);
   hdf5.array("/sweep", state_column(result), axes, storage);
   if (!result.round.empty()) hdf5.array("/sweep", round_column(result), axes, Storage::compact);

@@ -8,6 +8,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/cli/other_kinds.h"
 #include "runners/experiment/catalog.h"
+#include "runners/export/export_formats.h"
 #include "runners/plugins/plugin_library.h"
 #include "runners/provenance/provenance.h"
 
@@ -91,6 +92,13 @@ void add_lists(Subcommands& commands) {
   view->add_option(
       "--claims", viewed->claims,
       "claims.json of `remote-touch figure`: the page of a figure's run shows the figure's claims");
+  auto [exporting, exported] =
+      commands.add("export", "write a result in the format of other programs", command_export);
+  exporting->add_option("file", exported->file, "a trace, sweep or figure")->required();
+  exporting
+      ->add_option("output", exported->output,
+                   "the file to write; its ending is the format: " + known_formats())
+      ->required();
   auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
   inspect->add_option("file", inspected->file, "an HDF5 file")->required();
 }

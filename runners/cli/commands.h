@@ -181,6 +181,12 @@ struct ViewRequest {
 void write_view(const CommandLine& line, const ViewRequest& request);
 int command_view(const CommandLine& line, const ViewRequest& request);
 
+struct ExportRequest {
+  std::string file;
+  std::string output;  // its ending is the format
+};
+int command_export(const CommandLine& line, const ExportRequest& request);
+
 struct InspectRequest {
   std::string file;
 };

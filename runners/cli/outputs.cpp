@@ -42,6 +42,11 @@ void require_report(const CommandLine& line, const std::string& output,
   require(line, output, inputs, begins_with(output, opening), "report");
 }
 
+void require_export(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs, const std::string& opening) {
+  require(line, output, inputs, begins_with(output, opening), "export of such a result");
+}
+
 std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts) {
   std::vector<std::string> files{subject};
   for (const RecordingPart& part : parts) files.push_back(part.path);

@@ -21,6 +21,10 @@ namespace remote_touch {
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
+// The same for a file of an export.
+void require_export(const CommandLine& line, const std::string& output,
+                    const std::vector<std::string>& inputs, const std::string& opening);
+
 inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
 inline constexpr const char* kConfiguration = "{\"title\":";  // as written, in one line

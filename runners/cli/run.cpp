@@ -4,6 +4,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
@@ -52,6 +53,8 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.hash_frames = true;
   options.find_true_contact = true;
   options.progress = [&](double fraction) { progress.update(fraction); };
+  std::string remark;
+  options.remark = &remark;
   if (request.timing) options.step_duration_s = &durations;
   const TextAttributes origin =
       provenance(experiment.to_json(), Recipe{"run", request.experiment, request.overrides},
@@ -59,6 +62,7 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   const Trace trace = simulate(experiment, options);
   const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
+  if (!remark.empty()) std::printf("  note: %s\n", printable(remark).c_str());
   for (const Measure& measure : measures())
     if (applies(measure, trace))
       std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.of(trace), measure.unit.c_str());

@@ -17,8 +17,8 @@ const std::vector<Trace>& traces() {
     std::vector<Trace> made;
     SimulationOptions options;
     options.find_true_contact = true;
-    for (const char* experiment : {"fig4.11", "fig6.3", "fig7.4"})
-      made.push_back(simulate(Experiment::load(experiment, {"duration_s=0.2"}), options));
+    for (const char* experiment : {"fig4.11", "tool-slab", "fixture-tasks"})
+      made.push_back(simulate(Experiment::load(experiment, {"duration_s=0.1"}), options));
     Trace unknown = made.front();
     for (double& distance_m : unknown.signed_distance_m) distance_m = std::nan("");
     unknown.slave_distance_m = unknown.signed_distance_m;

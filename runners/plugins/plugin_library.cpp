@@ -45,6 +45,7 @@ void check(const remote_touch_renderer& r, const std::string& file) {
     refuse("contact_model: expected REMOTE_TOUCH_POINTS to REMOTE_TOUCH_ORIENTED");
   if (!r.max_stiffness_N_per_m || !r.create || !r.destroy || !r.on_frame || !r.step)
     refuse("lacks max_stiffness_N_per_m, create, destroy, on_frame or step");
+  if (!r.prepare != !r.release) refuse("has only one of prepare and release");
   if (r.setting_count > kMaxSettings || (r.setting_count > 0 && !r.settings))
     refuse("settings: expected at most " + std::to_string(kMaxSettings));
   bool any_live = false;

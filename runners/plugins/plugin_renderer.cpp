@@ -1,6 +1,5 @@
 #include "runners/plugins/plugin_renderer.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
@@ -53,6 +52,16 @@ auto guarded(const remote_touch_renderer& functions, const char* name, Call&& ca
 const double* start_of(const std::vector<double>& column) {
   return column.empty() ? nullptr : column.data();
 }
+
+// What the library made of a frame.
+struct Prepared final : FramePreparation {
+  Prepared(const remote_touch_renderer& of, void* made) : functions(of), handle(made) {}
+  ~Prepared() override { functions.release(handle); }
+  Prepared(const Prepared&) = delete;
+  Prepared& operator=(const Prepared&) = delete;
+  const remote_touch_renderer& functions;
+  void* handle;
+};
 
 remote_touch_frame as_c(const Frame& frame, const PointCloud& cloud) {
   remote_touch_frame c{};
@@ -113,7 +122,7 @@ ToolOutput tool_of(const remote_touch_output& c) {
   return tool;
 }
 
-RenderOutput output_of(const remote_touch_output& c, const remote_touch_renderer& functions, int newest) {
+RenderOutput output_of(const remote_touch_output& c, const remote_touch_renderer& functions) {
   RenderOutput out;
   out.proxy_W = vector_of(c.proxy_m), out.force_N = vector_of(c.force_N), out.slave_W = vector_of(c.slave_m);
   out.normal_W = vector_of(c.normal), out.frame_correction_m = vector_of(c.frame_correction_m);
@@ -123,7 +132,6 @@ RenderOutput output_of(const remote_touch_output& c, const remote_touch_renderer
   out.status =
       static_cast<RenderStatus>(in_range(c.status, REMOTE_TOUCH_DEVICE_NOT_FINITE, functions, "status"));
   out.steps = c.steps, out.converged = c.converged != 0, out.contact_count = c.contact_count;
-  out.frame_index = newest;
   if (functions.degrees_of_freedom == 6) out.tool = tool_of(c);
   return out;
 }
@@ -188,14 +196,27 @@ void PluginRenderer::reserve(std::size_t points) {
   if (functions_.reserve) guarded(functions_, "reserve", [&] { functions_.reserve(renderer_, points); });
 }
 
+void PluginRenderer::prepare(Frame& frame) const {
+  if (!functions_.prepare) return;
+  PointCloud buffer;
+  const remote_touch_frame c = as_c(frame, frame.points->every_point(kernels_, buffer));
+  Problem problem;
+  void* made = guarded(functions_, "prepare",
+                       [&] { return functions_.prepare(renderer_, &c, problem.text(), problem.size()); });
+  if (made == nullptr) problem.report(functions_, "prepare");
+  frame.prepared = std::make_shared<Prepared>(functions_, made);
+}
+
 void PluginRenderer::on_frame(const Frame& frame) {
-  const PointCloud& cloud = frame.points->every_point(kernels_, buffer_);
-  const remote_touch_frame c = as_c(frame, cloud);
+  if (!order_.take(frame)) return;
+  remote_touch_frame c = as_c(frame, frame.points->every_point(kernels_, buffer_));
+  const auto prepared = std::dynamic_pointer_cast<const Prepared>(frame.prepared);
+  if (prepared && &prepared->functions == &functions_) c.prepared = prepared->handle;
   Problem problem;
   if (guarded(functions_, "on_frame",
               [&] { return functions_.on_frame(renderer_, &c, problem.text(), problem.size()); }) != 0)
     problem.report(functions_, "on_frame");
-  newest_ = std::max(newest_, frame.index);
+  prepared_ = prepared;
 }
 
 Parameters PluginRenderer::live_parameters() {
@@ -215,7 +236,10 @@ RenderOutput PluginRenderer::step(const DeviceState& device, double time_s) {
         return functions_.step(renderer_, &c, time_s, &out, problem.text(), problem.size());
       }) != 0)
     problem.report(functions_, "step");
-  return output_of(out, functions_, newest_);
+  RenderOutput made = output_of(out, functions_);
+  made.frame_index = order_.newest();
+  made.status = order_.status(made.status);
+  return made;
 }
 
 std::unique_ptr<RendererFactory> plugin_factory(const remote_touch_renderer& functions) {

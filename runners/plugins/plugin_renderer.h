@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/factory.h"
 #include "runners/plugins/remote_touch_plugin.h"
@@ -19,6 +20,7 @@ class PluginRenderer final : public Renderer {
                  double haptic_rate_hz, const Kernels& kernels);
   ~PluginRenderer() override;
 
+  void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
   Parameters live_parameters() override;
@@ -31,7 +33,8 @@ class PluginRenderer final : public Renderer {
   std::vector<double> values_;
   PointCloud buffer_;  // for frames that are not stored as a cloud
   void* renderer_ = nullptr;
-  int newest_ = -1;
+  FrameOrder order_;
+  std::shared_ptr<const FramePreparation> prepared_;  // of the newest frame: the library may point into it
 };
 
 using RendererFactory = Factory<Renderer, double, const Kernels&>;

@@ -35,7 +35,7 @@ typedef struct {
 /* One frame. The arrays have `points` entries each and are valid during the call only. A point that was not
  * measured is NaN in x, y and z. */
 typedef struct {
-  int32_t index;   /* frames can be lost, or overtake each other: see on_frame */
+  int32_t index;   /* grows; frames can be lost */
   int32_t columns; /* of an organised frame, stored row by row; 0: unorganised */
   double captured_s, arrives_s;
   size_t points;
@@ -44,6 +44,7 @@ typedef struct {
   const double* fixture_radius_m;  /* of forbidden regions; null: none */
   const double* stiffness_N_per_m; /* of regions, NaN: the renderer's own; null: none */
   const uint32_t* colour;          /* 0xRRGGBB; null: none */
+  void* prepared;                  /* in on_frame: what prepare returned; null: it was not called */
 } remote_touch_frame;
 
 /* The device: the haptic interface point (HIP), the orientation of its handle, its buttons, one bit each. */
@@ -111,8 +112,14 @@ typedef struct {
   void (*destroy)(void* renderer);
   /* Frames will have up to so many points; may be null. */
   void (*reserve)(void* renderer, size_t points);
-  /* A new frame. Drop one whose captured_s is not later than the last one's, and report it in the status of
-   * the next output. Returns 0; anything else ends the run with `problem`. */
+  /* The slow part of taking a frame, so that on_frame is short; may be null, with release. It may run in
+   * another thread while step() runs, so it reads nothing that step() or set_values() write. Returns what
+   * on_frame gets as `prepared`, which stays until a later frame was taken; release then frees it. Null: a
+   * failure, with `problem`. */
+  void* (*prepare)(const void* renderer, const remote_touch_frame* frame, char* problem, size_t size);
+  void (*release)(void* prepared);
+  /* A new frame, later than all before: the program drops frames that come too late, and reports them in the
+   * status. Returns 0; anything else ends the run with `problem`. */
   int32_t (*on_frame)(void* renderer, const remote_touch_frame* frame, char* problem, size_t size);
   /* One tick of the haptic loop. Returns as on_frame does. */
   int32_t (*step)(void* renderer, const remote_touch_device* device, double time_s,

@@ -86,6 +86,7 @@ class ObservedFrames final : public Renderer {
 Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const Kernels& kernels = options.kernels ? *options.kernels : kernels_for(best_isa());
   const auto scenario = experiment.build_scenario(kernels);
+  if (options.remark) *options.remark = scenario->without_faults().remark();
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto switches = std::make_shared<FixtureSwitches>();
   const auto renderer = experiment.build_renderer(kernels, switches);

@@ -18,6 +18,7 @@ struct SimulationOptions {
   std::vector<double>* step_duration_s = nullptr;   // wall-clock time of each tick; null: not measured
   std::vector<double>* frame_duration_s = nullptr;  // and of the renderer's work on each frame
   std::function<void(const Frame&)> on_frame;       // sees each frame that arrives, before the renderer
+  std::string* remark = nullptr;  // gets what the scenario says of its input, see Scenario::remark()
   bool generate_all_points =
       false;  // frames come with every point computed: durations without noise generation
   bool find_true_contact = false;  // fill Trace::contact, for measures that need it

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "runners/experiment/frame_stream.h"
-#include "runners/simulation/simulation.h"
+#include "runners/view/frames_again.h"
 
 namespace remote_touch {
 
@@ -51,13 +51,13 @@ std::vector<std::uint32_t> all_of(const TouchingPoints& lists) {
   return all;
 }
 
-// Takes the place of the renderer: keeps of each frame what is shown.
-class FrameViewer final : public Renderer {
+// Keeps of each frame what is shown.
+class FrameViewer {
  public:
   FrameViewer(const RunPath& path, const ShownPointsRule& rule, const Kernels& kernels)
       : path_(path), rule_(rule), scale_(point_scale(rule.box_W)), kernels_(kernels) {}
 
-  void on_frame(const Frame& frame) override {
+  void on_frame(const Frame& frame) {
     const auto [first, last] = std::equal_range(path_.frame.begin(), path_.frame.end(), frame.index);
     const auto begin = static_cast<std::size_t>(first - path_.frame.begin()),
                end = static_cast<std::size_t>(last - path_.frame.begin());
@@ -84,7 +84,6 @@ class FrameViewer final : public Renderer {
       now.touching_end.push_back(static_cast<std::uint32_t>(now.touching.size()));
     }
   }
-  RenderOutput step(const DeviceState&, double) override { return {}; }
 
   ShownFrames shown;
 
@@ -136,22 +135,7 @@ ShownFrame thinned(const ShownFrame& frame, std::size_t max_others) {
 ShownFrames shown_frames(const Experiment& experiment, const RunPath& path, const ShownPointsRule& rule,
                          const Kernels& kernels, const std::atomic<bool>* stop) {
   FrameViewer viewer(path, rule, kernels);
-  // A task switches fixtures on and off: only the run itself tells when.
-  if (!experiment.sequence().empty()) {
-    SimulationOptions options;
-    options.kernels = &kernels;
-    options.stop = stop;
-    options.on_frame = [&](const Frame& frame) { viewer.on_frame(frame); };
-    simulate(experiment, options);
-    return std::move(viewer.shown);
-  }
-  const auto scenario = experiment.build_scenario(kernels);
-  FrameStream stream(*scenario, experiment.build_processing(kernels), experiment.settings().transport,
-                     experiment.settings().key, false);
-  for (const double time_s : path.time_s) {
-    if (stop && *stop) throw Interrupted{};
-    stream.deliver_until(time_s, viewer);
-  }
+  frames_again(experiment, path.time_s, kernels, stop, [&](const Frame& frame) { viewer.on_frame(frame); });
   return std::move(viewer.shown);
 }
 

@@ -9,8 +9,8 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/experiment.h"
-#include "runners/provenance/input_hashes.h"
 #include "runners/settings/configuration_difference.h"
+#include "runners/view/frames_again.h"
 #include "runners/view/shown_frames.h"
 #include "runners/view/shown_sensor.h"
 #include "runners/view/shown_tool.h"
@@ -97,10 +97,9 @@ struct ShownRun::State {
         kernels(best),
         stop(when),
         configuration(parse_json(of("config"), source.name)),
-        experiment(Experiment::from_json(configuration)),
+        experiment(experiment_of_run(source.attributes, source.name)),
         r2_m(length_m(configuration["renderer"], "r2_m")),
         contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
-    require_same_recordings();
     if (note.empty() && changes_radii()) note = kOtherRadii;
     read_path();
     if (source.columns->has("tool_orientation")) read_tool();
@@ -114,11 +113,6 @@ struct ShownRun::State {
     return std::any_of(changes.begin(), changes.end(), [](const RendererChange& change) {
       return change.parameter == "renderer.r1_m" || change.parameter == "renderer.r2_m";
     });
-  }
-  void require_same_recordings() const {
-    for (const ChangedInput& input : changed_inputs(of("input_digests"), input_hashes(experiment.inputs())))
-      throw InputError(source.name, "its recording " + input.path + " has changed: expected " + input.before +
-                                        ", found " + input.now);
   }
   void read_path() {
     path.time_s = values<double>(*source.columns, "time");

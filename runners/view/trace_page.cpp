@@ -2,24 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/input_error.h"
-#include "runners/provenance/recipe.h"
 #include "runners/view/shown_claims.h"
 
 namespace remote_touch {
-
-namespace {
-
-// The frames of a live run came from a sensor, at times that only its recording knows.
-void require_simulated(const std::filesystem::path& file, const StoredTrace& trace) {
-  const std::string command = attribute(trace.attributes(), "command");
-  if (!recipe_of(trace.attributes()) && command.find(" live ") != std::string::npos)
-    throw InputError(
-        file.string(),
-        "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
-}
-
-}  // namespace
 
 ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const ViewOptions& options) {
   std::vector<std::unique_ptr<ShownRun>> runs;
@@ -27,7 +12,6 @@ ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const View
   bool has_claims = false;
   for (const auto& file : traces) {
     const auto trace = std::make_shared<StoredTrace>(file);
-    require_simulated(file, *trace);
     RunSource source{file.string(), trace, trace->attributes()};
     const Json claims = shown_claims(options.claims, source.attributes);
     has_claims |= !claims.empty();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/cloud/point_cloud.h"
 #include "core/geometry/vector.h"
@@ -32,6 +33,8 @@ class Scenario {
   virtual bool ends() const { return false; }
   // The scene as scripted hands use it, without the faults of a sensor.
   virtual const Scenario& without_faults() const { return *this; }
+  // Empty, or what the user should know of the input, in one line: a recording that was cut short.
+  virtual std::string remark() const { return {}; }
 
   // When the frame leaves the sensor, if that is not when it was captured: it was late, or a recorded live
   // session stores when the renderer got it (infinite if it never did).

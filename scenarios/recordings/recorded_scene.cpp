@@ -6,6 +6,7 @@
 
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "scenarios/recordings/bag_frames.h"
 
 namespace remote_touch {
 
@@ -15,7 +16,9 @@ constexpr std::size_t kMaxCached = 8;  // 12 MB each
 
 Parameters parameters(RecordedScene::Settings& s) {
   return {
-      {"path", &s.path, 0, 0, "recording folder, TUM folder, folder of PCD files, or one PCD file"},
+      {"path", &s.path, 0, 0,
+       "recording folder, TUM folder, folder of PCD files, one PCD file, or a bag of ROS: .bag, .mcap, .db3, "
+       "or the folder of a bag"},
       {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
       {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0,
@@ -28,11 +31,20 @@ Parameters parameters(RecordedScene::Settings& s) {
        "position of the camera in the base frame (registration, 6.2.1)"},
       {"camera_rotation_deg", &s.camera_rotation_deg, -360, 360,
        "rotation vector (axis times angle) of the camera in the base frame; zero: x right, y down, z forward"},
+      {"topic", &s.bag.topic, 0, 0,
+       "of a bag: the topic of clouds or depth images; empty: the only one there is"},
+      {"camera_info", &s.bag.camera_info, 0, 0,
+       "of a bag: the topic of the camera of depth images; empty: the one beside them"},
+      {"images", choice(s.bag.images, {"by_name", "measured", "rectified"}), 0, 0,
+       "of a bag: depth images are as measured (distorted, intrinsics K), rectified (intrinsics P), or "
+       "rectified if the name of their topic has rect"},
+      {"frame_id", &s.bag.frame_id, 0, 0,
+       "of a bag: the coordinate frame, of tf_static, in which the points are; empty: that of the messages"},
   };
 }
 
 std::string validate(const RecordedScene::Settings& s) {
-  if (s.path.empty()) return "path = \"\": expected a recording folder or a PCD file";
+  if (s.path.empty()) return "path = \"\": expected a recording folder, a PCD file or a bag";
   if (s.last_frame >= 0 && s.last_frame < s.first_frame)
     return "last_frame = " + std::to_string(s.last_frame) +
            ": expected first_frame = " + std::to_string(s.first_frame) + " or more, or -1";
@@ -43,11 +55,22 @@ RecordingPart input_files(const RecordedScene::Settings& s) {
   return {s.path, s.first_frame, s.last_frame};
 }
 
+namespace {
+
+// What tf_static says comes first; it is the identity, bit for bit, where nothing is asked of it.
+RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
+  const RigidTransform X_registered =
+      Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
+  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
+  return X_registered * recording.bag->pose();
+}
+
+}  // namespace
+
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings),
-      X_WC_(Eigen::Translation3d(settings.camera_position_m) *
-            rotation(kRadiansPerDegree * settings.camera_rotation_deg)),
-      recording_(index_recording(find_recording(settings.path))) {
+      recording_(index_recording(find_recording(settings.path), settings.bag)),
+      X_WC_(camera_pose(settings, recording_)) {
   const FrameRange frames = frames_of(input_files(settings), recording_);
   first_ = frames.first, count_ = frames.last - frames.first + 1;
   rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
@@ -75,6 +98,11 @@ double RecordedScene::captured_s(int frame) const {
   if (settings_.playback != Playback::hold || settings_.frame_rate_hz > 0) return frame / rate_hz_;
   const auto& frames = recording_.frames;
   return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
+}
+
+std::string RecordedScene::remark() const {
+  const std::string remark = recording_.bag ? recording_.bag->remark() : "";
+  return remark.empty() ? remark : settings_.path + ": " + remark;
 }
 
 // Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...

@@ -26,6 +26,7 @@ class RecordedScene final : public Scenario {
     double truth_radius_m = 0.006;
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
+    BagChoice bag;  // where the path is a bag of ROS
   };
 
   // Throws InputError when the recording cannot be read.
@@ -34,6 +35,7 @@ class RecordedScene final : public Scenario {
   double frame_rate_hz() const override { return rate_hz_; }
   int frame_count() const override;
   double captured_s(int frame) const override;
+  std::string remark() const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
@@ -47,8 +49,8 @@ class RecordedScene final : public Scenario {
   std::shared_ptr<const NeighbourSearch> measured(int frame) const;
 
   const Settings settings_;
-  const RigidTransform X_WC_;
   RecordingIndex recording_;
+  const RigidTransform X_WC_;
   int first_ = 0, count_ = 0;
   double rate_hz_ = 0;
   // The frames used last, the newest in front: renderer, trajectory and truth use them in turn, and a short

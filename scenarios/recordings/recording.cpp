@@ -10,6 +10,7 @@
 
 #include "core/cloud/camera.h"
 #include "core/parameters/input_error.h"
+#include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "scenarios/recordings/png/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"
@@ -26,7 +27,8 @@ namespace fs = std::filesystem;
 }
 
 constexpr double kNominalRate_hz = 30;  // of the Kinect class; used where a recording does not tell
-constexpr double kMaxRate_hz = 10000;   // the fastest haptic rate: more would only pile frames up in a tick
+constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
+constexpr double kMaxRate_hz = 10000;  // the fastest haptic rate: more would only pile frames up in a tick
 
 // What camera.json tells of a camera; the rate, which TUM folders do not need, is read apart.
 struct CameraFile {
@@ -116,6 +118,15 @@ std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& 
   return files;
 }
 
+// A recording of one frame has no rate.
+double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
+  if (frames < 2) return kNominalRate_hz;
+  const double rate_hz = static_cast<double>(frames - 1) / last_s;
+  if (rate_hz > kMaxRate_hz)
+    throw InputError(file, "has timestamps of more than 10000 frames a second: expected seconds");
+  return rate_hz;
+}
+
 // camera.json is optional here, and a rate in it is not used: the stamps tell the rate.
 RecordingIndex index_tum(const fs::path& folder) {
   const std::vector<StampedFile> depth = read_stamped_list(folder / "depth.txt");
@@ -134,10 +145,8 @@ RecordingIndex index_tum(const fs::path& folder) {
   }
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frames = associate_stamps(depth, colour);
-  const double intervals = static_cast<double>(depth.size() - 1);
-  index.frame_rate_hz = intervals > 0 ? intervals / index.frames.back().captured_s : kNominalRate_hz;
-  if (index.frame_rate_hz > kMaxRate_hz)
-    refuse(folder / "depth.txt", "has timestamps of more than 10000 frames a second: expected seconds");
+  index.frame_rate_hz =
+      mean_rate_hz((folder / "depth.txt").string(), index.frames.size(), index.frames.back().captured_s);
   return index;
 }
 
@@ -172,7 +181,7 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
 
 // Of camera.json only the rate serves: every PCD file tells its own intrinsics.
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
-  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}};
+  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}, {}};
   if (fs::exists(camera_file)) {
     index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
     index.texts = {camera_file};
@@ -181,30 +190,47 @@ RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& cam
   return index;
 }
 
+RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
+  RecordingIndex index{RecordingIndex::Kind::bag, {}, 1, kNominalRate_hz, {}, {}, {}, {}};
+  index.bag = std::make_shared<const BagFrames>(path, choice);
+  index.camera = index.bag->camera();
+  for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, {}, {}});
+  index.frame_rate_hz = mean_rate_hz(path.string(), index.frames.size(), index.frames.back().captured_s);
+  return index;
+}
+
 // One line for the user: what was found, and how it will be taken.
 std::string describe(const fs::path& path, const RecordingIndex& index) {
   std::ostringstream text;
   text.exceptions(std::ios::badbit);
   const fs::path clean = (path / "").lexically_normal().parent_path();  // "DIR" and "DIR/" alike
-  text << clean.filename().string() << ": " << index.frames.size() << " frame(s) from "
-       << (index.kind == RecordingIndex::Kind::pcd ? "PCD" : "depth PNG") << " at " << index.frame_rate_hz
-       << " Hz";
+  const std::string kind = index.bag                                 ? index.bag->kind()
+                           : index.kind == RecordingIndex::Kind::pcd ? "PCD"
+                                                                     : "depth PNG";
+  text << clean.filename().string() << ": " << index.frames.size() << " frame(s) from " << kind << " at "
+       << index.frame_rate_hz << " Hz";
   if (index.camera.width > 0) text << ", " << index.camera.width << " x " << index.camera.height << " pixels";
   return text.str();
 }
 
 // The layouts in the order that index_recording promises.
-RecordingIndex index_any(const fs::path& path) {
+RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
+  if (fs::exists(path) && is_bag(path)) return index_bag(path, choice);
+  for (const auto& [name, value] :
+       {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
+    if (!value.empty()) refuse(path, "is no bag of ROS: expected scenario." + std::string(name) + " = \"\"");
   if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
-                     ": expected a recording folder or a .pcd file");
+                     ": expected a recording folder, a .pcd file or a bag (.mcap, .db3, .bag)");
   }
   if (fs::exists(path / "depth.txt")) return index_tum(path);
   if (fs::is_directory(path / "depth")) return index_depth_folder(path);
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
   if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
-  refuse(path, "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png or *.pcd");
+  refuse(path,
+         "is no recording: expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or "
+         "metadata.yaml with a bag of ROS 2");
 }
 
 // Pixel (u, v) must be point v * width + u in depth, colour and camera alike.
@@ -217,19 +243,23 @@ void check_size(const fs::path& file, int width, int height, const CameraIntrins
 
 }  // namespace
 
-RecordingIndex list_recording(const fs::path& path) {
+RecordingIndex list_recording(const fs::path& path, const BagChoice& choice) {
   try {
-    return index_any(path);
+    return index_any(path, choice);
   } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
     refuse(error.path1(), "cannot be read: " + error.code().message());
   }
 }
 
-RecordingIndex index_recording(const fs::path& path) {
-  RecordingIndex index = list_recording(path);
+RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
+  RecordingIndex index = list_recording(path, choice);
   if (index.kind == RecordingIndex::Kind::pcd) {
     const PcdCloud first = read_pcd(index.frames.front().depth);
     if (first.cloud.image) index.camera = first.cloud.image->camera;
+  }
+  if (index.bag && index.camera.width == 0) {
+    const PointCloud first = index.bag->cloud(0, kNoLimit_m);
+    if (first.image) index.camera = first.image->camera;
   }
   index.description = describe(path, index);
   return index;
@@ -237,6 +267,7 @@ RecordingIndex index_recording(const fs::path& path) {
 
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m) {
   assert(frame < index.frames.size());
+  if (index.bag) return index.bag->cloud(frame, max_depth_m);
   const RecordedFrame& source = index.frames[frame];
   if (index.kind == RecordingIndex::Kind::pcd) {
     PointCloud cloud = read_pcd(source.depth).cloud;

@@ -3,32 +3,41 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/cloud/point_cloud.h"
+#include "scenarios/recordings/bag_choice.h"
 
 namespace remote_touch {
 
+class BagFrames;
+
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
-  std::filesystem::path depth;   // a depth PNG or a PCD file
+  std::filesystem::path depth;   // a depth PNG or a PCD file; of a bag: empty
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
 struct RecordingIndex {
-  enum class Kind { depth_png, pcd };
+  enum class Kind { depth_png, pcd, bag };
   Kind kind = Kind::depth_png;
-  CameraIntrinsics camera;     // pcd: as fitted to the first file; all 0 where that has no image layout
-  double metres_per_unit = 0;  // of the depth PNG; pcd: 1
+  // pcd, and clouds of a bag: as fitted to the first frame; all 0 where that has no image layout.
+  CameraIntrinsics camera;
+  double metres_per_unit = 0;  // of the depth PNG; others: 1
   double frame_rate_hz = 0;
   std::vector<RecordedFrame> frames;  // at least one, captured_s strictly increasing
   std::string description;            // one line
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
+  std::shared_ptr<const BagFrames> bag;  // of kind bag
 };
 
 // The layout of path is the first of these that fits:
+// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_frames.h. The frame
+// rate
+//   is the mean rate of the stamps (one: 30 Hz).
 // - DIR/depth.txt (TUM RGB-D): its lists as in tum_layout.h, at the mean rate of the stamps (one: 30 Hz).
 //   Without DIR/camera.json the camera is the benchmark's: 640 x 480 pixels, f = 525, c = (319.5, 239.5),
 //   5000 units per metre, colour registered.
@@ -42,13 +51,14 @@ struct RecordingIndex {
 // (default false); other keys are refused. Pixels, metres per unit, hertz.
 //
 // Throws InputError about the file (with ":line" for a text file) if a part is missing or wrong. Depth images
-// are opened by read_frame only; of PCD files the first is read here.
-RecordingIndex index_recording(const std::filesystem::path& path);
-// The same without opening any PCD file: no description, and no camera for kind pcd.
-RecordingIndex list_recording(const std::filesystem::path& path);
+// are opened by read_frame only; of PCD files and clouds of a bag the first is read here.
+RecordingIndex index_recording(const std::filesystem::path& path, const BagChoice& choice = {});
+// The same without opening any PCD file: no description, and no camera for kind pcd or clouds of a bag.
+RecordingIndex list_recording(const std::filesystem::path& path, const BagChoice& choice = {});
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
-// What is missing or farther than max_depth_m is NaN. A PCD file may also hold a cloud that is not organised.
+// What is missing or farther than max_depth_m is NaN. A PCD file or a bag may also hold a cloud that is not
+// organised.
 // Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not of the camera's size.
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m);
 

@@ -1,6 +1,9 @@
 #include "scenarios/recordings/recording_part.h"
 
+#include <algorithm>
 #include <map>
+
+#include "scenarios/recordings/bags/bag_file.h"
 
 namespace remote_touch {
 
@@ -49,11 +52,20 @@ bool is_single_file(const fs::path& file) {
   return ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".h5";
 }
 
+// As a whole, whatever the topic and the frames.
+std::vector<InputFile> bag_files(const fs::path& bag) {
+  std::vector<InputFile> list;
+  for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
+  std::sort(list.begin(), list.end(), [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
+  return list;
+}
+
 }  // namespace
 
 std::vector<InputFile> files_of(const RecordingPart& part) {
   const fs::path found = find_recording(part.path);
   if (is_single_file(found)) return {{found.filename().generic_string(), found}};
+  if (is_bag(found)) return bag_files(found);
   const RecordingIndex recording = list_recording(found);
   const FrameRange frames = frames_of(part, recording);
   // Absolute, because a list may name files by absolute paths: those come as ../../...

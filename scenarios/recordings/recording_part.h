@@ -47,8 +47,9 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 // The files from which the part's frames are made, each once, sorted by name: a single PNG or mesh itself; or
 // the depth images or PCD files, the colour images registered to them, and those of camera.json, depth.txt
-// and rgb.txt that are used. Throws InputError when the recording is not there, its lists or camera.json
-// cannot be used, or it has fewer frames; images and PCD files are not opened.
+// and rgb.txt that are used; or the files of a bag, as a whole: its frames are not counted here. Throws
+// InputError when the recording is not there, its lists or camera.json cannot be used, or it has fewer
+// frames; images and PCD files are not opened.
 struct InputFile {
   std::string name;            // from the recording's folder, or from the one that holds a single PCD file
   std::filesystem::path file;  // to be opened

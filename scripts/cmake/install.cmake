@@ -36,6 +36,7 @@ foreach(top core scenarios analysis runners)
 endforeach()
 list(REMOVE_ITEM rooms_of_runners runners/contract runners/python)
 list(REMOVE_ITEM links_of_runners GTest::gtest pybind11::headers Python::Module)
+list(REMOVE_ITEM links_of_runners CLI11::CLI11)  # headers only, in no header of ours
 
 installed_library(core ROOMS ${rooms_of_core} LINKS Eigen3::Eigen OpenMP::OpenMP_CXX)
 get_property(kernel_objects GLOBAL PROPERTY KERNEL_OBJECTS)
@@ -57,7 +58,7 @@ foreach(header ${installed_headers})
 endforeach()
 
 # Those that the libraries above are linked to, beside Eigen and OpenMP.
-set(package_dependencies nlohmann_json CLI11 PNG ZLIB liblzf OpenSSL assimp Threads)
+set(package_dependencies nlohmann_json PNG ZLIB liblzf OpenSSL assimp Threads SQLite3 BZip2 PkgConfig)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/remote_touch-config.cmake.in
   ${PROJECT_BINARY_DIR}/generated/remote_touch-config.cmake INSTALL_DESTINATION ${package_folder})
 # Before version 1 the interface may change with the minor version.
@@ -71,5 +72,17 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/remote_touch_core.pc DESTINATION $
   COMPONENT development)
 
 install(TARGETS remote-touch RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/remote-touch RENAME copyright
   COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libremote-touch-dev RENAME copyright
+  COMPONENT development)
+
+# Debian's packages of all that the libraries are linked to; of cameras what this build found.
+set(package_libraries "libeigen3-dev, nlohmann-json3-dev, libhdf5-dev, libpng-dev, zlib1g-dev, liblzf-dev, libssl-dev, libassimp-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev, pkgconf")
+if(TARGET openni2)
+  string(APPEND package_libraries ", libopenni2-dev")
+endif()
+if(TARGET freenect)
+  string(APPEND package_libraries ", libfreenect-dev")
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

@@ -10,7 +10,7 @@ set(public_headers
   analysis/comparison/column_source.h analysis/figures/result_file.h analysis/measures/measures.h
   analysis/storage/hdf5_file.h analysis/trace/trace.h
   runners/cli/program.h runners/experiment/catalog.h runners/experiment/experiment.h
-  runners/plugins/remote_touch_plugin.h runners/simulation/simulation.h runners/trajectories/trajectory.h)
+  runners/plugins/plugin_library.h runners/plugins/remote_touch_plugin.h runners/simulation/simulation.h runners/trajectories/trajectory.h)
 if(TARGET runners_contract)
   list(APPEND public_headers runners/contract/contract_tests.h)
 endif()

@@ -37,6 +37,9 @@ target_link_libraries(plugin_benchmark PRIVATE runners benchmark::benchmark)
 target_compile_definitions(plugin_benchmark PRIVATE PLUGIN_RENDERERS="$<TARGET_FILE:plugin_renderers>")
 add_dependencies(plugin_benchmark plugin_renderers)
 
+add_executable(bag_benchmark benchmarks/bag_benchmark.cpp benchmarks/checked_benchmark.cpp)
+target_link_libraries(bag_benchmark PRIVATE scenarios test_bags benchmark::benchmark)
+
 # Benchmarks beside others' libraries are built only when asked for, and say so where those are not installed.
 function(peers_missing name packages)
   add_custom_target(${name} COMMAND ${CMAKE_COMMAND} -E echo "${name} needs ${packages}"

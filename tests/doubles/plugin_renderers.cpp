@@ -1,6 +1,7 @@
 // A plug-in for tests: the renderer of chapter 4 behind the C interface, and renderers that break its rules.
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 
 #include "core/kernels/isa.h"
@@ -17,7 +18,7 @@ enum Setting { r1_m, stiffness_N_per_m, kSettings };
 ProxyParameters parameters_of(const double* values) {
   ProxyParameters p;
   p.r1_m = values[r1_m];
-  p.coupling.stiffness_N_per_m = values[stiffness_N_per_m];
+  p.stiffness_N_per_m = values[stiffness_N_per_m];
   return p;
 }
 
@@ -25,15 +26,17 @@ const remote_touch_setting* settings() {
   static const ProxyParameters defaults;
   static const remote_touch_setting all[kSettings] = {
       {"r1_m", "inner radius", defaults.r1_m, 1e-6, 1, 0},
-      {"stiffness_N_per_m", "of the virtual coupling", defaults.coupling.stiffness_N_per_m, 0, 1e4, 1}};
+      {"stiffness_N_per_m", "of the virtual coupling", defaults.stiffness_N_per_m, 0, 1e4, 1}};
   return all;
 }
 
 struct Proxy {
-  ProxyParameters parameters;
   ProxyRenderer renderer;
-  Proxy(const ProxyParameters& p, double rate_hz)
-      : parameters(p), renderer(p, rate_hz, kernels_for(best_isa())) {}
+  double* stiffness = nullptr;  // the renderer's own
+  Proxy(const ProxyParameters& p, double rate_hz) : renderer(p, rate_hz, kernels_for(best_isa())) {
+    for (const Parameter& live : renderer.live_parameters())
+      if (live.name == "stiffness_N_per_m") stiffness = std::get<double*>(live.value);
+  }
 };
 
 double max_stiffness(const double* values) {
@@ -62,15 +65,29 @@ void take(std::vector<double>& column, const double* from, size_t count) {
   if (from) column.assign(from, from + count);
 }
 
-int32_t on_frame(void* renderer, const remote_touch_frame* frame, char*, size_t) {
+using Search = std::shared_ptr<const NeighbourSearch>;
+
+Search search_of(const remote_touch_frame* frame) {
   PointCloud cloud;
   take(cloud.x, frame->x, frame->points), take(cloud.y, frame->y, frame->points);
   take(cloud.z, frame->z, frame->points);
   take(cloud.fixture_radius_m, frame->fixture_radius_m, frame->points);
   take(cloud.stiffness_N_per_m, frame->stiffness_N_per_m, frame->points);
   cloud.grid_columns = frame->columns;
+  return make_search(std::move(cloud));
+}
+
+void* prepare(const void*, const remote_touch_frame* frame, char*, size_t) {
+  return new Search(search_of(frame));
+}
+void release(void* prepared) {
+  delete static_cast<Search*>(prepared);
+}
+
+int32_t on_frame(void* renderer, const remote_touch_frame* frame, char*, size_t) {
+  const Search points = frame->prepared ? *static_cast<const Search*>(frame->prepared) : search_of(frame);
   static_cast<Proxy*>(renderer)->renderer.on_frame(
-      {frame->index, frame->captured_s, frame->arrives_s, make_search(std::move(cloud))});
+      {frame->index, frame->captured_s, frame->arrives_s, points});
   return 0;
 }
 
@@ -94,9 +111,9 @@ int32_t step(void* renderer, const remote_touch_device* device, double time_s, r
 }
 
 void set_values(void* renderer, const double* values) {
-  ProxyRenderer& proxy = static_cast<Proxy*>(renderer)->renderer;
-  *std::get<double*>(proxy.live_parameters().front().value) = values[stiffness_N_per_m];
-  proxy.parameters_changed();
+  Proxy& proxy = *static_cast<Proxy*>(renderer);
+  *proxy.stiffness = values[stiffness_N_per_m];
+  proxy.renderer.parameters_changed();
 }
 
 // --- renderers that break a rule, each in one function ---
@@ -125,6 +142,7 @@ remote_touch_renderer proxy(const char* name) {
   r.setting_count = kSettings, r.settings = settings();
   r.max_stiffness_N_per_m = max_stiffness, r.rest_distance_m = rest_distance;
   r.create = create, r.destroy = destroy, r.reserve = reserve;
+  r.prepare = prepare, r.release = release;
   r.on_frame = on_frame, r.step = step, r.set_values = set_values;
   return r;
 }

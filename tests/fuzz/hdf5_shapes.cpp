@@ -129,6 +129,8 @@ void add_dataset(hid_t file, const std::string& name, Choices& choose) {
     H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   }
   if (choose.of(2) != 0) add_attribute(data, choose.of(2) == 0 ? "units" : "long_name", choose);
+  if (choose.of(4) == 3) add_attribute(data, "_Encoding", choose);
+  if (choose.of(4) == 3) add_attribute(data, "NAME", choose);
 }
 
 // The library refuses what cannot be; what was made up to then is a file.

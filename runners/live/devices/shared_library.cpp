@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "core/parameters/input_error.h"
 
@@ -10,10 +11,26 @@ namespace remote_touch {
 
 namespace {
 
-// Of the loader, for the last name it tried.
-std::string loader_says() {
-  const char* text = dlerror();
-  return text != nullptr ? text : "no reason given";
+// Of the loader, for the last name it tried; without that name.
+std::string loader_says(const std::string& name) {
+  const char* told = dlerror();
+  const std::string text = told != nullptr ? told : "no reason given";
+  return text.rfind(name + ": ", 0) == 0 ? text.substr(name.size() + 2) : text;
+}
+
+// Of names that fail for the same reason one after the other, and there are many, the middle is left out:
+// "a.so, a.so.9 to a.so.1: no such file; b.so: not for this machine".
+std::string failed_names(const std::vector<std::pair<std::string, std::string>>& failures) {
+  std::string text;
+  for (std::size_t begin = 0, end = 0; begin < failures.size(); begin = end) {
+    const auto& [name, reason] = failures[begin];
+    while (end < failures.size() && failures[end].second == reason) ++end;
+    text += (begin == 0 ? "" : "; ") + name;
+    if (end - begin > 1) text += ", " + failures[begin + 1].first;
+    if (end - begin > 2) text += " to " + failures[end - 1].first;
+    text += ": " + reason;
+  }
+  return text;
 }
 
 }  // namespace
@@ -24,18 +41,18 @@ SharedLibrary::SharedLibrary(const Place& place) : variable_(place.variable) {
   const char* named = std::getenv(variable_);
   const bool is_named = named != nullptr && *named != '\0';
   const std::vector<std::string> names = is_named ? std::vector<std::string>{named} : place.names;
-  std::string reasons;
+  std::vector<std::pair<std::string, std::string>> failures;
   for (const std::string& name : names) {
     handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (handle_ != nullptr) {
       file_ = name;
       return;
     }
-    reasons += (reasons.empty() ? "" : "; ") + loader_says();
+    failures.emplace_back(name, loader_says(name));
   }
   const std::string variable = variable_;
   throw InputError(names.front(),
-                   "cannot be loaded (" + reasons + "); " +
+                   "cannot be loaded (" + failed_names(failures) + "); " +
                        (is_named ? variable + " must name the library of "
                                  : "install it or let " + variable + " name its file: it is part of ") +
                        place.package);

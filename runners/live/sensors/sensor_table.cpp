@@ -4,7 +4,9 @@
 
 #include "runners/live/devices/uri.h"
 #include "runners/live/sensors/freenect_camera.h"
+#include "runners/live/sensors/k4a_camera.h"
 #include "runners/live/sensors/openni2_camera.h"
+#include "runners/live/sensors/realsense_camera.h"
 #include "runners/live/sensors/scenario_camera.h"
 #include "runners/sessions/session_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
@@ -54,6 +56,11 @@ constexpr SensorEntry kSensors[] = {
      open_at<open_openni2>, openni2_availability},
     {"freenect", "freenect:NUMBER", "Kinect for Xbox 360, by libfreenect", open_at<open_freenect>,
      freenect_availability},
+    {"k4a", "k4a:CAMERA?MODE",
+     "Azure Kinect and Orbbec Femto, by number or serial number; MODE: nfov, nfov-binned, wfov-binned, wfov",
+     open_at<open_k4a>, k4a_availability},
+    {"realsense", "realsense:SERIAL", "Intel RealSense, by librealsense 2", open_at<open_realsense>,
+     realsense_availability},
     {"dir", "dir:FOLDER", "a folder of depth images or organised clouds", open_recording,
      [] { return always("reads files"); }},
     {"tum", "tum:FOLDER", "a folder in the layout of the TUM RGB-D benchmark", open_recording,

@@ -19,12 +19,13 @@ struct AxisFit {
 
 // The least-squares line over the valid points, pixel from ratio: this way round, what it minimises is
 // pixels. The sums are taken about the means, so that they keep their digits.
-template <class PixelOf>
-std::optional<AxisFit> fit_axis(const std::vector<double>& across, const std::vector<double>& z,
-                                PixelOf pixel_of) {
+std::optional<AxisFit> fit_axis(const std::vector<double>& ratios, std::size_t columns, bool across) {
   const auto for_valid = [&](auto visit) {
-    for (std::size_t i = 0; i < z.size(); ++i) {
-      if (!std::isnan(z[i])) visit(across[i] / z[i], static_cast<double>(pixel_of(i)));
+    for (std::size_t first = 0, v = 0; first < ratios.size(); first += columns, ++v) {
+      for (std::size_t u = 0; u < columns; ++u) {
+        const double ratio = ratios[first + u];
+        if (!std::isnan(ratio)) visit(ratio, static_cast<double>(across ? u : v));
+      }
     }
   };
   double n = 0, mean_ratio = 0, mean_pixel = 0;
@@ -45,6 +46,13 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& across, const std::ve
   return fit;
 }
 
+// Of points in front of the camera; NaN where there is none.
+std::vector<double> ratios(const std::vector<double>& across, const std::vector<double>& z) {
+  std::vector<double> result(z.size());
+  for (std::size_t i = 0; i < z.size(); ++i) result[i] = across[i] / z[i];
+  return result;
+}
+
 }  // namespace
 
 std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height) {
@@ -52,8 +60,8 @@ std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int h
   const auto behind_camera = [](double z_m) { return z_m <= 0; };
   if (std::any_of(cloud.z.begin(), cloud.z.end(), behind_camera)) return std::nullopt;
   const std::size_t columns = static_cast<std::size_t>(width);
-  const auto u = fit_axis(cloud.x, cloud.z, [=](std::size_t i) { return i % columns; });
-  const auto v = fit_axis(cloud.y, cloud.z, [=](std::size_t i) { return i / columns; });
+  const auto u = fit_axis(ratios(cloud.x, cloud.z), columns, true);
+  const auto v = fit_axis(ratios(cloud.y, cloud.z), columns, false);
   if (!u || !v || !(u->focal > 0) || !(v->focal > 0)) return std::nullopt;
   const double residual = std::max(u->residual, v->residual);
   if (!(residual < kMaxResidual_px)) return std::nullopt;

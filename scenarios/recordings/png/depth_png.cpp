@@ -34,6 +34,7 @@ struct CloseFile {
 class PngFile {
  public:
   explicit PngFile(const std::filesystem::path& path);
+  PngFile(std::string_view bytes, const std::string& name);  // bytes must outlive it
   ~PngFile() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngFile(const PngFile&) = delete;
   PngFile& operator=(const PngFile&) = delete;
@@ -54,6 +55,7 @@ class PngFile {
   [[noreturn]] static void on_error(png_structp png, png_const_charp message);
   static void on_warning(png_structp, png_const_charp) {}  // the pixels are usable: nothing to say
 
+  void start();
   void guarded(Step step);
   const std::vector<png_byte>& decode(Step prepare);
   void check_chunks();
@@ -80,6 +82,18 @@ PngFile::PngFile(const std::filesystem::path& path) : name_(path.string()) {
   if (no_size) throw InputError(name_, "cannot be read (" + no_size.message() + "): expected a PNG file");
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw InputError(name_, std::string("cannot be opened: ") + std::strerror(errno));
+  start();
+}
+
+PngFile::PngFile(std::string_view bytes, const std::string& name) : name_(name), file_bytes_(bytes.size()) {
+  if (bytes.empty()) throw InputError(name_, "holds no byte of an image: expected a PNG");
+  // Opened for reading only: the bytes stay as they are.
+  file_.reset(fmemopen(const_cast<char*>(bytes.data()), bytes.size(), "rb"));
+  if (!file_) throw std::bad_alloc();
+  start();
+}
+
+void PngFile::start() {
   check_chunks();
   png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
   if (!png_) throw std::bad_alloc();
@@ -182,16 +196,32 @@ std::string PngFile::pixel_format() const {
 
 }  // namespace
 
-DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
-  PngFile png(file);
+namespace {
+
+GreyImage grey_image(PngFile& png, const std::string& name) {
   if (png.colour_type() != PNG_COLOR_TYPE_GRAY || png.bit_depth() != 16) {
-    throw InputError(file.string(),
-                     "pixels are " + png.pixel_format() + ": expected 16-bit grey (one channel)");
+    throw InputError(name, "pixels are " + png.pixel_format() + ": expected 16-bit grey (one channel)");
   }
   const std::vector<png_byte>& bytes = png.decode_as_stored();
-  DepthImage depth{png.width(), png.height(), std::vector<double>(bytes.size() / 2)};
+  GreyImage image{png.width(), png.height(), std::vector<std::uint16_t>(bytes.size() / 2)};
+  for (std::size_t i = 0; i < image.values.size(); ++i)  // PNG is big-endian
+    image.values[i] = static_cast<std::uint16_t>(bytes[2 * i] << 8 | bytes[2 * i + 1]);
+  return image;
+}
+
+}  // namespace
+
+GreyImage decode_grey_png(std::string_view bytes, const std::string& name) {
+  PngFile png(bytes, name);
+  return grey_image(png, name);
+}
+
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
+  PngFile png(file);
+  const GreyImage image = grey_image(png, file.string());
+  DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
   for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
-    const int value = bytes[2 * i] << 8 | bytes[2 * i + 1];  // PNG is big-endian
+    const int value = image.values[i];
     const double z_m = value * metres_per_unit;
     depth.z_m[i] = value == 0 || z_m > max_depth_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
   }

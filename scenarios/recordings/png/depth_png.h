@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/cloud/camera.h"
@@ -13,6 +15,15 @@ namespace remote_touch {
 // measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
 // finite. Throws InputError if the file is missing, cut short, damaged or of another pixel format.
 DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m);
+
+// Pixel (u, v) is element v * width + u.
+struct GreyImage {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> values;
+};
+
+// The values of a 16-bit PNG of one channel that is in memory. name: what an InputError is about.
+GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
 
 // Pixel (u, v) is element v * width + u, as 0xRRGGBB; sets width and height. Allowed are RGB and grey of up
 // to 8 bits a channel (alpha is dropped), and palettes. Samples are taken as stored: no gamma or colour

@@ -40,6 +40,17 @@ TEST_F(FindRecording, TellsWhereItLooked) {
   EXPECT_THROW(find_recording("/a.png"), MissingRecording);
 }
 
+TEST_F(FindRecording, BagsAreReadAsAWhole) {
+  for (const char* name :
+       {"bag/metadata.yaml", "bag/bag_0.mcap", "bag/bag_1.mcap", "bag/notes.txt", "one.bag"})
+    folder_.write(std::string("here/") + name, "");
+  std::vector<std::string> names;
+  for (const InputFile& file : files_of({"bag", 3, 1000})) names.push_back(file.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"bag_0.mcap", "bag_1.mcap", "metadata.yaml"}));
+  ASSERT_EQ(files_of({"one.bag", 0, -1}).size(), 1u);
+  EXPECT_EQ(files_of({"one.bag", 0, -1})[0].name, "one.bag");
+}
+
 // It is input of the program, which the command line hands on.
 TEST_F(FindRecording, DoesNotReadTheEnvironment) {
   folder_.write("data/a.png", "");

@@ -114,7 +114,8 @@ TEST_F(Recording, RefusesIncompleteFolders) {
   const auto error = [](const fs::path& path) { return refusal([&] { index_recording(path); }); };
   EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: expected");
   EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
-  const std::string allowed = "expected a folder that holds depth.txt (TUM), depth/*.png or *.pcd";
+  const std::string allowed =
+      "expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or metadata.yaml with a bag of ROS 2";
   const std::string no_recording = folder_.path().string() + ": is no recording: " + allowed;
   EXPECT_EQ(error(folder_.path()), no_recording);
   folder_.write("camera.json", kCamera);

@@ -1,8 +1,23 @@
 #include "centroid_renderer.h"
 
+#include <cmath>
+
 namespace lab {
 
 using namespace remote_touch;
+
+namespace {
+
+// The mean of the points' own stiffness, in whole steps of 1/1024 N/m; `otherwise` where a point has none.
+double mean_stiffness_N_per_m(const PointsView& points, std::size_t count, double otherwise) {
+  if (points.stiffness == nullptr) return otherwise;
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    sum += std::round(1024 * (std::isnan(points.stiffness[i]) ? otherwise : points.stiffness[i]));
+  return sum / 1024 / static_cast<double>(count);
+}
+
+}  // namespace
 
 Parameters parameters(CentroidSettings& settings) {
   return {{"radius_m", &settings.radius_m, 1e-6, 1, "radius r of the ball around the HIP"},
@@ -39,17 +54,20 @@ RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
   out.contact_count = static_cast<int>(near_.size());
   if (near_.size() == 0) return out;
   const PointsView points = near_.view();
-  Vec3 sum_m = Vec3::Zero();  // from the HIP, in whole nanometres: such a sum does not depend on the order
+  // A sum of whole numbers does not depend on the order of the points, which is that of the search.
+  const double grid_m = 0x1p-26 * settings_.radius_m;
+  Vec3 sum = Vec3::Zero();  // of the points seen from the HIP, in units of the grid
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const Vec3 offset_m = Vec3(points.x[i], points.y[i], points.z[i]) - device.position_W;
-    sum_m += Vec3((1e9 * offset_m).array().round());
+    sum += Vec3((offset_m / grid_m).array().round());
   }
-  const Vec3 away_m = -1e-9 / static_cast<double>(near_.size()) * sum_m;
+  const Vec3 away_m = -grid_m / static_cast<double>(near_.size()) * sum;
   const double distance_m = away_m.norm();
   if (distance_m == 0) return out;
   out.nearest_distance_m = distance_m;
   out.normal_W = away_m / distance_m;
-  out.force_N = settings_.stiffness_N_per_m * (settings_.radius_m - distance_m) * out.normal_W;
+  const double stiffness_N_per_m = mean_stiffness_N_per_m(points, near_.size(), settings_.stiffness_N_per_m);
+  out.force_N = stiffness_N_per_m * (settings_.radius_m - distance_m) * out.normal_W;
   out.state = ContactState::contact;
   return out;
 }

@@ -22,7 +22,7 @@ void add_entries(remote_touch::Catalog& catalog) {
                                                "a spring away from the centroid of the points near the HIP"));
   catalog.add(scenario_entry<Dome>("dome", "a ball under a flat cloud that rises and sinks"));
   catalog.add(trajectory_entry<Tap>("tap", "taps the scene from above"));
-  catalog.add(Measure{"mean_force", "N", "mean force", MeasuredRuns::all, mean_force_N});
+  catalog.add(Measure{"mean_force", "N", "mean magnitude of the force", MeasuredRuns::all, mean_force_N});
 }
 
 }  // namespace lab

@@ -16,8 +16,8 @@ static const remote_touch_setting settings[SETTINGS] = {
 
 typedef struct {
   double values[SETTINGS];
-  double top_m, captured_s, rest_m[3];
-  int has_frame, dropped;
+  double top_m, rest_m[3];
+  int has_frame;
 } Spring;
 
 static void take_values(void* renderer, const double* values) {
@@ -40,12 +40,7 @@ static void* create(const double* values, double haptic_rate_hz, char* problem, 
 static int32_t on_frame(void* renderer, const remote_touch_frame* frame, char* problem, size_t size) {
   (void)problem, (void)size;
   Spring* spring = renderer;
-  if (spring->has_frame && frame->captured_s <= spring->captured_s) {
-    spring->dropped = 1;
-    return 0;
-  }
   spring->has_frame = 1;
-  spring->captured_s = frame->captured_s;
   spring->top_m = -INFINITY;
   for (size_t i = 0; i < frame->points; ++i)
     if (frame->y[i] > spring->top_m) spring->top_m = frame->y[i]; /* never true for a missing point */
@@ -68,8 +63,6 @@ static int32_t step(void* renderer, const remote_touch_device* device, double ti
     output->status = REMOTE_TOUCH_NO_FRAME;
     return 0;
   }
-  if (spring->dropped) output->status = REMOTE_TOUCH_STALE_FRAME_DROPPED;
-  spring->dropped = 0;
   output->nearest_distance_m = fabs(hip[1] - spring->top_m);
   const double depth_m = spring->top_m + spring->values[REACH_M] - hip[1];
   if (!(depth_m > 0)) return 0;

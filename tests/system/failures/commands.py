@@ -154,6 +154,14 @@ def prepare_record(tools, folder):
     tools.must(folder, record_arguments())
 
 
+def prepare_export(tools, folder):
+    """Over an earlier export of another run."""
+    prepare_run(tools, folder)
+    tools.must(folder, ["export", "out.h5", "x.csv"])
+    tools.must(folder, ["export", "out.h5", "x.mcap"])
+    tools.must(folder, ["run", "lift.json", "-o", "out.h5"])
+
+
 def record_arguments():
     return ["live", "fig4.16", "--duration", "0.05", "--record", "out.h5"]
 
@@ -165,6 +173,8 @@ COMMANDS = [
     Command("sweep refined", sweep_arguments(), prepare_refined, "out.h5", in_progress=True),
     Command("merge", ["merge", "1.h5", "2.h5", "-o", "out.h5"], prepare_merge, "out.h5"),
     Command("bless", bless_arguments(4), prepare_bless, "stored/lift.h5", processes=(1, 2)),
+    Command("export csv", ["export", "out.h5", "x.csv"], prepare_export, "x.csv"),
+    Command("export mcap", ["export", "out.h5", "x.mcap"], prepare_export, "x.mcap"),
     Command("record", record_arguments(), prepare_record, "out.h5", same_bytes=False),
 ]
 

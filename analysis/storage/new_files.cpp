@@ -1,0 +1,98 @@
+#include "analysis/storage/new_files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+NewFiles::~NewFiles() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  put_back();
+}
+
+void NewFiles::refuse(const File& file, int error) const {
+  throw InputError(file.target.string(),
+                   std::string("cannot be written (") + std::strerror(error) +
+                       "): expected a writable place with room for the files that are exported");
+}
+
+void NewFiles::begin(const std::filesystem::path& target) {
+  close();
+  require_writable(target);
+  remove_leftovers(target);
+  File& file = files_.emplace_back(File{target, resolved(target), temporary_of(target)});
+  std::error_code absent;
+  const auto there = std::filesystem::status(file.place, absent);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) refuse(file, EINVAL);
+  descriptor_ = ::open(file.temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) refuse(file, errno);
+}
+
+void NewFiles::append(const std::string& bytes) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) refuse(files_.back(), written < 0 ? errno : ENOSPC);
+    done += static_cast<std::size_t>(written);
+  }
+  size_ += bytes.size();
+}
+
+void NewFiles::close() {
+  if (descriptor_ < 0) return;
+  int error = ::fsync(descriptor_) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
+  if (::close(descriptor_) != 0 && error == 0) error = errno;
+  descriptor_ = -1;
+  if (error != 0) refuse(files_.back(), error);
+}
+
+// A second name for the file that is replaced, so that at every moment the target is the old one or the new
+// one.
+void NewFiles::keep_old(File& file) {
+  std::error_code absent, failure;
+  if (!std::filesystem::exists(file.place, absent)) return;
+  const std::filesystem::path old = file.temporary.string() + "-old";
+  if (::link(file.place.c_str(), old.c_str()) != 0 &&
+      !std::filesystem::copy_file(file.place, old, failure)) {  // a file system without links
+    ::unlink(old.c_str());
+    refuse(file, failure.value());
+  }
+  file.old = old;
+}
+
+void NewFiles::finish() {
+  close();
+  if (files_.size() > 1)
+    for (File& file : files_) keep_old(file);
+  for (File& file : files_) {
+    if (::rename(file.temporary.c_str(), file.place.c_str()) != 0) refuse(file, errno);
+    file.is_new = true;
+  }
+  const std::vector<File> done = std::move(files_);  // from here on they stay
+  files_.clear();
+  for (const File& file : done)
+    if (!file.old.empty()) ::unlink(file.old.c_str());
+  for (const File& file : done) flush_folder(file.place);
+}
+
+void NewFiles::put_back() {
+  for (const File& file : files_) {
+    if (!file.is_new)
+      ::unlink(file.temporary.c_str());
+    else if (file.old.empty())
+      ::unlink(file.place.c_str());
+    if (file.old.empty()) continue;
+    if (file.is_new)
+      ::rename(file.old.c_str(), file.place.c_str());
+    else
+      ::unlink(file.old.c_str());
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,43 @@
+// Files that belong together and may be larger than memory: all of them appear, or none.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace remote_touch {
+
+// Written one after the other under temporary names beside their targets, and renamed at the end. Every
+// member throws InputError naming the target when it cannot be written; then, and when finish() was not
+// called, no new file is left and files that were there are as they were. Only a program that is killed
+// between two renames leaves some new and some old.
+class NewFiles {
+ public:
+  NewFiles() = default;
+  ~NewFiles();
+  NewFiles(const NewFiles&) = delete;
+  NewFiles& operator=(const NewFiles&) = delete;
+
+  // A regular file, or absent. pre: no other process writes it now.
+  void begin(const std::filesystem::path& target);
+  void append(const std::string& bytes);  // to the file that was begun last
+  void finish();
+
+  std::size_t count() const { return files_.size(); }
+  unsigned long long size() const { return size_; }  // of all, in bytes
+
+ private:
+  struct File {
+    std::filesystem::path target, place, temporary, old = {};
+    bool is_new = false;  // renamed
+  };
+  void close();
+  void keep_old(File& file);
+  void put_back();
+  [[noreturn]] void refuse(const File& file, int error) const;
+  std::vector<File> files_;
+  int descriptor_ = -1;
+  unsigned long long size_ = 0;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,32 @@
+// What every format of an export gets.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/new_files.h"
+#include "core/kernels/kernels.h"
+
+namespace remote_touch {
+
+struct ExportJob {
+  const Hdf5Reader& result;
+  std::filesystem::path output;
+  NewFiles& files;
+  // Throws InputError unless the file may be written: it is absent, or begins so, as a former export did.
+  std::function<void(const std::filesystem::path& file, const std::string& opening)> require_allowed;
+  const Kernels* kernels = nullptr;         // pre: set
+  const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted
+
+  void begin(const std::filesystem::path& file, const std::string& opening) const {
+    if (require_allowed) require_allowed(file, opening);
+    files.begin(file);
+  }
+  // Throws Interrupted when the user wants the program to end.
+  void go_on() const;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,104 @@
+// The functions of the k4a interface that its adapter calls: that of the Azure Kinect, which Orbbec's wrapper
+// for the Femto has as well. Declared here from its documentation; no header of the vendors is needed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "runners/live/devices/shared_library.h"
+
+namespace remote_touch::k4a {
+
+struct DeviceOfLibrary;
+struct CaptureOfLibrary;
+struct ImageOfLibrary;
+using Device = DeviceOfLibrary*;
+using Capture = CaptureOfLibrary*;
+using Image = ImageOfLibrary*;
+
+enum Result : int { succeeded = 0, failed = 1 };
+enum WaitResult : int { wait_succeeded = 0, wait_failed = 1, wait_timeout = 2 };
+enum DepthMode : int { nfov_2x2_binned = 1, nfov_unbinned = 2, wfov_2x2_binned = 3, wfov_unbinned = 4 };
+enum Fps : int { fps_15 = 1, fps_30 = 2 };
+enum ColourResolution : int { colour_off = 0 };
+enum Camera : int { depth_camera = 0 };
+enum ImageFormat : int { depth16 = 4 };
+enum LogLevel : int { log_error = 1 };
+
+struct Configuration {
+  int colour_format = 0;
+  ColourResolution colour_resolution = colour_off;
+  DepthMode depth_mode = nfov_unbinned;
+  Fps camera_fps = fps_30;
+  bool synchronized_images_only = false;
+  std::int32_t depth_delay_off_colour_us = 0;
+  int wired_sync_mode = 0;  // alone
+  std::uint32_t subordinate_delay_off_master_us = 0;
+  bool disable_streaming_indicator = false;
+};
+static_assert(sizeof(Configuration) == 36 && offsetof(Configuration, depth_mode) == 8 &&
+              offsetof(Configuration, depth_delay_off_colour_us) == 20 &&
+              offsetof(Configuration, disable_streaming_indicator) == 32);
+
+struct Float2 {
+  float x, y;
+};
+struct Float3 {
+  float x, y, z;
+};
+
+// Written and read by the library only: its own functions map points with it. So the adapter does not depend
+// on the layout (1032 bytes in version 1.4), nor on the lens model.
+struct alignas(16) Calibration {
+  std::byte bytes[8192];
+};
+
+struct K4aLibrary {
+  K4aLibrary();  // throws InputError if it is not found
+
+  // What the library said of its first error since the last call; in one line, empty: nothing. Of all threads
+  // and devices, as the library has one log.
+  std::string take_error() const;
+
+  SharedLibrary library;
+  std::uint32_t (*device_get_installed_count)() = nullptr;
+  Result (*device_open)(std::uint32_t index, Device* device) = nullptr;
+  void (*device_close)(Device) = nullptr;
+  int (*device_get_serialnum)(Device, char* serial, std::size_t* size) = nullptr;  // 0: succeeded
+  Result (*device_get_calibration)(Device, DepthMode, ColourResolution, Calibration*) = nullptr;
+  Result (*device_start_cameras)(Device, const Configuration*) = nullptr;
+  void (*device_stop_cameras)(Device) = nullptr;
+  WaitResult (*device_get_capture)(Device, Capture*, std::int32_t timeout_ms) = nullptr;
+  Result (*calibration_2d_to_3d)(const Calibration*, const Float2* pixel, float depth_mm, Camera source,
+                                 Camera target, Float3* point_mm, int* is_valid) = nullptr;
+  Result (*calibration_3d_to_2d)(const Calibration*, const Float3* point_mm, Camera source, Camera target,
+                                 Float2* pixel, int* is_valid) = nullptr;
+  Image (*capture_get_depth_image)(Capture) = nullptr;  // null: none; the caller releases it
+  void (*capture_release)(Capture) = nullptr;
+  std::uint8_t* (*image_get_buffer)(Image) = nullptr;
+  std::size_t (*image_get_size)(Image) = nullptr;
+  ImageFormat (*image_get_format)(Image) = nullptr;
+  int (*image_get_width_pixels)(Image) = nullptr;
+  int (*image_get_height_pixels)(Image) = nullptr;
+  int (*image_get_stride_bytes)(Image) = nullptr;
+  std::uint64_t (*image_get_device_timestamp_us)(Image) = nullptr;
+  void (*image_release)(Image) = nullptr;
+  // Not in every version.
+  using LogCallback = void(void* context, LogLevel, const char* file, int line, const char* message);
+  Result (*set_debug_message_handler)(LogCallback*, void* context, LogLevel min_level) = nullptr;
+};
+
+// Handles that are given back once. The library has to outlive them.
+struct Close {
+  const K4aLibrary* k4a;
+  void operator()(Device device) const { k4a->device_close(device); }
+  void operator()(Capture capture) const { k4a->capture_release(capture); }
+  void operator()(Image image) const { k4a->image_release(image); }
+};
+using OpenDevice = std::unique_ptr<DeviceOfLibrary, Close>;
+using HeldCapture = std::unique_ptr<CaptureOfLibrary, Close>;
+using HeldImage = std::unique_ptr<ImageOfLibrary, Close>;
+
+}  // namespace remote_touch::k4a

@@ -1,0 +1,308 @@
+#include "runners/live/sensors/realsense_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+#include "runners/live/sensors/frame_numbers.h"
+#include "runners/live/sensors/pixel_rows.h"
+#include "runners/live/sensors/realsense_lens.h"
+#include "runners/live/sensors/sensor_clock.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr int kRealSenseWidth = 640, kRealSenseHeight = 480, kRealSenseRate_hz = 30;
+constexpr int kAnyIndex = -1;
+constexpr double kPoll_s = 1e-3;
+constexpr double kLookAfter_s = 0.1;  // without a frame: is the camera still there?
+constexpr int kMaxList = 64;          // cameras, sensors, streams, frames: more are no number of them
+
+// The library at work.
+struct RealSense {
+  explicit RealSense(const std::string& name)
+      : call(rs2, name), context(call.held("the library does not start", rs2.create_context, rs2.version)) {}
+
+  // "unknown" of a camera that does not tell it, as one in recovery.
+  std::vector<std::string> serials() const;
+  std::string info(const rs2::Device* device, rs2::CameraInfo what) const;
+
+  const rs2::RealSenseLibrary rs2;
+  const rs2::Calls call;
+  const rs2::Held<rs2::Context> context;
+};
+
+std::vector<std::string> RealSense::serials() const {
+  const auto list = call.held("cameras cannot be listed", rs2.query_devices, context.get());
+  const int count = call("cameras cannot be counted", rs2.get_device_count, list.get());
+  std::vector<std::string> found;
+  for (int i = 0; i < std::min(count, kMaxList); ++i)
+    found.push_back(info(call.held("a camera is not known", rs2.create_device, list.get(), i).get(),
+                         rs2::info_serial_number));
+  return found;
+}
+
+std::string RealSense::info(const rs2::Device* device, rs2::CameraInfo what) const {
+  if (call("tells nothing of itself", rs2.supports_device_info, device, what) == 0) return "unknown";
+  const char* text = call("tells nothing of itself", rs2.get_device_info, device, what);
+  return text != nullptr ? text : "unknown";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// Stops a pipeline that has been started.
+struct StopPipeline {
+  const rs2::RealSenseLibrary* rs2;
+  void operator()(rs2::Pipeline* pipeline) const {
+    rs2::Error* error = nullptr;
+    rs2->pipeline_stop(pipeline, &error);
+    if (error != nullptr) rs2->free_error(error);  // of a camera that is gone
+  }
+};
+
+class RealSenseCamera final : public DepthSource {
+ public:
+  RealSenseCamera(const std::string& address, Clock& host);
+
+  const SensorView& view() const override { return view_; }
+  SensorState next(SensorFrame& frame, double timeout_s) override;
+  std::string failure() const override { return failure_; }
+
+ private:
+  void choose(const std::string& serial);
+  void start();
+  rs2::Intrinsics depth_intrinsics() const;
+  double depth_scale() const;
+  void describe(const rs2::Intrinsics& intrinsics);
+
+  bool is_depth(const rs2::Stream* stream) const;
+  rs2::Held<rs2::Frame> newest_depth(double& arrived_s) const;
+  rs2::Held<rs2::Frame> depth_of(rs2::Held<rs2::Frame> frames) const;
+  bool take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame);
+  PixelRows rows_of(const rs2::Frame* depth) const;
+  void expect_camera();
+
+  Clock& host_;
+  const std::string name_;
+  const RealSense real_sense_;
+  const rs2::RealSenseLibrary& rs2_ = real_sense_.rs2;
+  const rs2::Calls& call_ = real_sense_.call;
+  // Given back from the last to the first.
+  rs2::Held<rs2::Config> config_;
+  rs2::Held<rs2::DeviceHub> hub_;
+  rs2::Held<rs2::Pipeline> pipeline_;
+  rs2::Held<rs2::Profile> profile_;
+  rs2::Held<rs2::Device> device_;
+  std::unique_ptr<rs2::Pipeline, StopPipeline> running_{nullptr, {&rs2_}};
+
+  SensorView view_;
+  std::optional<Undistortion> undistortion_;  // none: a pinhole camera
+  SensorClock clock_;
+  FrameNumbers numbers_;
+  std::optional<double> stamp_s_;   // of the frame before
+  unsigned long long counted_ = 0;  // likewise
+  double looked_s_ = 0;
+  std::vector<std::uint16_t> seen_;
+  std::string failure_;
+};
+
+RealSenseCamera::RealSenseCamera(const std::string& address, Clock& host)
+    : host_(host), name_(address.empty() ? "realsense" : "realsense:" + address), real_sense_(name_) {
+  config_ = call_.held("depth cannot be asked for", rs2_.create_config);
+  choose(address);
+  start();
+  describe(depth_intrinsics());
+  looked_s_ = host_.now_s();
+}
+
+void RealSenseCamera::choose(const std::string& serial) {
+  const std::vector<std::string> known = real_sense_.serials();
+  if (known.empty())
+    call_.refuse("no camera is plugged in: expected one at USB that this user may open (lsusb, udev rules)");
+  if (serial.empty()) return;
+  if (std::find(known.begin(), known.end(), serial) == known.end())
+    call_.refuse("no camera has this serial number: expected " + joined(known));
+  call_("cannot be chosen", rs2_.config_enable_device, config_.get(), serial.c_str());
+}
+
+void RealSenseCamera::start() {
+  call_("depth cannot be asked for", rs2_.config_enable_stream, config_.get(), rs2::stream_depth, kAnyIndex,
+        kRealSenseWidth, kRealSenseHeight, rs2::format_z16, kRealSenseRate_hz);
+  hub_ = call_.held("unplugging cannot be noticed", rs2_.create_device_hub, real_sense_.context.get());
+  pipeline_ = call_.held("depth does not start", rs2_.create_pipeline, real_sense_.context.get());
+  profile_ =
+      call_.held("depth of 640 x 480 pixels at 30 Hz does not start; another program may be using the camera",
+                 rs2_.pipeline_start_with_config, pipeline_.get(), config_.get());
+  running_.reset(pipeline_.get());
+  device_ = call_.held("tells nothing of itself", rs2_.pipeline_profile_get_device, profile_.get());
+}
+
+bool RealSenseCamera::is_depth(const rs2::Stream* stream) const {
+  rs2::StreamKind kind{};
+  rs2::Format format{};
+  int index = 0, id = 0, rate_hz = 0;
+  call_("a stream tells nothing of itself", rs2_.get_stream_profile_data, stream, &kind, &format, &index, &id,
+        &rate_hz);
+  return kind == rs2::stream_depth && format == rs2::format_z16;
+}
+
+rs2::Intrinsics RealSenseCamera::depth_intrinsics() const {
+  const auto streams = call_.held("tells no streams", rs2_.pipeline_profile_get_streams, profile_.get());
+  const int count = call_("tells no streams", rs2_.get_stream_profiles_count, streams.get());
+  for (int i = 0; i < std::min(count, kMaxList); ++i) {
+    const rs2::Stream* stream = call_("tells no streams", rs2_.get_stream_profile, streams.get(), i);
+    if (stream == nullptr || !is_depth(stream)) continue;
+    rs2::Intrinsics intrinsics{};
+    call_("does not tell where its pixels look", rs2_.get_video_stream_intrinsics, stream, &intrinsics);
+    return intrinsics;
+  }
+  call_.refuse("sends no depth in 16 bits");
+}
+
+double RealSenseCamera::depth_scale() const {
+  const auto sensors = call_.held("tells no sensors", rs2_.query_sensors, device_.get());
+  const int count = call_("tells no sensors", rs2_.get_sensors_count, sensors.get());
+  for (int i = 0; i < std::min(count, kMaxList); ++i) {
+    const auto sensor = call_.held("tells no sensors", rs2_.create_sensor, sensors.get(), i);
+    if (call_("tells no sensors", rs2_.is_sensor_extendable_to, sensor.get(), rs2::is_depth_sensor) == 0)
+      continue;
+    return static_cast<double>(call_("does not tell its unit", rs2_.get_depth_scale, sensor.get()));
+  }
+  call_.refuse("has no sensor of depth");
+}
+
+void RealSenseCamera::describe(const rs2::Intrinsics& intrinsics) {
+  view_.metres_per_unit = depth_scale();
+  view_.frame_rate_hz = kRealSenseRate_hz;
+  if (!(view_.metres_per_unit > 0 && view_.metres_per_unit <= 1))
+    call_.refuse("tells depth in units of " + std::to_string(view_.metres_per_unit) +
+                 " m: expected more than 0, 1 at most");
+  const bool is_camera = intrinsics.width > 0 && intrinsics.height > 0 && intrinsics.fx > 0 &&
+                         intrinsics.fy > 0 && std::isfinite(intrinsics.fx) && std::isfinite(intrinsics.fy) &&
+                         std::isfinite(intrinsics.ppx) && std::isfinite(intrinsics.ppy);
+  if (!is_camera) call_.refuse("does not tell where its pixels look: its focal length is not above 0");
+  view_.camera = {intrinsics.width, intrinsics.height, intrinsics.fx,
+                  intrinsics.fy,    intrinsics.ppx,    intrinsics.ppy};
+  if (!rs2::has_distortion(intrinsics)) return;
+  undistortion_.emplace(name_, intrinsics.width, intrinsics.height, rs2::lens_of(name_, rs2_, intrinsics));
+  view_.camera = undistortion_->camera();
+}
+
+SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
+  if (!failure_.empty()) return SensorState::failed;
+  const double give_up_s = host_.now_s() + timeout_s;
+  while (true) {
+    double arrived_s = 0;
+    const rs2::Held<rs2::Frame> depth = newest_depth(arrived_s);
+    if (depth && take(depth.get(), arrived_s, frame)) return SensorState::frame;
+    expect_camera();
+    const double remaining_s = give_up_s - host_.now_s();
+    if (remaining_s <= 0) return SensorState::waiting;
+    host_.sleep_s(std::clamp(remaining_s, 0.1 * kPoll_s, kPoll_s));
+  }
+} catch (const InputError& error) {
+  failure_ = error.what();
+  return SensorState::failed;
+}
+
+// Once in a while, as long as no frame comes.
+void RealSenseCamera::expect_camera() {
+  if (host_.now_s() - looked_s_ < kLookAfter_s) return;
+  looked_s_ = host_.now_s();
+  if (call_("is not known to be there", rs2_.device_hub_is_device_connected, hub_.get(), device_.get()) == 0)
+    call_.refuse("was disconnected");
+}
+
+rs2::Held<rs2::Frame> RealSenseCamera::newest_depth(double& arrived_s) const {
+  rs2::Held<rs2::Frame> newest(nullptr, {&rs2_});
+  for (int i = 0; i < kMaxList; ++i) {
+    rs2::Frame* next = nullptr;
+    if (call_("sends no more frames", rs2_.pipeline_poll_for_frames, pipeline_.get(), &next) == 0 ||
+        next == nullptr)
+      break;
+    newest.reset(next);
+    arrived_s = host_.now_s();
+  }
+  return newest ? depth_of(std::move(newest)) : std::move(newest);
+}
+
+// Frames of several streams come as one.
+rs2::Held<rs2::Frame> RealSenseCamera::depth_of(rs2::Held<rs2::Frame> frames) const {
+  const char* problem = "a frame cannot be read";
+  if (call_(problem, rs2_.is_frame_extendable_to, frames.get(), rs2::is_composite_frame) == 0) {
+    if (!is_depth(call_(problem, rs2_.get_frame_stream_profile, frames.get()))) frames.reset();
+    return frames;
+  }
+  const int count = call_(problem, rs2_.embedded_frames_count, frames.get());
+  for (int i = 0; i < std::min(count, kMaxList); ++i) {
+    rs2::Held<rs2::Frame> frame = call_.held(problem, rs2_.extract_frame, frames.get(), i);
+    if (is_depth(call_(problem, rs2_.get_frame_stream_profile, frame.get()))) return frame;
+  }
+  frames.reset();
+  return frames;
+}
+
+PixelRows RealSenseCamera::rows_of(const rs2::Frame* depth) const {
+  const char* problem = "a frame cannot be read";
+  PixelRows rows;
+  rows.first = call_(problem, rs2_.get_frame_data, depth);
+  rows.width = call_(problem, rs2_.get_frame_width, depth);
+  rows.height = call_(problem, rs2_.get_frame_height, depth);
+  rows.stride = static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_stride_in_bytes, depth), 0));
+  rows.bytes = rs2_.get_frame_data_size != nullptr
+                   ? static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_data_size, depth), 0))
+                   : rows.stride * static_cast<std::size_t>(std::max(rows.height, 0));
+  return rows;
+}
+
+// False: the frame before, once more.
+bool RealSenseCamera::take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame) {
+  const char* problem = "a frame cannot be read";
+  const double stamp_s = 1e-3 * call_(problem, rs2_.get_frame_timestamp, depth);
+  const unsigned long long counted = call_(problem, rs2_.get_frame_number, depth);
+  if (!std::isfinite(stamp_s)) call_.refuse("a frame has no time stamp");
+  looked_s_ = arrived_s;
+  if (stamp_s_ && stamp_s == *stamp_s_ && counted == counted_) return false;
+  const PixelRows rows = rows_of(depth);
+  if (!copy_depth(rows, view_.camera, seen_))
+    call_.refuse("a frame is " + std::to_string(rows.width) + " x " + std::to_string(rows.height) +
+                 " pixels in " + std::to_string(rows.bytes) + " bytes; wanted those of the camera's mode");
+  if (undistortion_)
+    undistortion_->apply(seen_, frame.depth);
+  else
+    std::swap(seen_, frame.depth);
+  frame.colour.clear();
+  const bool goes_on = stamp_s_ && counted > counted_;
+  frame.number = numbers_.next(goes_on ? static_cast<double>(counted - counted_) : 1);
+  frame.captured_s = clock_.captured_s(stamp_s, arrived_s);
+  stamp_s_ = stamp_s, counted_ = counted;
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<DepthSource> open_realsense(const std::string& address, Clock& clock) {
+  return std::make_unique<RealSenseCamera>(address, clock);
+}
+
+Availability realsense_availability() {
+  try {
+    const RealSense real_sense("realsense");
+    const std::vector<std::string> serials = real_sense.serials();
+    return {.found = !serials.empty(),
+            .detail = real_sense.rs2.library.file() + " (" + real_sense.rs2.version_text() + "): " +
+                      (serials.empty() ? "no camera is plugged in, or this user may not open its USB port"
+                                       : joined(serials))};
+  } catch (const InputError& error) {
+    return {.detail = error.what()};
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,127 @@
+#include "runners/live/sensors/undistortion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Eigen::Vector2d;
+
+// Less than a library that counts in floats can tell, and less than a point's distance from its neighbour can
+// show: 1 um at 0.5 m for 500 pixels of focal length.
+constexpr double kSamePlace_px = 1e-3;
+// How well a library's search for the ray of a pixel has to end.
+constexpr double kMaxContradiction_px = 0.05;
+// Neighbours on one surface differ by less, which is a surface seen at 75 degrees with a focal length of 320
+// pixels or more.
+constexpr float kMaxStep = 0.02f;
+
+constexpr int kMaxSide_px = 8192;
+
+// The first and the last of `count` pixels that see something, with their rays.
+struct Ends {
+  int first = 0, last = 0;
+  Vector2d first_ray = Vector2d::Zero(), last_ray = Vector2d::Zero();
+};
+
+template <class PixelAt>
+std::optional<Ends> ends_of(int count, const Lens& lens, PixelAt pixel_at) {
+  Ends ends{0, count - 1};
+  std::optional<Vector2d> first, last;
+  while (ends.first < count && !(first = lens.ray_of_pixel(pixel_at(ends.first)))) ++ends.first;
+  while (ends.last > ends.first && !(last = lens.ray_of_pixel(pixel_at(ends.last)))) --ends.last;
+  if (!first || !last) return {};
+  ends.first_ray = *first, ends.last_ray = *last;
+  return ends;
+}
+
+}  // namespace
+
+Undistortion::Undistortion(const std::string& name, int width, int height, const Lens& lens) {
+  if (width < 2 || height < 2 || width > kMaxSide_px || height > kMaxSide_px)
+    throw InputError(name, "has images of " + std::to_string(width) + " x " + std::to_string(height) +
+                               " pixels: expected 2 to " + std::to_string(kMaxSide_px) + " on a side");
+  camera_.width = width, camera_.height = height;
+  choose_camera(name, lens);
+  places_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  bool is_same = true;
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) {
+      const std::optional<Vector2d> seen = seen_at(u, v, lens);
+      is_same = is_same && seen && (*seen - Vector2d(u, v)).cwiseAbs().maxCoeff() < kSamePlace_px;
+      places_.push_back(place_of(seen));
+    }
+  if (is_same) places_ = {};
+}
+
+void Undistortion::choose_camera(const std::string& name, const Lens& lens) {
+  const int middle_u = (camera_.width - 1) / 2, middle_v = (camera_.height - 1) / 2;
+  const auto row = ends_of(camera_.width, lens, [&](int u) { return Vector2d(u, middle_v); });
+  const auto column = ends_of(camera_.height, lens, [&](int v) { return Vector2d(middle_u, v); });
+  const double across = row ? row->last_ray.x() - row->first_ray.x() : 0;
+  const double down = column ? column->last_ray.y() - column->first_ray.y() : 0;
+  if (!(across > 0 && down > 0 && std::isfinite(across) && std::isfinite(down)))
+    throw InputError(
+        name,
+        "has no calibration that can be used: its pixels have no rays from left to right and top to bottom");
+  for (const auto& [pixel, ray] : {std::pair(Vector2d(row->first, middle_v), row->first_ray),
+                                   std::pair(Vector2d(row->last, middle_v), row->last_ray),
+                                   std::pair(Vector2d(middle_u, column->first), column->first_ray),
+                                   std::pair(Vector2d(middle_u, column->last), column->last_ray)}) {
+    const std::optional<Vector2d> again = lens.pixel_of_ray(ray);
+    if (!again || !((*again - pixel).norm() < kMaxContradiction_px))
+      throw InputError(
+          name, "has a calibration that contradicts itself: the ray of a pixel leads to another pixel");
+  }
+  camera_.fx = (row->last - row->first) / across;
+  camera_.fy = (column->last - column->first) / down;
+  camera_.cx = row->first - row->first_ray.x() * camera_.fx;
+  camera_.cy = column->first - column->first_ray.y() * camera_.fy;
+}
+
+std::optional<Vector2d> Undistortion::seen_at(int u, int v, const Lens& lens) const {
+  return lens.pixel_of_ray({(u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy});
+}
+
+// Beyond the centres of the outermost pixels nothing is known.
+Undistortion::Place Undistortion::place_of(const std::optional<Vector2d>& seen) const {
+  const Vector2d last(camera_.width - 1, camera_.height - 1);
+  if (!seen ||
+      !((seen->array() >= -kSamePlace_px).all() && (seen->array() <= last.array() + kSamePlace_px).all()))
+    return {-1, 0, 0};
+  const double left = std::clamp(std::floor(seen->x()), 0.0, camera_.width - 2.0);
+  const double top = std::clamp(std::floor(seen->y()), 0.0, camera_.height - 2.0);
+  return {static_cast<std::int32_t>(top) * camera_.width + static_cast<std::int32_t>(left),
+          static_cast<float>(std::clamp(seen->x() - left, 0.0, 1.0)),
+          static_cast<float>(std::clamp(seen->y() - top, 0.0, 1.0))};
+}
+
+std::uint16_t Undistortion::depth_at(const std::vector<std::uint16_t>& seen, const Place& place) const {
+  if (place.pixel < 0) return 0;
+  const std::uint16_t* upper = seen.data() + place.pixel;
+  const std::uint16_t* lower = upper + camera_.width;
+  const int a = upper[0], b = upper[1], c = lower[0], d = lower[1];
+  const int least = std::min(std::min(a, b), std::min(c, d)), most = std::max(std::max(a, b), std::max(c, d));
+  const float step = static_cast<float>(most - least);
+  if (least == 0 || (step > 1 && step > kMaxStep * static_cast<float>(least)))
+    return (place.down < 0.5f ? upper : lower)[place.right < 0.5f ? 0 : 1];
+  const float above = static_cast<float>(a) + place.right * static_cast<float>(b - a);
+  const float below = static_cast<float>(c) + place.right * static_cast<float>(d - c);
+  const float raised = above + place.down * (below - above) + 0.5f;  // std::lround takes half as long again
+  return static_cast<std::uint16_t>(raised);
+}
+
+void Undistortion::apply(const std::vector<std::uint16_t>& seen, std::vector<std::uint16_t>& depth) const {
+  if (places_.empty()) {
+    depth = seen;
+    return;
+  }
+  depth.resize(places_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) depth[i] = depth_at(seen, places_[i]);
+}
+
+}  // namespace remote_touch

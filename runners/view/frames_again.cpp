@@ -1,0 +1,63 @@
+#include "runners/view/frames_again.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+#include "runners/experiment/frame_stream.h"
+#include "runners/provenance/input_hashes.h"
+#include "runners/provenance/recipe.h"
+#include "runners/simulation/simulation.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Takes the place of the renderer.
+class FrameObserver final : public Renderer {
+ public:
+  explicit FrameObserver(const std::function<void(const Frame&)>& on_frame) : on_frame_(on_frame) {}
+  void on_frame(const Frame& frame) override { on_frame_(frame); }
+  RenderOutput step(const DeviceState&, double) override { return {}; }
+
+ private:
+  const std::function<void(const Frame&)>& on_frame_;
+};
+
+}  // namespace
+
+Experiment experiment_of_run(const TextAttributes& trace, const std::string& name) {
+  if (!recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos)
+    throw InputError(
+        name,
+        "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
+  Experiment experiment = Experiment::from_json(parse_json(attribute(trace, "config"), name));
+  for (const ChangedInput& input :
+       changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
+    throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +
+                               ", found " + input.now);
+  return experiment;
+}
+
+void frames_again(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
+                  const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame) {
+  // A task switches fixtures on and off: only the run itself tells when.
+  if (!experiment.sequence().empty()) {
+    SimulationOptions options;
+    options.kernels = &kernels;
+    options.stop = stop;
+    options.on_frame = on_frame;
+    simulate(experiment, options);
+    return;
+  }
+  FrameObserver observer(on_frame);
+  const auto scenario = experiment.build_scenario(kernels);
+  FrameStream stream(*scenario, experiment.build_processing(kernels), experiment.settings().transport,
+                     experiment.settings().key, false);
+  for (const double now_s : time_s) {
+    if (stop && *stop) throw Interrupted{};
+    stream.deliver_until(now_s, observer);
+  }
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,168 @@
+#include "scenarios/recordings/bag_frames.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/bag_topics.h"
+#include "scenarios/recordings/messages/cloud_from_message.h"
+#include "scenarios/recordings/messages/depth_from_message.h"
+#include "scenarios/recordings/static_transforms.h"
+
+namespace remote_touch {
+namespace {
+
+void check_image_size(const std::string& subject, const DepthImage& depth, std::uint32_t width,
+                      std::uint32_t height) {
+  if (static_cast<std::uint32_t>(depth.width) == width && static_cast<std::uint32_t>(depth.height) == height)
+    return;
+  throw InputError(subject, "has " + std::to_string(depth.width) + " x " + std::to_string(depth.height) +
+                                " pixels: expected " + std::to_string(width) + " x " +
+                                std::to_string(height) + ", as its CameraInfo has");
+}
+
+void drop_beyond(double max_depth_m, PointCloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!(cloud.z[i] > max_depth_m)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
+    : path_(path.string()), bag_(open_bag(path, tells_of_depth_camera)) {
+  topic_ = topic_of_frames(path_, *bag_, choice.topic);
+  remark_ = bag_->remark();
+  if (topic().type != kCloudType) {
+    choose_unit();
+    choose_camera(choice);
+  }
+  order_frames();
+  if (!choice.frame_id.empty()) choose_frame_id(choice.frame_id);
+}
+
+std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) const {
+  const auto& places = bag_->places(topic);
+  const auto same = std::find_if(places.begin(), places.end(), [&](const MessagePlace& other) {
+    return other.part == place.part && other.at == place.at;
+  });
+  return path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(same - places.begin());
+}
+
+// What the camera claims is compared with an image before a table of that size is made.
+void BagFrames::choose_camera(const BagChoice& choice) {
+  const std::size_t camera = topic_of_camera(path_, *bag_, topic_, choice.camera_info);
+  const MessagePlace& first = bag_->places(camera).front();
+  const std::string name = subject(camera, first), message = bag_->message(first);
+  const bool rectified = choice.images == BagChoice::Images::by_name
+                             ? is_rectified_by_name(topic().name)
+                             : choice.images == BagChoice::Images::rectified;
+  const CameraInfoMessage info = read_camera_info({message, wire_format(bag_->topics()[camera]), name});
+  const MessagePlace& image = bag_->places(topic_).front();
+  check_image_size(subject(topic_, image), depth_of(image, 1), info.width, info.height);
+  rays_.emplace(info, rectified, name);
+}
+
+void BagFrames::choose_unit() {
+  const std::size_t unit = topic_of_unit(*bag_, topic_);
+  if (unit == bag_->topics().size()) return;
+  const MessagePlace& first = bag_->places(unit).front();
+  const std::string name = subject(unit, first), message = bag_->message(first);
+  metres_per_unit_ = read_float32({message, wire_format(bag_->topics()[unit]), name});
+  if (!(metres_per_unit_ > 0 && metres_per_unit_ <= 1))
+    throw InputError(name, "depth unit = " + std::to_string(metres_per_unit_) + " m: expected above 0 to 1");
+  // A float of 32 bits that is meant as 0.001 should not make 1.00000005 m of 1000 units.
+  metres_per_unit_ = std::round(metres_per_unit_ * 1e9) / 1e9;
+}
+
+// The places keep their messages' stamps for as long as they are sorted.
+void BagFrames::order_frames() {
+  frames_ = bag_->places(topic_);
+  bool all_stamped = true;
+  std::vector<std::pair<std::int64_t, MessagePlace>> stamped;
+  for (const MessagePlace& place : frames_) {
+    const std::string start = bag_->start(place, 4 + kStampBytes);
+    MessageCursor cursor(start, wire_format(topic()), path_ + ": " + topic().name);
+    stamped.emplace_back(read_stamp_ns(cursor), place);
+    all_stamped &= stamped.back().first != 0;
+  }
+  const auto add_remark = [&](const std::string& text) { remark_ += (remark_.empty() ? "" : "; ") + text; };
+  if (!all_stamped) {
+    for (auto& [stamp_ns, place] : stamped) stamp_ns = place.logged_ns;
+    add_remark("has messages without a stamp: the times of the recorder are used");
+  }
+  const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
+  if (!std::is_sorted(stamped.begin(), stamped.end(), earlier)) {
+    std::stable_sort(stamped.begin(), stamped.end(), earlier);
+    add_remark("has messages out of order: they were sorted by their stamps");
+  }
+  const auto last = std::unique(stamped.begin(), stamped.end(),
+                                [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (last != stamped.end())
+    add_remark("has " + std::to_string(stamped.end() - last) +
+               " message(s) with the stamp of another: not used");
+  stamped.erase(last, stamped.end());
+  frames_.clear();
+  for (const auto& [stamp_ns, place] : stamped) {
+    frames_.push_back(place);
+    // Sorted: the difference is not negative, but may be more than half of all 64-bit numbers.
+    const auto since_first =
+        static_cast<std::uint64_t>(stamp_ns) - static_cast<std::uint64_t>(stamped.front().first);
+    captured_s_.push_back(static_cast<double>(since_first) / 1e9);
+  }
+}
+
+void BagFrames::choose_frame_id(const std::string& frame_id) {
+  const std::string first = bag_->message(frames_.front());
+  MessageCursor cursor(first, wire_format(topic()), subject(topic_, frames_.front()));
+  frame_id_ = read_header(cursor).frame_id;
+  StaticTransforms transforms;
+  for (std::size_t t = 0; t < bag_->topics().size(); ++t) {
+    if (!is_tf_static(bag_->topics()[t])) continue;
+    for (const MessagePlace& place : bag_->places(t)) {
+      const std::string message = bag_->message(place);
+      transforms.add(read_transforms({message, wire_format(bag_->topics()[t]), subject(t, place)}));
+    }
+  }
+  X_chosen_ = transforms.between(frame_id, frame_id_, path_);
+}
+
+void BagFrames::check_frame_id(const MessageHeader& header, const std::string& subject) const {
+  if (frame_id_.empty() || header.frame_id == frame_id_) return;
+  throw InputError(
+      subject, "frame_id = " + header.frame_id + ": expected " + frame_id_ + ", as the first message has");
+}
+
+DepthImage BagFrames::depth_of(const MessagePlace& place, double max_depth_m) const {
+  const std::string name = subject(topic_, place), bytes = bag_->message(place);
+  const MessageCursor cursor(bytes, wire_format(topic()), name);
+  const auto depth = [&](const auto& message) {
+    check_frame_id(message.header, name);
+    return depth_from_message(message, metres_per_unit_, max_depth_m, name);
+  };
+  return topic().type == kImageType ? depth(read_image(cursor)) : depth(read_compressed_image(cursor));
+}
+
+PointCloud BagFrames::cloud(std::size_t frame, double max_depth_m) const {
+  assert(frame < frames_.size());
+  const MessagePlace& place = frames_[frame];
+  const std::string name = subject(topic_, place);
+  if (rays_) {
+    const CameraIntrinsics camera = rays_->camera();
+    const DepthImage depth = depth_of(place, max_depth_m);
+    check_image_size(name, depth, static_cast<std::uint32_t>(camera.width),
+                     static_cast<std::uint32_t>(camera.height));
+    return rays_->cloud(depth);
+  }
+  const std::string bytes = bag_->message(place);
+  const PointCloudMessage message = read_point_cloud({bytes, wire_format(topic()), name});
+  check_frame_id(message.header, name);
+  PointCloud cloud = cloud_from_message(message, name);
+  drop_beyond(max_depth_m, cloud);
+  return cloud;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,66 @@
+// The frames in a bag of ROS: the messages of one topic, in the order of their stamps, as clouds.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "scenarios/recordings/bag_choice.h"
+#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/messages/image_rays.h"
+
+namespace remote_touch {
+
+// Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth), with the first CameraInfo.
+// Depth images are in units of 1 mm, or of what the option Depth Units of a RealSense recording says.
+//
+// The frames are in the order of the stamps in the messages' headers, captured_s counts from the first. Of
+// messages of one stamp the first one counts. Where a stamp is 0 all times are those of the recorder.
+// Only one message at a time is in memory. May be read by several threads at once.
+class BagFrames {
+ public:
+  // Throws InputError, about the path and a topic, when there is no topic of frames, several, or the chosen
+  // one has none; when the camera or the transform is missing or cannot be used. Of depth images
+  // the first is read here.
+  BagFrames(const std::filesystem::path& path, const BagChoice& choice);
+
+  const std::vector<double>& captured_s() const { return captured_s_; }
+  // Of depth images; all 0 for clouds.
+  CameraIntrinsics camera() const { return rays_ ? rays_->camera() : CameraIntrinsics{}; }
+  // Of the messages' coordinate frame in the chosen one.
+  const RigidTransform& pose() const { return X_chosen_; }
+  std::string kind() const { return topic().type + " " + topic().name; }
+  // Empty, or what was wrong with the bag and what was done about it, in one line.
+  const std::string& remark() const { return remark_; }
+
+  // In the frame of the messages. What is farther than max_depth_m along z is NaN. Throws InputError about
+  // the message when it cannot be used.
+  PointCloud cloud(std::size_t frame, double max_depth_m) const;
+
+ private:
+  const BagTopic& topic() const { return bag_->topics()[topic_]; }
+  std::string subject(std::size_t topic, const MessagePlace& place) const;
+  DepthImage depth_of(const MessagePlace& place, double max_depth_m) const;
+  void choose_camera(const BagChoice& choice);
+  void choose_unit();
+  void choose_frame_id(const std::string& frame_id);
+  void order_frames();
+  void check_frame_id(const MessageHeader& header, const std::string& subject) const;
+
+  std::string path_;
+  std::unique_ptr<BagFile> bag_;
+  std::size_t topic_ = 0;
+  std::vector<MessagePlace> frames_;
+  std::vector<double> captured_s_;
+  std::optional<ImageRays> rays_;  // of depth images
+  double metres_per_unit_ = 0.001;
+  std::string frame_id_;  // of the first frame, where it has to be that of all
+  RigidTransform X_chosen_ = RigidTransform::Identity();
+  std::string remark_;
+};
+
+}  // namespace remote_touch

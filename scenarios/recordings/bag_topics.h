@@ -1,0 +1,38 @@
+// Which topics of a bag tell of a depth camera, and which of them belong together.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/bags/bag_file.h"
+
+namespace remote_touch {
+
+inline constexpr const char* kCloudType = "sensor_msgs/PointCloud2";
+inline constexpr const char* kImageType = "sensor_msgs/Image";
+inline constexpr const char* kCompressedType = "sensor_msgs/CompressedImage";
+inline constexpr const char* kCameraType = "sensor_msgs/CameraInfo";
+
+bool is_readable(const BagTopic& topic);  // plain CDR, or ROS 1
+WireFormat wire_format(const BagTopic& topic);
+// Of these and nothing else messages are read: frames, cameras, fixed transforms, units of depth.
+bool tells_of_depth_camera(const BagTopic& topic);
+bool is_tf_static(const BagTopic& topic);
+
+// The topic of that name, which has frames; if none is named, the only one that has. Throws InputError about
+// the path, with a list of what there is, type and number of messages, when that is not one topic.
+std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const std::string& name);
+
+// The topic of the CameraInfo that belongs to a topic of depth images: that of the name, or the one beside
+// it, or the only one there is. Throws InputError with a list as above.
+std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::size_t images,
+                            const std::string& name);
+
+// The option Depth Units of the RealSense sensor that recorded these images, or none: topics().size().
+std::size_t topic_of_unit(const BagFile& bag, std::size_t images);
+
+// Whether the images of a topic with that name are rectified, by the custom of ROS: image_rect.
+bool is_rectified_by_name(const std::string& topic);
+
+}  // namespace remote_touch

@@ -1,0 +1,54 @@
+// One chunk of a bag: records, one after the other, compressed together.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "scenarios/recordings/bags/byte_file.h"
+#include "scenarios/recordings/bags/decompressor.h"
+
+namespace remote_touch {
+
+// What the record of a chunk says of it.
+struct ChunkPlace {
+  std::uint64_t record_at = 0;                   // where that record begins in the file
+  std::uint64_t stored_at = 0, stored_size = 0;  // of the bytes in the file
+  std::uint64_t size = 0;                        // of the records
+  std::string compression;                       // empty, none, lz4, zstd or bz2
+  std::uint32_t crc = 0;                         // of the records; 0: not told
+};
+
+class BagChunk {
+ public:
+  static constexpr std::uint64_t kMaxBytes = 256u << 20;  // of a compressed chunk, decoded
+
+  // `file` must outlive it. Throws InputError about the file when it does not have the bytes, or the
+  // compression is not known.
+  BagChunk(const ByteFile& file, const ChunkPlace& place);
+
+  std::uint64_t record_at() const { return place_.record_at; }
+  std::uint64_t size() const { return place_.size; }  // bytes of its records
+  // Some of them. No more is decoded than is needed; what was decoded is kept. Valid until the next call.
+  // Throws InputError when they are beyond the end or damaged.
+  std::string_view view(std::uint64_t at, std::uint64_t size);
+  // Decodes the rest. Throws InputError unless all records have the CRC that the file states, if any.
+  void check();
+
+ private:
+  void decode_until(std::uint64_t end);
+  [[noreturn]] void refuse(const std::string& problem) const;
+
+  const ByteFile& file_;
+  const ChunkPlace place_;
+  std::uint32_t crc_so_far_ = 0;
+  std::unique_ptr<Decompressor> decompressor_;  // null: the records are stored as they are
+  std::string decoded_;                         // or, where nothing is compressed, what was viewed last
+  std::string input_;                           // a piece of the compressed bytes
+  std::string_view input_left_;
+  std::uint64_t input_at_ = 0;  // how many of them were read
+  bool checked_ = false;
+};
+
+}  // namespace remote_touch

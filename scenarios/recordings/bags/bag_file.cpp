@@ -1,0 +1,99 @@
+#include "scenarios/recordings/bags/bag_file.h"
+
+#include <algorithm>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/bags/db3_file.h"
+#include "scenarios/recordings/bags/joined_bags.h"
+#include "scenarios/recordings/bags/mcap_file.h"
+#include "scenarios/recordings/bags/ros1_bag.h"
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+std::string ros1_type(const std::string& type) {
+  const std::size_t at = type.find("/msg/");
+  return at == std::string::npos ? type : type.substr(0, at) + type.substr(at + 4);
+}
+
+std::size_t BagFile::add_topic(const std::string& file, BagTopic topic) {
+  constexpr std::size_t kMaxName = 1024;
+  if (topics_.size() == kMaxTopics)
+    throw InputError(file, "has more than " + std::to_string(kMaxTopics) + " topics");
+  if (std::max({topic.name.size(), topic.type.size(), topic.encoding.size()}) > kMaxName)
+    throw InputError(file, "names a topic or a type with more than " + std::to_string(kMaxName) + " bytes");
+  topics_.push_back(std::move(topic)), places_.emplace_back();
+  return topics_.size() - 1;
+}
+
+void BagFile::add_place(const std::string& file, std::size_t topic, const MessagePlace& place) {
+  if (places_[topic].size() == kMaxPlaces)
+    throw InputError(file,
+                     "has more than " + std::to_string(kMaxPlaces) + " messages of " + topics_[topic].name);
+  places_[topic].push_back(place);
+}
+
+void BagFile::sort_places() {
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    std::vector<MessagePlace>& places = places_[t];
+    std::stable_sort(places.begin(), places.end(),
+                     [](const MessagePlace& a, const MessagePlace& b) { return a.logged_ns < b.logged_ns; });
+    if (!places.empty()) topics_[t].messages = places.size();
+  }
+}
+
+namespace {
+
+bool has_ending(const fs::path& file, const char* ending) {
+  return file.extension() == ending;
+}
+
+bool is_bag_file(const fs::path& file) {
+  return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
+}
+
+// Those of a folder: a long recording of ROS 2 is divided into several. Longer names have greater numbers:
+// name_10 comes after name_9. None in a folder that may not be entered.
+std::vector<fs::path> parts_of(const fs::path& folder) {
+  std::vector<fs::path> parts;
+  std::error_code refused;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
+    if (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")) parts.push_back(entry.path());
+  std::sort(parts.begin(), parts.end(), [](const fs::path& a, const fs::path& b) {
+    const std::string &x = a.native(), &y = b.native();
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
+  });
+  return parts;
+}
+
+std::unique_ptr<BagFile> open_file(const fs::path& file, const WantedTopic& wanted) {
+  if (has_ending(file, ".mcap")) return std::make_unique<McapFile>(file, wanted);
+  if (has_ending(file, ".db3")) return std::make_unique<Db3File>(file, wanted);
+  return std::make_unique<Ros1Bag>(file, wanted);
+}
+
+}  // namespace
+
+bool is_bag(const fs::path& path) {
+  std::error_code refused;
+  if (!fs::is_directory(path, refused)) return is_bag_file(path);
+  return fs::exists(path / "metadata.yaml", refused) && !parts_of(path).empty();
+}
+
+std::vector<fs::path> files_of_bag(const fs::path& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<fs::path> files = parts_of(path);
+  files.push_back(path / "metadata.yaml");
+  return files;
+}
+
+std::unique_ptr<BagFile> open_bag(const fs::path& path, const WantedTopic& wanted) {
+  if (!fs::is_directory(path)) return open_file(path, wanted);
+  std::vector<std::unique_ptr<BagFile>> parts;
+  for (const fs::path& part : parts_of(path)) parts.push_back(open_file(part, wanted));
+  if (parts.size() == 1) return std::move(parts.front());
+  return std::make_unique<JoinedBags>(path.string(), std::move(parts), wanted);
+}
+
+}  // namespace remote_touch

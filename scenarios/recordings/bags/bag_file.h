@@ -1,0 +1,76 @@
+// A file of messages of many topics: what each topic is, and any of its messages without reading the others.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/messages/message_cursor.h"
+
+namespace remote_touch {
+
+// Nothing that a depth camera sends is longer.
+inline constexpr std::uint64_t kMaxMessageBytes = 256u << 20;
+
+struct BagTopic {
+  std::string name;
+  std::string type;            // as ROS 1 writes it, without "/msg": sensor_msgs/PointCloud2
+  std::string encoding;        // cdr, ros1, or another, which is not read
+  std::uint64_t messages = 0;  // 0 also where the file does not tell, of a topic that is not wanted
+};
+
+// ROS 2 has a folder more in the names of its types: sensor_msgs/msg/Image.
+std::string ros1_type(const std::string& type);
+
+struct MessagePlace {
+  std::int64_t logged_ns = 0;      // when the recorder got the message
+  std::uint64_t part = 0, at = 0;  // as the kind of file has it
+};
+
+// May be read by several threads at once.
+class BagFile {
+ public:
+  virtual ~BagFile() = default;
+
+  const std::vector<BagTopic>& topics() const { return topics_; }
+  // Of a wanted topic, in the order of logged_ns; those of the same time as in the file.
+  const std::vector<MessagePlace>& places(std::size_t topic) const { return places_[topic]; }
+  // Empty, or what is wrong with the file and was done about it: "was cut short: ...".
+  const std::string& remark() const { return remark_; }
+
+  // The bytes of a message, and of its first max_bytes only, which may take less time. Throws InputError
+  // about the file when they cannot be read.
+  std::string message(const MessagePlace& place) const { return start(place, kMaxMessageBytes); }
+  virtual std::string start(const MessagePlace& place, std::uint64_t max_bytes) const = 0;
+
+ protected:
+  static constexpr std::size_t kMaxPlaces = 1u << 21;  // of a topic: 19 hours at 30 Hz, 50 MB
+  static constexpr std::size_t kMaxTopics = 65536;
+
+  // Throws InputError beyond kMaxTopics or for a name that is longer than 1024 bytes.
+  std::size_t add_topic(const std::string& file, BagTopic topic);
+  void add_place(const std::string& file, std::size_t topic, const MessagePlace& place);
+  void sort_places();  // and counts them
+
+  std::vector<BagTopic> topics_;
+  std::vector<std::vector<MessagePlace>> places_;
+  std::string remark_;
+};
+
+// Which topics will be read: only their messages are listed.
+using WantedTopic = std::function<bool(const BagTopic&)>;
+
+// .mcap, .db3 or .bag by the file's ending; also a folder of ROS 2: metadata.yaml and one or more files,
+// which are read as one. Throws InputError when it is none of them, is damaged, or the program was built
+// without the library for it. A file of .mcap that was cut short is read up to there, see remark().
+std::unique_ptr<BagFile> open_bag(const std::filesystem::path& path, const WantedTopic& wanted);
+
+// Whether open_bag() is for this path, by its ending, or the content of the folder.
+bool is_bag(const std::filesystem::path& path);
+// The files that open_bag() reads, and metadata.yaml. Pre: is_bag(path).
+std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);
+
+}  // namespace remote_touch

@@ -1,0 +1,52 @@
+#include "scenarios/recordings/bags/byte_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+ByteFile::ByteFile(const std::filesystem::path& file) : name_(file.string()) {
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat status {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
+    const std::string why = std::strerror(errno);
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw InputError(name_, "cannot be opened: " + why);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    throw InputError(name_, "is no file: expected a bag");
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+ByteFile::~ByteFile() {
+  ::close(descriptor_);
+}
+
+std::string ByteFile::bytes(std::uint64_t at, std::uint64_t size) const {
+  if (!has(at, size))
+    throw InputError(name_, "ends at byte " + std::to_string(size_) + ": expected " + std::to_string(size) +
+                                " bytes at " + std::to_string(at));
+  std::string result(size, '\0');
+  read(at, result.data(), result.size());
+  return result;
+}
+
+void ByteFile::read(std::uint64_t at, char* to, std::size_t size) const {
+  while (size > 0) {
+    const ssize_t got = ::pread(descriptor_, to, size, static_cast<off_t>(at));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw InputError(name_, std::string("cannot be read: ") + std::strerror(errno));
+    if (got == 0) throw InputError(name_, "ends while it is read");
+    at += static_cast<std::uint64_t>(got), to += got, size -= static_cast<std::size_t>(got);
+  }
+}
+
+}  // namespace remote_touch

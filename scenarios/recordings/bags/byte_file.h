@@ -1,0 +1,31 @@
+// A file of which any part is read, without a position that threads would share.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace remote_touch {
+
+class ByteFile {
+ public:
+  // Throws InputError when it cannot be opened or is no plain file.
+  explicit ByteFile(const std::filesystem::path& file);
+  ~ByteFile();
+  ByteFile(const ByteFile&) = delete;
+  ByteFile& operator=(const ByteFile&) = delete;
+
+  const std::string& name() const { return name_; }
+  std::uint64_t size() const { return size_; }
+  // Throws InputError when the file ends before, so that nothing is allocated for a size that it cannot have.
+  std::string bytes(std::uint64_t at, std::uint64_t size) const;
+  void read(std::uint64_t at, char* to, std::size_t size) const;
+  bool has(std::uint64_t at, std::uint64_t size) const { return at <= size_ && size <= size_ - at; }
+
+ private:
+  std::string name_;
+  std::uint64_t size_ = 0;
+  int descriptor_ = -1;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,36 @@
+// Bags of ROS 2 in databases of SQLite (.db3).
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "scenarios/recordings/bags/bag_file.h"
+
+struct sqlite3;
+
+namespace remote_touch {
+
+// The tables `topics` and `messages` as rosbag2 makes them. The database is opened read-only and as one that
+// nobody changes; nothing but plain tables is read, so that no text of the file is run as a query.
+class Db3File final : public BagFile {
+ public:
+  Db3File(const std::filesystem::path& file, const WantedTopic& wanted);
+  ~Db3File() override;
+  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
+
+ private:
+  void open(const std::filesystem::path& file);
+  void require_plain_tables();
+  void list_topics(const WantedTopic& wanted);
+  void list_messages();
+  [[noreturn]] void refuse() const;
+
+  std::string name_;
+  sqlite3* database_ = nullptr;
+  std::vector<std::int64_t> ids_;  // of the topics
+  std::vector<bool> is_wanted_;
+  mutable std::mutex mutex_;  // of the database
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,57 @@
+// Bags of ROS 2 in MCAP files.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "scenarios/recordings/bags/bag_chunk.h"
+#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/bags/byte_file.h"
+#include "scenarios/recordings/bags/mcap_records.h"
+
+namespace remote_touch {
+
+// Finds messages by the index at the file's end; where there is none that is whole, reads the file from end
+// to end, which takes as long as decompressing it. The CRC of a chunk is checked when a message of it is read
+// as a whole, that of the index when it is used.
+class McapFile final : public BagFile {
+ public:
+  McapFile(const std::filesystem::path& file, const WantedTopic& wanted);
+  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
+
+ private:
+  struct Summary {
+    std::uint64_t begin = 0, end = 0;
+  };
+  std::optional<Summary> find_summary();
+  // By the index: false where it is missing, damaged or not of all messages.
+  bool index_by_summary();
+  bool index_chunk(const McapRecord& chunk_index);
+  bool agrees_with(const std::string& statistics);
+  // By all records.
+  void scan();
+  void scan_chunk(const McapRecord& chunk);
+  void forget();
+
+  void add_schema(std::string_view body);
+  void add_channel(std::string_view body);
+  void add_message(std::string_view start, std::uint64_t part, std::uint64_t at);
+  std::string body_start(const McapRecord& record, std::uint64_t max_bytes) const;
+  std::string message_in_chunk(const MessagePlace& place, std::uint64_t max_bytes) const;
+  std::string whole_body(const McapRecord& record) const;
+
+  const ByteFile file_;
+  const WantedTopic wanted_;
+  std::map<std::uint16_t, std::string> schemas_;   // their names
+  std::map<std::uint16_t, std::size_t> channels_;  // their topics
+  std::map<std::size_t, bool> is_wanted_;          // of a topic
+  mutable std::mutex mutex_;                       // of what follows
+  mutable std::unique_ptr<BagChunk> chunk_;        // the one that was read last
+  mutable std::set<std::uint64_t> checked_;        // chunks, by their places
+};
+
+}  // namespace remote_touch

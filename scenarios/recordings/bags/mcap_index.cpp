@@ -1,0 +1,183 @@
+// How an MCAP file's messages are found: by the summary at its end, or by all of its records.
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/recordings/bags/mcap_file.h"
+
+namespace remote_touch {
+namespace {
+
+constexpr std::uint64_t kFooterBytes = McapRecord::kStart + 8 + 8 + 4;  // two places and a CRC
+constexpr std::uint64_t kNames = 4096;                                  // of a schema or a channel
+constexpr std::uint64_t kMaxIndexBytes = 64u << 20;                     // of one record of an index
+
+constexpr const char* kDamagedIndex = "has a damaged index: it was read from end to end";
+
+std::uint32_t crc_of(const ByteFile& file, std::uint64_t at, std::uint64_t end) {
+  uLong crc = 0;
+  for (std::string piece; at < end; at += piece.size()) {
+    piece = file.bytes(at, std::min<std::uint64_t>(1u << 20, end - at));
+    crc = crc32_z(crc, reinterpret_cast<const unsigned char*>(piece.data()), piece.size());
+  }
+  return static_cast<std::uint32_t>(crc);
+}
+
+}  // namespace
+
+std::string McapFile::whole_body(const McapRecord& record) const {
+  if (record.body_size > kMaxIndexBytes)
+    throw InputError(file_.name(), "a record of its index has " + std::to_string(record.body_size) +
+                                       " bytes: expected up to " + std::to_string(kMaxIndexBytes));
+  return file_.bytes(record.body_at, record.body_size);
+}
+
+// Where the summary is, by the footer; none where the file has no footer, or no summary. A damaged one is
+// told of.
+std::optional<McapFile::Summary> McapFile::find_summary() {
+  const std::uint64_t ends = kFooterBytes + kMcapMagic.size();
+  if (!file_.has(0, kMcapMagic.size() + ends)) return std::nullopt;
+  const std::uint64_t footer_at = file_.size() - ends;
+  if (file_.bytes(file_.size() - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) return std::nullopt;
+  const McapRecord footer = mcap_record(file_.bytes(footer_at, McapRecord::kStart), footer_at);
+  if (footer.opcode != McapRecord::footer || footer.end() != footer_at + kFooterBytes) return std::nullopt;
+  const std::string body = file_.bytes(footer.body_at, footer.body_size);
+  MessageCursor cursor(body, WireFormat::ros1, file_.name());
+  const std::uint64_t summary_at = cursor.u64();
+  cursor.u64();
+  const std::uint32_t crc = cursor.u32();
+  if (summary_at < kMcapMagic.size() || summary_at > footer_at) return std::nullopt;
+  if (crc != 0 && crc != crc_of(file_, summary_at, footer.end() - 4)) {
+    remark_ = kDamagedIndex;
+    return std::nullopt;
+  }
+  return Summary{summary_at, footer_at};
+}
+
+bool McapFile::index_by_summary() {
+  const auto summary = find_summary();
+  if (!summary) return false;
+  bool any_chunk = false;
+  std::string statistics;
+  const auto for_records = [&](auto use) {
+    for (std::uint64_t at = summary->begin; at < summary->end;) {
+      const McapRecord record = mcap_record_at(file_, at);
+      if (!use(record)) return false;
+      at = record.end();
+    }
+    return true;
+  };
+  try {
+    for_records([&](const McapRecord& record) {
+      if (record.opcode == McapRecord::schema) add_schema(body_start(record, kNames));
+      if (record.opcode == McapRecord::channel) add_channel(body_start(record, kNames));
+      if (record.opcode == McapRecord::statistics) statistics = whole_body(record);
+      return true;
+    });
+    // A second time: channels may come after the chunks.
+    const bool all_indexed = for_records([&](const McapRecord& record) {
+      any_chunk |= record.opcode == McapRecord::chunk_index;
+      return record.opcode != McapRecord::chunk_index || index_chunk(record);
+    });
+    return all_indexed && (statistics.empty() ? any_chunk : agrees_with(statistics));
+  } catch (const InputError&) {  // what is wrong with it is no matter where a scan succeeds
+    remark_ = kDamagedIndex;
+    return false;
+  }
+}
+
+// The messages of wanted topics in one chunk. False: it has no index, or one of channels that nobody listed.
+bool McapFile::index_chunk(const McapRecord& chunk_index) {
+  const std::string body = whole_body(chunk_index);
+  MessageCursor cursor(body, WireFormat::ros1, file_.name());
+  cursor.u64(), cursor.u64();  // the times of its messages
+  const std::uint64_t chunk_at = cursor.u64();
+  cursor.u64();
+  const std::string_view offsets = cursor.bytes();
+  const std::uint64_t index_length = cursor.u64();
+  MessageCursor entry(offsets, WireFormat::ros1, file_.name());
+  if (offsets.empty() && index_length == 0) return false;
+  while (entry.left() > 0) {
+    const std::uint16_t id = entry.u16();
+    const std::uint64_t index_at = entry.u64();
+    const auto channel = channels_.find(id);
+    if (channel == channels_.end()) return false;
+    if (!is_wanted_[channel->second]) continue;
+    const McapRecord record = mcap_record_at(file_, index_at);
+    if (record.opcode != McapRecord::message_index) return false;
+    const std::string list = whole_body(record);
+    MessageCursor messages(list, WireFormat::ros1, file_.name());
+    if (messages.u16() != id) return false;
+    MessageCursor places(messages.bytes(), WireFormat::ros1, file_.name());
+    while (places.left() > 0) {
+      const auto logged_ns = static_cast<std::int64_t>(places.u64());
+      add_place(file_.name(), channel->second, {logged_ns, chunk_at, places.u64()});
+    }
+  }
+  return true;
+}
+
+// Whether the chunks' indexes have all messages: some may be outside of chunks. Of topics that are not wanted
+// the numbers are taken from here.
+bool McapFile::agrees_with(const std::string& statistics) {
+  MessageCursor cursor(statistics, WireFormat::ros1, file_.name());
+  cursor.view(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // other numbers, and the times of the messages
+  MessageCursor entry(cursor.bytes(), WireFormat::ros1, file_.name());
+  std::map<std::size_t, std::uint64_t> counts;
+  while (entry.left() > 0) {
+    const auto channel = channels_.find(entry.u16());
+    const std::uint64_t count = entry.u64();
+    if (channel == channels_.end()) return false;
+    counts[channel->second] += count;
+  }
+  for (const auto& [topic, wanted] : is_wanted_) {
+    if (wanted && places_[topic].size() != counts[topic]) return false;
+    topics_[topic].messages = counts[topic];
+  }
+  return true;
+}
+
+void McapFile::scan() {
+  std::uint64_t at = kMcapMagic.size(), chunks = 0;
+  bool ended = false;
+  while (!ended && file_.has(at, McapRecord::kStart)) {
+    const McapRecord record = mcap_record(file_.bytes(at, McapRecord::kStart), at);
+    if (!file_.has(record.body_at, record.body_size)) break;
+    if (record.opcode == McapRecord::schema) add_schema(body_start(record, kNames));
+    if (record.opcode == McapRecord::channel) add_channel(body_start(record, kNames));
+    if (record.opcode == McapRecord::message)
+      add_message(body_start(record, McapRecord::kMessageHeader), 0, at);
+    if (record.opcode == McapRecord::chunk) scan_chunk(record), ++chunks;
+    ended = record.opcode == McapRecord::data_end || record.opcode == McapRecord::footer;
+    at = record.end();
+  }
+  if (!ended) {
+    remark_ = "was cut short after " + std::to_string(at) + " bytes of whole records: what is before is used";
+  } else if (chunks > 0 && remark_.empty()) {
+    remark_ = "has no index of all messages: it was read from end to end";
+  }
+}
+
+void McapFile::scan_chunk(const McapRecord& chunk) {
+  const std::uint64_t part = chunk.body_at - McapRecord::kStart;
+  BagChunk records(file_, mcap_chunk_at(file_, part));
+  records.check();
+  for (std::uint64_t at = 0; at < records.size();) {
+    const McapRecord record = mcap_record(records.view(at, McapRecord::kStart), at);
+    const std::uint64_t wanted = record.opcode == McapRecord::message ? McapRecord::kMessageHeader : kNames;
+    const std::string body(records.view(record.body_at, std::min(record.body_size, wanted)));
+    if (record.opcode == McapRecord::schema) add_schema(body);
+    if (record.opcode == McapRecord::channel) add_channel(body);
+    if (record.opcode == McapRecord::message) add_message(body, part, at);
+    if (record.body_size > records.size() - record.body_at)
+      throw InputError(file_.name(), "the chunk at byte " + std::to_string(part) +
+                                         " ends within a record: it claims " +
+                                         std::to_string(record.body_size) + " bytes");
+    at = record.end();
+  }
+  const std::lock_guard lock(mutex_);
+  checked_.insert(part);
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,49 @@
+// The bytes of one message of ROS, read value after value. No length in them is trusted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace remote_touch {
+
+// How the values of a message follow each other: as ROS 2 has it (CDR: a header of 4 bytes that tells the
+// order of bytes, then values aligned to their size) or as ROS 1 has it (little-endian, no gaps).
+enum class WireFormat { cdr, ros1 };
+
+class MessageCursor {
+ public:
+  // bytes must outlive the cursor and all views that it gives. subject: what an InputError is about. Throws
+  // InputError when the header of CDR is missing or of another encoding.
+  MessageCursor(std::string_view bytes, WireFormat format, const std::string& subject);
+
+  WireFormat format() const { return format_; }
+  const std::string& subject() const { return subject_; }
+
+  // Each throws InputError when the message ends before.
+  std::uint8_t u8() { return static_cast<std::uint8_t>(take(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(take(2)); }
+  std::uint32_t u32() { return static_cast<std::uint32_t>(take(4)); }
+  std::uint64_t u64() { return take(8); }
+  std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
+  float f32();
+  double f64();
+  std::string text();
+  // The length of a sequence whose elements have at least min_bytes each: never more than could follow.
+  std::uint32_t count(std::size_t min_bytes);
+  std::string_view bytes();                 // a sequence of bytes: its length in 32 bits first
+  std::string_view view(std::size_t size);  // as they are
+  std::size_t left() const { return bytes_.size() - at_; }
+
+ private:
+  std::uint64_t take(std::size_t size);
+
+  std::string_view bytes_;
+  WireFormat format_;
+  std::string subject_;
+  std::size_t at_ = 0, origin_ = 0;
+  bool big_endian_ = false;
+};
+
+}  // namespace remote_touch

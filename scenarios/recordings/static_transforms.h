@@ -1,0 +1,31 @@
+// Fixed transforms between the coordinate frames of a robot, as tf_static has them: each frame has a parent.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/recordings/messages/messages.h"
+
+namespace remote_touch {
+
+class StaticTransforms {
+ public:
+  // A frame that comes again moves to its new parent.
+  void add(const std::vector<StampedTransform>& transforms);
+  // p_to = X * p_from. Throws InputError about the subject when the two are not connected, or a frame is its
+  // own ancestor.
+  RigidTransform between(const std::string& to, const std::string& from, const std::string& subject) const;
+
+ private:
+  struct Parent {
+    std::string name;
+    RigidTransform X;
+  };
+  // From the frame to its first ancestor, which is named.
+  RigidTransform to_root(std::string frame, std::string& root, const std::string& subject) const;
+
+  std::map<std::string, Parent> parent_of_;
+};
+
+}  // namespace remote_touch

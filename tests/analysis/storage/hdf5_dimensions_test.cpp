@@ -1,0 +1,113 @@
+#include "analysis/storage/hdf5_dimensions.h"
+
+#include <gtest/gtest.h>
+#include <hdf5_hl.h>
+
+#include <array>
+
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/hdf5_values.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::hdf5_dimensions_test {
+namespace {
+
+const std::vector<std::string> kWords{"", "one", "\u00e9lan", "three"};
+
+Column counts(const char* name, std::vector<std::string> names) {
+  return {name, "1", "", std::vector<std::int32_t>{0, 1, 1, 0}, 1, std::move(names)};
+}
+
+// Columns of every kind, along time and in a table.
+void write_file(const std::filesystem::path& file) {
+  Hdf5Writer hdf5;
+  const Column time{"time", "s", "", std::vector<double>{0, 1, 2, 3}, 1, {}};
+  const Column vectors{"v", "m", "", std::vector<double>(12, 2.0), 3, {}};
+  const Column poses{"q", "1", "", std::vector<double>(16, 0.5), 4, {}};
+  const Column words{"word", "1", "", kWords, 1, {}};
+  hdf5.group("/trace");
+  hdf5.columns("/trace", {time, vectors, poses, counts("state", {"free", "in contact"})}, "time");
+  hdf5.group("/tables");
+  hdf5.group("/tables/t");
+  const Column rows{"row", "px", "", std::vector<double>{4, 3, 2, 1}, 1, {}};
+  hdf5.columns("/tables/t",
+               {rows, vectors, words, counts("state", {"off", "on"}), counts("again", {"no", "yes"})}, "");
+  hdf5.array("/trace", words, {"time"}, Hdf5Writer::Storage::compact);
+  hdf5.save(file);
+}
+
+std::vector<std::string> columns() {
+  return {"/tables/t/again", "/tables/t/row", "/tables/t/state", "/tables/t/v", "/tables/t/word",
+          "/trace/q",        "/trace/state",  "/trace/time",     "/trace/v",    "/trace/word"};
+}
+
+TEST(Hdf5Dimensions, AreNoColumns) {
+  const TestFolder folder("hdf5_dimensions");
+  write_file(folder / "a.h5");
+  EXPECT_EQ(Hdf5Reader(folder / "a.h5").datasets(), columns());
+}
+
+TEST(Hdf5Dimensions, AllHaveANameAndAllEnumerations) {
+  const TestFolder folder("hdf5_dimensions");
+  write_file(folder / "a.h5");
+  const Handle file(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  for (const std::string& path : columns()) {
+    const Handle data(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose), type(H5Dget_type(data), H5Tclose),
+        space(H5Dget_space(data), H5Sclose);
+    if (H5DSis_scale(data) == 0) {
+      for (int i = 0; i < H5Sget_simple_extent_ndims(space); ++i)
+        EXPECT_EQ(H5DSget_num_scales(data, static_cast<unsigned>(i)), 1) << path << ", dimension " << i;
+    }
+    if (H5Tget_class(type) == H5T_ENUM) {
+      EXPECT_GT(H5Tcommitted(type), 0) << path;
+    }
+  }
+  EXPECT_TRUE(H5Lexists(file, "/state_values", H5P_DEFAULT) > 0);   // free, in contact
+  EXPECT_TRUE(H5Lexists(file, "/state_values2", H5P_DEFAULT) > 0);  // off, on
+  const Handle state(H5Dopen2(file, "/trace/state", H5P_DEFAULT), H5Dclose);
+  EXPECT_EQ(text_attribute(state, "flag_meanings"), "free in_contact");
+}
+
+TEST(Hdf5Dimensions, TextsComeBack) {
+  const TestFolder folder("hdf5_dimensions");
+  write_file(folder / "a.h5");
+  const Hdf5Reader file(folder / "a.h5");
+  EXPECT_EQ(file.values<std::string>("/tables/t/word"), kWords);
+  EXPECT_EQ(file.values<std::string>("/trace/word"), kWords);
+  const Column some = file.rows("/trace/word", 1, 2);
+  EXPECT_EQ(std::get<std::vector<std::string>>(some.values), (std::vector<std::string>{"one", "\u00e9lan"}));
+  EXPECT_EQ(file.column("/trace/state").value_names, (std::vector<std::string>{"free", "in contact"}));
+}
+
+// Files of earlier versions have each text in one place.
+TEST(Hdf5Dimensions, TextsOfFormerFilesComeBack) {
+  const TestFolder folder("hdf5_dimensions");
+  {
+    const Handle file(H5Fcreate((folder / "a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                      H5Fclose);
+    for (const std::size_t length : {1, 3}) {
+      const Handle type = text_type(length);
+      const std::array<hsize_t, 2> extent{2, 2};
+      const Handle space(H5Screate_simple(2, extent.data(), nullptr), H5Sclose);
+      const Handle data(H5Dcreate2(file, length == 1 ? "short" : "long", type, space, H5P_DEFAULT,
+                                   H5P_DEFAULT, H5P_DEFAULT),
+                        H5Dclose);
+      check(
+          H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, length == 1 ? "a\0cd" : "abcd\0\0ef\0\0\0\0"));
+    }
+  }
+  const Hdf5Reader file(folder / "a.h5");
+  EXPECT_EQ(file.values<std::string>("/short", 2), (std::vector<std::string>{"a", "", "c", "d"}));
+  EXPECT_EQ(file.values<std::string>("/long", 2), (std::vector<std::string>{"abc", "d", "ef", ""}));
+}
+
+TEST(Hdf5Dimensions, EqualContentsAreEqualBytes) {
+  const TestFolder folder("hdf5_dimensions");
+  write_file(folder / "a.h5");
+  write_file(folder / "b.h5");
+  EXPECT_EQ(bytes_of(folder / "a.h5"), bytes_of(folder / "b.h5"));
+}
+
+}  // namespace
+}  // namespace remote_touch::hdf5_dimensions_test

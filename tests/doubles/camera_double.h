@@ -1,0 +1,161 @@
+// What the test doubles of depth cameras' libraries share: the cameras behind the library, as a test sets
+// them and sees them. Each double exports them under the name camera_double. From one thread only.
+//
+// They are test doubles: they have the vendors' signatures and none of their behaviour. What passes with them
+// shows what an adapter calls, not what a camera does.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runners/live/timing/steady_clock.h"
+#include "tests/doubles/camera_lens.h"
+#include "tests/doubles/simulated_clock.h"
+
+namespace remote_touch {
+
+class CameraDouble {
+ public:
+  struct State {
+    std::vector<std::string> serials = {"000123", "CL2F"};
+    int held_by_others = -1;  // the number of a camera that cannot be opened
+    CameraLens lens;          // of all of them; its size is that of the mode
+    double metres_per_unit = 0.001, rate_hz = 30;
+    // They see the plane normal . p = distance_m, and nothing in every hole_every-th pixel (0: no holes).
+    Eigen::Vector3d normal{0, 0, 1};
+    double distance_m = 0.5;
+    int hole_every = 0;
+
+    // Frame n, from 1 on, comes n periods after the start.
+    std::function<double(int)> stamp_s = [](int number) { return 5 + number / 30.0; };
+    std::function<int(int)> counted = [](int number) { return number; };  // as the camera counts
+    std::function<bool(int)> has_depth = [](int) { return true; };
+    int silent_after = 0, lost_after = 0;  // so many frames; 0: never
+    int row_gap_bytes = 0, missing_bytes = 0, missing_rows = 0;
+    int format = -1;  // of frames, not what it should be
+
+    int fail_at = 0;        // the call of this number fails, from 1 on
+    std::string fail_name;  // and so do those of this name
+    // Of the rs2 interface.
+    int version = 25605;
+    int model = 4;          // of the lens: Brown and Conrady
+    bool is_alone = false;  // depth comes by itself, not with other streams in one frame
+    bool has_depth_sensor = true, sends_depth = true;
+  };
+
+  // --- for tests ---
+  void follow(SimulatedClock* clock) { simulated_ = clock; }
+  void reset() {
+    state = {};
+    calls_.clear(), held_.clear(), misuse_.clear(), image_.clear();
+    is_started_ = false;
+  }
+  // In order; the maps between pixels and rays are not among them.
+  const std::vector<std::string>& calls() const { return calls_; }
+  int count(const std::string& name) const {
+    return static_cast<int>(std::count(calls_.begin(), calls_.end(), name));
+  }
+  std::string last_call() const { return calls_.empty() ? "no call" : calls_.back(); }
+  std::size_t held() const { return held_.size(); }  // handles that were not given back
+  const std::vector<std::string>& misuse() const { return misuse_; }
+  bool is_started() const { return is_started_; }
+
+  State state;
+
+  // --- for the library ---
+  Clock& clock() const { return simulated_ ? *simulated_ : steady_clock(); }
+  // True: the call has to fail.
+  bool enter(const char* name) {
+    calls_.emplace_back(name);
+    return static_cast<int>(calls_.size()) == state.fail_at || name == state.fail_name;
+  }
+  // A handle of that kind, to be given back once. Its content lives as long.
+  void* hold(const char* kind, std::vector<std::uint8_t> content = {}) {
+    auto* handle = new std::vector<std::uint8_t>(std::move(content));
+    held_[handle] = {kind, std::unique_ptr<std::vector<std::uint8_t>>(handle)};
+    return handle;
+  }
+  void give_back(const char* kind, const void* handle) {
+    if (is_held(kind, handle)) held_.erase(handle);
+  }
+  bool is_held(const char* kind, const void* handle) {
+    const auto found = held_.find(handle);
+    const bool is_right = found != held_.end() && found->second.first == kind;
+    if (!is_right) misuse_.push_back(last_call() + ": no " + kind);
+    return is_right;
+  }
+  void expect(bool is_right, const char* what) {
+    if (!is_right) misuse_.push_back(last_call() + ": " + what);
+  }
+
+  void start() {
+    is_started_ = true;
+    start_ns_ = clock().now_ns();
+    last_ = 0;
+    image_.clear();
+  }
+  void stop() { is_started_ = false; }
+  bool is_lost() const { return state.lost_after > 0 && due() > state.lost_after; }
+  // The number of the newest frame that has come; 0: none.
+  int due() const {
+    if (!is_started_) return 0;
+    const double passed_s = 1e-9 * static_cast<double>(clock().now_ns() - start_ns_);
+    return static_cast<int>(std::floor(passed_s * state.rate_hz + 1e-6));
+  }
+  int sent() const {
+    int newest = due();
+    if (state.silent_after > 0) newest = std::min(newest, state.silent_after);
+    if (state.lost_after > 0) newest = std::min(newest, state.lost_after);
+    return newest;
+  }
+  double wait_for_s(int number) const {
+    return number / state.rate_hz - 1e-9 * static_cast<double>(clock().now_ns() - start_ns_);
+  }
+  int last() const { return last_; }
+  void take(int number) { last_ = number; }
+
+  int stride() const { return 2 * state.lens.width + state.row_gap_bytes; }
+  // Gaps are full of ones.
+  std::vector<std::uint8_t> image() {
+    if (image_.empty()) draw();
+    std::vector<std::uint8_t> bytes(
+        static_cast<std::size_t>(stride()) * static_cast<std::size_t>(state.lens.height), 0xff);
+    for (int v = 0; v < state.lens.height; ++v)
+      std::memcpy(bytes.data() + v * stride(), image_.data() + v * state.lens.width,
+                  2 * static_cast<std::size_t>(state.lens.width));
+    bytes.resize(bytes.size() - static_cast<std::size_t>(state.missing_bytes));
+    return bytes;
+  }
+
+ private:
+  void draw() {
+    for (int v = 0; v < state.lens.height; ++v)
+      for (int u = 0; u < state.lens.width; ++u) {
+        const auto ray = state.lens.ray_of({u, v});
+        const double slope = ray ? state.normal.dot(Eigen::Vector3d(ray->x(), ray->y(), 1)) : 0;
+        const double units = slope > 0 ? state.distance_m / slope / state.metres_per_unit : 0;
+        const bool is_hole = state.hole_every > 0 && (u + 3 * v) % state.hole_every == 0;
+        image_.push_back(units < 65535 && !is_hole ? static_cast<std::uint16_t>(std::lround(units)) : 0);
+      }
+  }
+
+  SimulatedClock* simulated_ = nullptr;
+  std::vector<std::string> calls_, misuse_;
+  std::map<const void*, std::pair<std::string, std::unique_ptr<std::vector<std::uint8_t>>>> held_;
+  std::vector<std::uint16_t> image_;
+  bool is_started_ = false;
+  std::int64_t start_ns_ = 0;
+  int last_ = 0;
+};
+
+}  // namespace remote_touch
+
+extern "C" remote_touch::CameraDouble* camera_double();

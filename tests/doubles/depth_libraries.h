@@ -1,0 +1,45 @@
+// The adapters of depth cameras' libraries with their test doubles.
+#pragma once
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "runners/live/devices/availability.h"
+#include "runners/live/sensors/depth_source.h"
+#include "tests/doubles/camera_double.h"
+
+namespace remote_touch {
+
+struct DepthLibrary {
+  const char* name;
+  const char* double_file;
+  const char* variable;  // names the library
+  const char* library;   // that is looked for first without it
+  std::unique_ptr<DepthSource> (*open)(const std::string& address, Clock& clock);
+  Availability (*availability)();
+};
+
+// For the names of tests.
+void PrintTo(const DepthLibrary* library, std::ostream* out);  // NOLINT(readability-identifier-naming)
+
+// The third lacks what older versions of librealsense lack.
+extern const DepthLibrary kK4a, kRealSense, kOldRealSense;
+
+// The library is its double, freshly set, as long as this lives: on a simulated clock, or on the steady one.
+class CameraInstalled {
+ public:
+  explicit CameraInstalled(const DepthLibrary& library, SimulatedClock* clock = nullptr);
+  ~CameraInstalled();
+  CameraInstalled(const CameraInstalled&) = delete;
+  CameraInstalled& operator=(const CameraInstalled&) = delete;
+
+  CameraDouble* operator->() const { return camera_; }
+  CameraDouble& operator*() const { return *camera_; }
+
+ private:
+  const char* variable_;
+  CameraDouble* camera_;
+};
+
+}  // namespace remote_touch

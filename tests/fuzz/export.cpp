@@ -1,0 +1,27 @@
+// The content of result files as tables for other programs.
+#include "runners/export/csv_files.h"
+#include "runners/export/npy_array.h"
+#include "runners/export/result_tables.h"
+#include "tests/fuzz/content_text.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace remote_touch::fuzz::export_tables {
+namespace {
+
+void read(std::string_view bytes) {
+  const Content content = content_of(bytes);
+  accepts(bytes, [&] {
+    for (const Table& table : result_tables(reader_of(content))) {
+      const std::string header = csv_header(table);
+      const std::string lines = csv_rows(table, 0, table.columns.front().length());
+      require(header.ends_with('\n') && (lines.empty() || lines.ends_with('\n')), "lines end");
+      for (const Column& column : table.columns)
+        require(npy_array(column).size() % 2 == 0, "an array of numbers or of characters of four bytes");
+    }
+  });
+}
+
+const Registered registered("export", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::export_tables

@@ -1,0 +1,219 @@
+// Depth images freed of the distortion of their lens, against closed forms.
+#include "runners/live/sensors/undistortion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/doubles/camera_lens.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::undistortion_test {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Image = std::vector<std::uint16_t>;
+
+Lens described(const CameraLens& lens) {
+  return {[lens](const Vector2d& ray) { return lens.pixel_of(ray); },
+          [lens](const Vector2d& pixel) { return lens.ray_of(pixel); }};
+}
+
+// As strong as that of the Azure Kinect's wide mode; its corners see nothing.
+CameraLens wide_lens() {
+  return {.width = 256,
+          .height = 256,
+          .fx = 126,
+          .fy = 126.2,
+          .cx = 129.1,
+          .cy = 125.4,
+          .k = {0.52, 0.16, 0.008, 0.86, 0.26, 0.04},
+          .p1 = 1e-4,
+          .p2 = -2e-4,
+          .max_radius = 1.7};
+}
+// A barrel, with the tangential part that a lens out of line has.
+CameraLens narrow_lens() {
+  return {.width = 320,
+          .height = 240,
+          .fx = 250,
+          .fy = 251,
+          .cx = 158.2,
+          .cy = 121.7,
+          .k = {-0.2, 0.05, 0.01, 0, 0, 0},
+          .p1 = 2e-3,
+          .p2 = -3e-3,
+          .max_radius = 1.7};
+}
+
+double plane_depth(const Vector2d& ray, const Vector3d& normal, double distance) {
+  return distance / normal.dot(Vector3d(ray.x(), ray.y(), 1));
+}
+
+Image seen_by(const CameraLens& lens, const std::function<double(const Vector2d&)>& depth_at) {
+  Image image;
+  for (int v = 0; v < lens.height; ++v)
+    for (int u = 0; u < lens.width; ++u) {
+      const auto ray = lens.ray_of({u, v});
+      image.push_back(ray ? static_cast<std::uint16_t>(std::lround(depth_at(*ray))) : 0);
+    }
+  return image;
+}
+
+Vector2d ray_of(const CameraIntrinsics& camera, int u, int v) {
+  return {(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy};
+}
+
+Image pinhole(const CameraLens& lens, const Undistortion& undistortion,
+              const std::function<double(const Vector2d&)>& depth_at) {
+  Image depth;
+  undistortion.apply(seen_by(lens, depth_at), depth);
+  return depth;
+}
+
+TEST(Undistortion, OfAPinholeCameraChangesNothing) {
+  CameraLens lens = narrow_lens();
+  lens.k = {}, lens.p1 = lens.p2 = 0;
+  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  EXPECT_NEAR(undistortion.camera().fx, lens.fx, 1e-9);
+  EXPECT_NEAR(undistortion.camera().fy, lens.fy, 1e-9);
+  EXPECT_NEAR(undistortion.camera().cx, lens.cx, 1e-9);
+  EXPECT_NEAR(undistortion.camera().cy, lens.cy, 1e-9);
+  Image seen, depth;
+  for (int i = 0; i < lens.width * lens.height; ++i) seen.push_back(static_cast<std::uint16_t>(i * 7919));
+  undistortion.apply(seen, depth);
+  EXPECT_TRUE(depth == seen);
+}
+
+// The depth that a pixel of the result has to have on a surface: that of its own ray where the four pixels
+// around its place were seen. Elsewhere it is that of the pixel nearest to it.
+double expected_depth(const CameraLens& lens, const Vector2d& ray,
+                      const std::function<double(const Vector2d&)>& depth_at) {
+  const Vector2d place = *lens.pixel_of(ray);
+  const Vector2d corner(std::clamp(std::floor(place.x()), 0.0, lens.width - 2.0),
+                        std::clamp(std::floor(place.y()), 0.0, lens.height - 2.0));
+  bool is_inside = true;
+  for (const Vector2d& step : {Vector2d(0, 0), Vector2d(1, 0), Vector2d(0, 1), Vector2d(1, 1)})
+    is_inside = is_inside && lens.ray_of(corner + step);
+  return depth_at(is_inside ? ray : *lens.ray_of({std::round(place.x()), std::round(place.y())}));
+}
+
+// A plane has depth distance / (normal . ray). The camera rounds it, by half a unit at most, and so does the
+// result; between pixels it is nearly linear.
+TEST(Undistortion, APlaneStaysAPlane) {
+  for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
+    const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+    for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.1, -0.15, 1)}) {
+      const auto depth_at = [&](const Vector2d& ray) { return plane_depth(ray, normal, 1000); };
+      const Image depth = pinhole(lens, undistortion, depth_at);
+      int present = 0;
+      for (int v = 0; v < lens.height; ++v)
+        for (int u = 0; u < lens.width; ++u) {
+          const std::uint16_t z = depth[static_cast<std::size_t>(v * lens.width + u)];
+          if (z == 0) continue;
+          ++present;
+          const Vector2d ray = ray_of(undistortion.camera(), u, v);
+          ASSERT_NEAR(z, expected_depth(lens, ray, depth_at), 1.1) << u << " " << v;
+        }
+      EXPECT_GT(present, 0.7 * lens.width * lens.height);
+    }
+  }
+}
+
+// The ends of the middle row and of the middle column have the rays that they have in the camera's image.
+TEST(Undistortion, KeepsTheFieldOfView) {
+  for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
+    const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+    const CameraIntrinsics& camera = undistortion.camera();
+    const int u = (lens.width - 1) / 2, v = (lens.height - 1) / 2;
+    EXPECT_NEAR(ray_of(camera, 0, v).x(), lens.ray_of({0, v})->x(), 1e-9);
+    EXPECT_NEAR(ray_of(camera, lens.width - 1, v).x(), lens.ray_of({lens.width - 1, v})->x(), 1e-9);
+    EXPECT_NEAR(ray_of(camera, u, 0).y(), lens.ray_of({u, 0})->y(), 1e-9);
+    EXPECT_NEAR(ray_of(camera, u, lens.height - 1).y(), lens.ray_of({u, lens.height - 1})->y(), 1e-9);
+  }
+}
+
+// Two planes, one behind the other: all depths are those of one of them.
+TEST(Undistortion, NothingLiesBetweenTwoSurfaces) {
+  const CameraLens lens = narrow_lens();
+  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  const Image depth = pinhole(lens, undistortion,
+                              [](const Vector2d& ray) { return ray.x() + 0.3 * ray.y() < 0.05 ? 500 : 900; });
+  int near = 0, far = 0;
+  for (const std::uint16_t z : depth) {
+    EXPECT_TRUE(z == 0 || z == 500 || z == 900) << z;
+    near += z == 500, far += z == 900;
+  }
+  EXPECT_GT(near, 10000);
+  EXPECT_GT(far, 10000);
+}
+
+// What is not measured stays so: one missing pixel takes the place of the pixels nearest to it and of no
+// others.
+TEST(Undistortion, MissingPixels) {
+  const CameraLens lens = narrow_lens();
+  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  Image seen(static_cast<std::size_t>(lens.width * lens.height), 700), depth;
+  seen[100 * 320 + 57] = 0;
+  undistortion.apply(seen, depth);
+  const Vector2d hole(57, 100);
+  int holes = 0;
+  for (int v = 0; v < lens.height; ++v)
+    for (int u = 0; u < lens.width; ++u) {
+      const auto place = lens.pixel_of(ray_of(undistortion.camera(), u, v));
+      const double away = place ? (*place - hole).cwiseAbs().maxCoeff() : 9;
+      const std::uint16_t z = depth[static_cast<std::size_t>(v * lens.width + u)];
+      if (away < 0.499) {
+        EXPECT_EQ(z, 0);
+        ++holes;
+      } else if (away > 0.501 && away < 9) {
+        const bool is_seen = place->x() >= 0 && place->y() >= 0 && place->x() <= 319 && place->y() <= 239;
+        EXPECT_EQ(z, is_seen ? 700 : 0) << u << " " << v;
+      }
+    }
+  EXPECT_GE(holes, 1);
+  Image nothing(seen.size(), 0);
+  undistortion.apply(nothing, depth);
+  EXPECT_TRUE(depth == nothing);
+}
+
+TEST(Undistortion, LargestDepths) {
+  const CameraLens lens = narrow_lens();
+  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  Image depth;
+  undistortion.apply(Image(static_cast<std::size_t>(lens.width * lens.height), 65535), depth);
+  for (const std::uint16_t z : depth) EXPECT_TRUE(z == 0 || z == 65535) << z;
+}
+
+TEST(Undistortion, CalibrationsThatCannotBeUsed) {
+  const CameraLens lens = narrow_lens();
+  const Lens good = described(lens);
+  const auto refused = [](int width, int height, const Lens& bad) {
+    return refusal([&] { Undistortion("camera", width, height, bad); });
+  };
+  const auto nothing = [](const Vector2d&) -> std::optional<Vector2d> { return {}; };
+  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, nothing}), "camera: has no calibration that can be used");
+  EXPECT_HAS(refused(320, 240, {nothing, good.ray_of_pixel}),
+             "camera: has a calibration that contradicts itself");
+  const auto not_finite = [](const Vector2d&) -> std::optional<Vector2d> { return Vector2d(NAN, NAN); };
+  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, not_finite}),
+             "camera: has no calibration that can be used");
+  EXPECT_HAS(refused(320, 240, {not_finite, good.ray_of_pixel}),
+             "camera: has a calibration that contradicts itself");
+  const auto turned = [&](const Vector2d& pixel) {
+    return std::optional(Vector2d(-*good.ray_of_pixel(pixel)));
+  };
+  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, turned}), "camera: has no calibration that can be used");
+  const auto another = [&](const Vector2d& pixel) {
+    return std::optional(Vector2d(1.01 * *good.ray_of_pixel(pixel)));
+  };
+  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, another}),
+             "camera: has a calibration that contradicts itself");
+  EXPECT_HAS(refused(1, 240, good), "camera: has images of 1 x 240 pixels: expected 2 to 8192 on a side");
+  EXPECT_HAS(refused(320, 2147483647, good), "expected 2 to 8192 on a side");
+}
+
+}  // namespace
+}  // namespace remote_touch::undistortion_test

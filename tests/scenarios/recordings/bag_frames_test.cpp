@@ -1,0 +1,197 @@
+// The frames of a bag: topics, cameras, order, coordinate frames.
+#include "scenarios/recordings/bag_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/kernels/kernels.h"
+#include "scenarios/recordings/recorded_scene.h"
+#include "tests/support/bag_files.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::bag_frames_test {
+namespace {
+
+using Format = MessageBytes::Format;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000, kStep_ns = 31'250'000;
+const std::string kCloud = "sensor_msgs/msg/PointCloud2", kImage = "sensor_msgs/msg/Image",
+                  kCamera = "sensor_msgs/msg/CameraInfo", kTransforms = "tf2_msgs/msg/TFMessage";
+
+// A cloud of 4 x 3 points at 1 m + 0.1 m a frame.
+BagMessage cloud(int frame, int logged, const std::string& topic = "/points",
+                 std::int64_t start_ns = kStart_ns) {
+  return {
+      topic, kCloud, kStart_ns + logged * kStep_ns,
+      cloud_message(Format::cdr, start_ns + frame * kStep_ns, 4, 3, 1 + 0.1f * static_cast<float>(frame))};
+}
+
+BagMessage depth(int frame, const std::string& topic) {
+  const std::int64_t stamp_ns = kStart_ns + frame * kStep_ns;
+  return {topic, kImage, stamp_ns,
+          depth_message(stamp_ns, 4, 3, static_cast<std::uint16_t>(1000 + 100 * frame))};
+}
+
+BagMessage camera(const std::string& topic, int width = 4) {
+  return {topic, kCamera, kStart_ns, camera_message(width, 3, {-0.1, 0, 0, 0, 0})};
+}
+
+class Frames : public ::testing::Test {
+ protected:
+  BagFrames frames(const std::vector<BagMessage>& messages, const BagChoice& choice = {}) const {
+    folder_.write("x.mcap", mcap_file(messages));
+    return BagFrames(folder_ / "x.mcap", choice);
+  }
+  std::string error(const std::vector<BagMessage>& messages, const BagChoice& choice = {}) const {
+    return refusal([&] {
+      const BagFrames all = frames(messages, choice);
+      for (std::size_t i = 0; i < all.captured_s().size(); ++i) all.cloud(i, kNoLimit);
+    });
+  }
+
+  const TestFolder folder_{"bag_frames_test"};
+};
+
+TEST_F(Frames, AreInTheOrderOfTheirStamps) {
+  const BagFrames all = frames({cloud(0, 0), cloud(2, 1), cloud(1, 2), cloud(1, 3), cloud(4, 4)});
+  EXPECT_EQ(all.captured_s(), (std::vector<double>{0, 0.03125, 0.0625, 0.125}));
+  for (const std::size_t i : {3u, 0u, 2u, 1u}) {
+    const double z_m = 1 + 0.1 * std::array{0, 1, 2, 4}[i];
+    EXPECT_NEAR(all.cloud(i, kNoLimit).z[5], z_m, 1e-6);
+  }
+  EXPECT_EQ(all.remark(),
+            "has messages out of order: they were sorted by their stamps; has 1 message(s) with the stamp of "
+            "another: not used");
+  EXPECT_TRUE(std::isnan(all.cloud(3, 1.39).z[5]));
+}
+
+TEST_F(Frames, WithoutStampsHaveTheTimesOfTheRecorder) {
+  const BagFrames all =
+      frames({cloud(0, 0, "/points", 0), cloud(1, 3, "/points", 0), cloud(2, 5, "/points", 0)});
+  EXPECT_EQ(all.captured_s(), (std::vector<double>{0, 3 * 0.03125, 5 * 0.03125}));
+  EXPECT_HAS(all.remark(), "has messages without a stamp");
+}
+
+TEST_F(Frames, AreOfTheOnlyTopicThatFits) {
+  const std::vector<BagMessage> two = {cloud(0, 0, "/a"), cloud(0, 0, "/b"), cloud(1, 1, "/b"),
+                                       camera("/camera_info")};
+  EXPECT_HAS(error(two),
+             "expected scenario.topic as one of /a (sensor_msgs/PointCloud2, 1 messages), "
+             "/b (sensor_msgs/PointCloud2, 2 messages)");
+  EXPECT_EQ(frames(two, {"/b", "", {}, ""}).captured_s().size(), 2u);
+  EXPECT_HAS(error(two, {"/c", "", {}, ""}), "scenario.topic = /c: expected a topic of");
+  EXPECT_HAS(error({camera("/camera_info")}), "has no topic of clouds or depth images");
+  EXPECT_HAS(error({}), "there are none");
+  EXPECT_EQ(frames({cloud(0, 0),
+                    {"/colour", kImage, 1,
+                     MessageBytes()
+                         .header(1, "")
+                         .add(1)
+                         .add(1)
+                         .text("rgb8")
+                         .add(std::uint8_t{0})
+                         .add(3)
+                         .bytes("xyz")
+                         .done()}})
+                .captured_s()
+                .size(),
+            1u)
+      << "colour images are no frames";
+}
+
+TEST_F(Frames, OfDepthHaveTheCameraBesideThem) {
+  const BagFrames raw_ones =
+      frames({camera("/x/camera_info"), camera("/y/camera_info"), depth(0, "/x/image_raw")});
+  EXPECT_EQ(raw_ones.camera().fx, 10);
+  EXPECT_GT(raw_ones.cloud(0, kNoLimit).image->pixel_slack, 1e-4);
+  const BagFrames rectified = frames({camera("/x/camera_info"), depth(0, "/x/image_rect")});
+  EXPECT_EQ(rectified.camera().fx, 20);
+  EXPECT_LE(rectified.cloud(0, kNoLimit).image->pixel_slack, 1e-6);
+  EXPECT_NEAR(rectified.cloud(0, kNoLimit).z[0], 1, 1e-12);
+  BagChoice choice;
+  choice.images = BagChoice::Images::measured;
+  EXPECT_EQ(frames({camera("/x/camera_info"), depth(0, "/x/image_rect")}, choice).camera().fx, 10);
+  EXPECT_HAS(error({depth(0, "/x/image_raw")}),
+             "has no camera beside /x/image_raw: expected scenario.camera_info");
+  EXPECT_HAS(error({camera("/y/info"), camera("/z/info"), depth(0, "/x/image_raw")}),
+             "/y/info (sensor_msgs/CameraInfo");
+  EXPECT_EQ(frames({camera("/y/info"), depth(0, "/x/image_raw")}).camera().width, 4)
+      << "the only one there is";
+  EXPECT_HAS(error({camera("/x/camera_info", 5), depth(0, "/x/image_raw")}),
+             "/x/image_raw, message 0: has 4 x 3 pixels: expected 5 x 3, as its CameraInfo has");
+}
+
+TEST_F(Frames, AreChosenInBagsOnly) {
+  folder_.write("x.pcd", "");
+  EXPECT_HAS(refusal([&] {
+               index_recording(folder_ / "x.pcd", {"/points", "", {}, ""});
+             }),
+             "is no bag of ROS: expected scenario.topic = \"\"");
+}
+
+BagMessage transforms() {
+  MessageBytes bytes;
+  bytes.add(std::uint32_t{2}).header(0, "base").text("body");
+  for (const double value : {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) bytes.add(value);
+  bytes.header(0, "body").text("optical");
+  for (const double value : {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0}) bytes.add(value);
+  return {"/tf_static", kTransforms, 1, bytes.done()};
+}
+
+TEST_F(Frames, ComeToTheChosenCoordinateFrame) {
+  const auto X = frames({cloud(0, 0), transforms()}, {"", "", {}, "base"}).pose();
+  EXPECT_TRUE((X * Vec3(1, 2, 3)).isApprox(Vec3(0, -2, 3)));
+  EXPECT_TRUE(frames({cloud(0, 0), transforms()}, {"", "", {}, "/optical"}).pose().matrix().isIdentity(0));
+  EXPECT_HAS(error({cloud(0, 0), transforms()}, {"", "", {}, "moon"}),
+             "it has body in base, optical in body");
+  EXPECT_HAS(error({cloud(0, 0)}, {"", "", {}, "base"}), "it has none");
+  BagMessage other = cloud(1, 1);
+  other.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 4, 3, 1, "elsewhere");
+  EXPECT_HAS(error({cloud(0, 0), other, transforms()}, {"", "", {}, "base"}),
+             "frame_id = elsewhere: expected optical");
+}
+
+TEST_F(Frames, ThatAreDamagedAreNamed) {
+  BagMessage cut = cloud(1, 1);
+  cut.bytes.resize(100);
+  EXPECT_HAS(error({cloud(0, 0), cut}), "/points, message 1: ends after 100 bytes");
+  cut.bytes.resize(7);
+  EXPECT_HAS(error({cloud(0, 0), cut}), "/points: ends after 7 bytes");
+}
+
+// The whole way: a bag of ROS 1 as a scenario, from a RealSense with units of half a millimetre.
+TEST_F(Frames, AreAScenario) {
+  const std::string sensor = "/device_0/sensor_0/";
+  const auto ros1 = [&](std::uint16_t value, std::int64_t stamp_ns) {
+    MessageBytes bytes(Format::ros1);
+    bytes.header(stamp_ns, "0").add(3).add(4).text("mono16").add(std::uint8_t{0}).add(8);
+    std::string data;
+    for (int i = 0; i < 12; ++i) data += raw(value);
+    return bytes.bytes(data).done();
+  };
+  MessageBytes info(Format::ros1);
+  info.header(0, "0").add(3).add(4).text("None").add(0);
+  for (const double k : {10.0, 0.0, 1.5, 0.0, 10.0, 1.0, 0.0, 0.0, 1.0}) info.add(k);
+  for (int i = 0; i < 21; ++i) info.add(0.0);
+  folder_.write("x.bag",
+                ros1_file({{sensor + "option/Depth Units/value", "std_msgs/msg/Float32", 1, raw(0.0005f)},
+                           {sensor + "Depth_0/info/camera_info", kCamera, 1, info.done()},
+                           {sensor + "Depth_0/image/data", kImage, 1, ros1(2000, kStart_ns)},
+                           {sensor + "Depth_0/image/data", kImage, 2, ros1(3000, kStart_ns + kStep_ns)}}));
+  RecordedScene::Settings settings;
+  settings.path = (folder_ / "x.bag").string();
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  EXPECT_EQ(scene.frame_count(), 2);
+  EXPECT_EQ(scene.frame_rate_hz(), 32);
+  EXPECT_EQ(scene.captured_s(1), 0.03125);
+  EXPECT_EQ(scene.remark(), "");
+  EXPECT_TRUE(scene.cloud(1).point(0).isApprox(Vec3(-0.225, -0.15, 1.5)));
+  EXPECT_EQ(scene.cloud(0).z[0], 1);
+  EXPECT_NEAR(scene.signed_distance(Vec3(0, 0, 0.99), 0), 0.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace remote_touch::bag_frames_test

@@ -1,0 +1,226 @@
+// Bags of all kinds, sound and damaged. Writers of others are tried in tests/system/bags.
+#include "scenarios/recordings/bags/bag_file.h"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/bag_files.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::bag_file_test {
+namespace {
+
+const WantedTopic kAll = [](const BagTopic&) { return true; };
+
+// Ten messages of two topics, in the order in which the recorder got them: 3 after 4.
+std::vector<BagMessage> messages() {
+  std::vector<BagMessage> list;
+  for (const int i : {0, 1, 2, 4, 3}) {
+    list.push_back(
+        {"/a", "sensor_msgs/msg/PointCloud2", 100 + i, "a" + std::to_string(i) + std::string(50, 'x')});
+    list.push_back({"/b", "std_msgs/msg/Float32", 200 + i, "b" + std::to_string(i)});
+  }
+  return list;
+}
+
+class Bags : public ::testing::Test {
+ protected:
+  std::unique_ptr<BagFile> open(const std::string& name, const WantedTopic& wanted = kAll) const {
+    return open_bag(folder_ / name, wanted);
+  }
+
+  void expect_all(const BagFile& bag) const {
+    ASSERT_EQ(bag.topics().size(), 2u);
+    EXPECT_EQ(bag.topics()[0].name, "/a");
+    EXPECT_EQ(bag.topics()[0].type, "sensor_msgs/PointCloud2");
+    EXPECT_EQ(bag.topics()[1].type, "std_msgs/Float32");
+    ASSERT_EQ(bag.places(0).size(), 5u);
+    ASSERT_EQ(bag.places(1).size(), 5u);
+    EXPECT_EQ(bag.topics()[0].messages, 5u);
+    for (std::size_t i = 0; i < 5; ++i) {
+      EXPECT_EQ(bag.places(0)[i].logged_ns, 100 + static_cast<int>(i));
+      EXPECT_EQ(bag.message(bag.places(0)[i]), "a" + std::to_string(i) + std::string(50, 'x'));
+      EXPECT_EQ(bag.start(bag.places(0)[i], 2), "a" + std::to_string(i));
+    }
+    EXPECT_EQ(bag.message(bag.places(1)[3]), "b3");
+  }
+
+  std::string error(const std::string& name) const {
+    return refusal([&] {
+      const auto bag = open(name);
+      for (std::size_t t = 0; t < bag->topics().size(); ++t)
+        for (const MessagePlace& place : bag->places(t)) bag->message(place);
+    });
+  }
+
+  const TestFolder folder_{"bag_file_test"};
+};
+
+TEST_F(Bags, OfMcapAreReadInEveryLayout) {
+  for (const char* compression : {"", "lz4", "zstd"})
+    for (const bool chunks : {true, false})
+      for (const bool index : {true, false}) {
+        if (!chunks && compression[0] != '\0') continue;
+        SCOPED_TRACE(std::string(compression) + (chunks ? " chunks" : "") + (index ? " index" : ""));
+        folder_.write("x.mcap", mcap_file(messages(), {chunks, index, true, compression}));
+        const auto bag = open("x.mcap");
+        expect_all(*bag);
+        EXPECT_EQ(bag->remark().empty(), index || !chunks);
+      }
+}
+
+TEST_F(Bags, OfRos1AreReadInEveryLayout) {
+  for (const char* compression : {"none", "lz4", "bz2"})
+    for (const bool closed : {true, false}) {
+      folder_.write("x.bag", ros1_file(messages(), compression, closed));
+      const auto bag = open("x.bag");
+      expect_all(*bag);
+      EXPECT_EQ(bag->remark(), closed ? "" : "was not closed: it was read from end to end");
+    }
+}
+
+TEST_F(Bags, OfSqliteAreReadAlsoAsFolders) {
+  write_db3((folder_ / "a b?#%.db3").string(), messages());
+  expect_all(*open("a b?#%.db3"));
+  const std::vector<BagMessage> all = messages();
+  folder_.write("split/metadata.yaml", "");
+  write_db3((folder_ / "split/x_9.db3").string(), {all.begin(), all.begin() + 4});
+  write_db3((folder_ / "split/x_10.db3").string(), {all.begin() + 4, all.end()});
+  ASSERT_TRUE(is_bag(folder_ / "split"));
+  expect_all(*open("split"));
+  EXPECT_EQ(files_of_bag(folder_ / "split").front().filename(), "x_9.db3");
+  EXPECT_FALSE(is_bag(folder_.path()));
+}
+
+TEST_F(Bags, ListOnlyWhatIsWanted) {
+  const WantedTopic only_b = [](const BagTopic& topic) { return topic.name == "/b"; };
+  folder_.write("x.mcap", mcap_file(messages())), folder_.write("x.bag", ros1_file(messages()));
+  folder_.write("y.mcap", mcap_file(messages(), {true, false}));
+  write_db3((folder_ / "x.db3").string(), messages());
+  for (const char* name : {"x.mcap", "y.mcap", "x.bag", "x.db3"}) {
+    const auto bag = open(name, only_b);
+    EXPECT_TRUE(bag->places(0).empty()) << name;
+    EXPECT_EQ(bag->topics()[0].messages, 5u) << name;
+    EXPECT_EQ(bag->places(1).size(), 5u) << name;
+  }
+}
+
+// Cut anywhere: what is there is read, or refused in one line; never less than the whole chunks before.
+TEST_F(Bags, CutShortAreReadUpToThere) {
+  const std::string whole = mcap_file(messages(), {true, true, true, "lz4"});
+  std::size_t most = 0;
+  for (std::size_t size = 0; size < whole.size(); size += 5) {
+    folder_.write("x.mcap", whole.substr(0, size));
+    const std::string text = refusal([&] {
+      const auto bag = open("x.mcap");
+      EXPECT_FALSE(bag->remark().empty()) << size;
+      std::size_t count = 0;
+      for (std::size_t t = 0; t < bag->topics().size(); ++t) count += bag->places(t).size();
+      EXPECT_GE(count, most) << size;
+      most = std::max(most, count);
+      for (std::size_t t = 0; t < bag->topics().size(); ++t)
+        for (const MessagePlace& place : bag->places(t)) bag->message(place);
+    });
+    EXPECT_EQ(text == "no InputError", size >= 8) << size << " " << text;
+  }
+  EXPECT_EQ(most, 10u);
+  const std::string bag = ros1_file(messages());
+  for (std::size_t size = 13; size < bag.size(); size += 11) {
+    folder_.write("x.bag", bag.substr(0, size));
+    error("x.bag");
+  }
+}
+
+TEST_F(Bags, DamagedAreFoundByTheirCrc) {
+  std::string bytes = mcap_file(messages(), {true, true, true, ""});
+  const std::size_t at = bytes.find("a2xxx");
+  bytes[at + 10] = 'y';
+  folder_.write("x.mcap", bytes);
+  EXPECT_HAS(error("x.mcap"), "its CRC is another");
+  bytes = mcap_file(messages());
+  bytes[bytes.size() - 60] ^= 1;  // in the index: read from end to end instead
+  folder_.write("x.mcap", bytes);
+  const auto bag = open("x.mcap");
+  expect_all(*bag);
+  EXPECT_EQ(bag->remark(), "has a damaged index: it was read from end to end");
+}
+
+// A change of one byte anywhere: one line or an answer, in bounded memory; the sanitizers watch.
+TEST_F(Bags, WithAByteChangedAreNoDanger) {
+  write_db3((folder_ / "y.db3").string(), messages());
+  const std::string kinds[] = {mcap_file(messages(), {true, true, false, ""}), ros1_file(messages(), "lz4"),
+                               bytes_of(folder_ / "y.db3")};
+  const char* names[] = {"x.mcap", "x.bag", "x.db3"};
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < kinds[k].size(); i += k == 2 ? 97 : 7) {
+      std::string bytes = kinds[k];
+      bytes[i] = static_cast<char>(bytes[i] ^ 0xC1);
+      folder_.write(names[k], bytes);
+      error(names[k]);
+    }
+}
+
+TEST_F(Bags, OfOtherKindsAreRefused) {
+  const auto is_refused = [&](const std::string& name, const std::string& bytes, const std::string& part) {
+    folder_.write(name, bytes);
+    EXPECT_HAS(error(name), part);
+  };
+  is_refused("x.mcap", "", "does not begin as an MCAP file");
+  is_refused("x.mcap", std::string(100, 'x'), "does not begin as an MCAP file");
+  is_refused("x.bag", "#ROSBAG V1.2\n", "is a bag of an older version");
+  is_refused("x.bag", std::string(100, 'x'), "does not begin as a bag");
+  is_refused("x.db3", "", "is empty");
+  is_refused("x.db3", std::string(4096, 'x'), "cannot be read as a bag: file is not a database");
+  EXPECT_HAS(error("none.bag"), "cannot be opened");
+  folder_.write("folder.mcap/file", "");
+  EXPECT_FALSE(is_bag(folder_ / "folder.mcap"));
+}
+
+// Tables that compute what they like, as long as they like.
+TEST_F(Bags, HostileDatabasesAreRefused) {
+  const auto made = [&](const std::string& text) {
+    const std::string file = (folder_ / "h.db3").string();
+    std::filesystem::remove(file);
+    sqlite3* database = nullptr;
+    sqlite3_open(file.c_str(), &database);
+    EXPECT_EQ(sqlite3_exec(database, text.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+    sqlite3_close(database);
+    return error("h.db3");
+  };
+  const std::string topics =
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name, type, serialization_format);"
+      "INSERT INTO topics VALUES (1, '/a', 'sensor_msgs/msg/Image', 'cdr');";
+  EXPECT_HAS(made("CREATE TABLE other(id)"), "has no plain table 'topics'");
+  EXPECT_HAS(made(topics +
+                  "CREATE VIEW messages AS WITH RECURSIVE c(id) AS (SELECT 1 UNION ALL SELECT id + 1 FROM c) "
+                  "SELECT id, 1 topic_id, 1 timestamp, 1 data FROM c"),
+             "has no plain table 'messages'");
+  EXPECT_HAS(made(topics + "CREATE TABLE messages(id, topic_id, timestamp, data AS (zeroblob(1000000000)))"),
+             "has no plain table 'messages'");
+  EXPECT_HAS(made(topics + "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, timestamp, data);"
+                           "INSERT INTO messages VALUES (1, 1, 1, NULL)"),
+             "cannot be read as a bag: cannot open value of type null");
+  EXPECT_HAS(made(topics + "CREATE TABLE messages(id, topic_id, timestamp, data) "), "no InputError");
+}
+
+TEST_F(Bags, AreReadByManyThreads) {
+  folder_.write("x.mcap", mcap_file(messages(), {true, true, true, "zstd"}));
+  const auto bag = open("x.mcap");
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < 4; ++k)
+    threads.emplace_back([&, k] {
+      for (std::size_t n = 0; n < 200; ++n) {
+        const std::size_t i = (n * (k + 1)) % 5;
+        EXPECT_EQ(bag->start(bag->places(0)[i], 2), "a" + std::to_string(i));
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace
+}  // namespace remote_touch::bag_file_test
