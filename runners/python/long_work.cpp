@@ -99,12 +99,9 @@ void do_long_work(const py::object& report, int threads, const std::function<voi
   {
     const py::gil_scoped_release without_lock;
     try {
-      std::thread thread([&] {
-        work_in_thread(
-            threads, [&] { work(given); }, ending);
-      });
+      const auto given_work = [&] { work(given); };
+      const std::jthread thread([&] { work_in_thread(threads, given_work, ending); });
       raised = wait(ending, report, fraction, stop);
-      thread.join();
     } catch (...) {  // the thread could not be started
       ending.tell(std::current_exception());
     }

@@ -1,3 +1,4 @@
+from builtins import list as _List
 from collections.abc import Callable
 from typing import Any
 
@@ -5,8 +6,8 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 _Numbers = NDArray[numpy.float64]
-_Column = tuple[str, str, str, Any, list[str]]
-_Attributes = list[tuple[str, str]]
+_Column = tuple[str, str, str, Any, _List[str]]
+_Attributes = _List[tuple[str, str]]
 _Text = str | bytes
 _Report = Callable[[float], object] | None
 
@@ -114,7 +115,7 @@ class Scene:
     def surface_height(self, x: float, z: float, time_s: float) -> float: ...
 
 def run(
-    subject: _Text, text: _Text | None, overrides: list[_Text], output: _Text, force: bool, timing: bool, report: _Report
+    subject: _Text, text: _Text | None, overrides: _List[_Text], output: _Text, force: bool, timing: bool, report: _Report
 ) -> dict[str, Any]: ...
 def replay(
     file: _Text,
@@ -126,23 +127,23 @@ def replay(
     report: _Report,
 ) -> dict[str, Any]: ...
 def sweep(
-    subject: _Text, text: _Text | None, overrides: list[_Text], threads: int, output: _Text, report: _Report
+    subject: _Text, text: _Text | None, overrides: _List[_Text], threads: int, output: _Text, report: _Report
 ) -> dict[str, Any]: ...
 def scorecard(
-    methods: list[_Text], scenes: list[_Text], seeds: int, threads: int, folder: _Text, report: _Report
+    methods: _List[_Text], scenes: _List[_Text], seeds: int, threads: int, folder: _Text, report: _Report
 ) -> tuple[int, str]: ...
 def open(file: _Text) -> dict[str, Any]: ...
 def compare_files(
     baseline: _Text, candidate: _Text, tolerances: dict[str, tuple[float, float]], paired: bool
 ) -> tuple[int, str, str]: ...
 def compare_columns(
-    baseline: list[_Column],
+    baseline: _List[_Column],
     baseline_attributes: _Attributes,
-    candidate: list[_Column],
+    candidate: _List[_Column],
     candidate_attributes: _Attributes,
     tolerances: dict[str, tuple[float, float]],
 ) -> tuple[int, str, str]: ...
-def register_class(kind: str, name: _Text, summary: str, type: Any, settings: list[Any]) -> None: ...
+def register_class(kind: str, name: _Text, summary: str, type: Any, settings: _List[Any]) -> None: ...
 def identify_program(name: _Text, sha256: str) -> None: ...
 def describe(name: _Text) -> str: ...
 def list() -> dict[str, dict[str, str]]: ...

@@ -1,4 +1,5 @@
 import os
+from builtins import list as _List
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, Union
 
@@ -46,7 +47,7 @@ class Comparison:
     @property
     def same(self) -> bool: ...
     @property
-    def differences(self) -> list[str]: ...
+    def differences(self) -> _List[str]: ...
 
 def compare(
     baseline: _Path | xarray.Dataset,

@@ -124,6 +124,16 @@ assert "default 41; allowed integers 2 to 500" in rt.describe("waves")
 ''')
 
 
+def test_noise_of_a_scene_in_a_sweep_is_its_own(in_python):
+    """Every cell and replicate has another key; a run alone has the noise that it had in the sweep."""
+    in_python(SCENE + '''
+sweep = rt.sweep({"title": "dives", "experiment": DIVE, "replicates": 3, "measures": ["max_force"],
+                  "axes": [{"parameter": "scenario.sigma_m", "values": [0, 0.001]}]}, threads=2)
+assert len(set(sweep.max_force.values[0])) == 1 and len(set(sweep.max_force.values[1])) == 3
+assert rt.replay(sweep, cell=(1,), replicate=2).max_force == sweep.max_force[1, 2]
+''')
+
+
 def test_frames_go_in_and_out_as_arrays(in_python):
     """What a renderer sees is, bit for bit, what the scenario gave, with all columns; and a built-in scene is what its
     Scene says."""
