@@ -42,7 +42,7 @@ def main():
     }
     for sigma_m in (0, 0.001, 0.002):
         run = rt.run(experiment, seed=7, set={"scenario.sigma_m": sigma_m})
-        noise_N = float(run.force.sel(axis="y")[run.time > 0.45].std())
+        noise_N = float(run.force.sel(xyz="y")[run.time > 0.45].std())
         print(f"sigma {1e3 * sigma_m:.0f} mm: force changes by {noise_N:.3f} N, digest {run.attrs['digest'][:12]}")
     again = rt.run(experiment, seed=7, set={"scenario.sigma_m": 0.002})
     print("the same seed again:", "the same bits" if rt.compare(run, again).same else "OTHER BITS")

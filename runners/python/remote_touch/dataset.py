@@ -6,7 +6,7 @@ import xarray as xr
 
 from remote_touch._core import InputError
 
-_PARTS = {3: ("axis", ["x", "y", "z"]), 4: ("quaternion", ["w", "x", "y", "z"])}
+_PARTS = {3: ("xyz", [*"xyz"]), 4: ("wxyz", [*"wxyz"])}  # as in the files
 
 
 def _attributes(units, long_name, value_names):

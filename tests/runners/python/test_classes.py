@@ -106,7 +106,7 @@ def test_a_scene_and_a_motion(in_python):
     in_python(SCENE + '''
 run = rt.run(DIVE)
 t = run.time.values
-np.testing.assert_array_equal(run.hip_position.sel(axis="y"), 0.03 - 0.1 * t)
+np.testing.assert_array_equal(run.hip_position.sel(xyz="y"), 0.03 - 0.1 * t)
 proxy = run.proxy_position.values
 truth = proxy[:, 1] - (0.01 + 0.002 * np.sin(100 * proxy[:, 0]))
 np.testing.assert_array_equal(run.signed_distance, truth)
@@ -208,8 +208,8 @@ class Turn(rt.Trajectory):
         height = self.scene.surface_height(0, 0, 0)
         return (0, height + 0.05, 0), (np.cos(time_s), 0, np.sin(time_s), 0)
 run = rt.run({"scenario": {"name": "moving-lift"}, "renderer": {"name": "twist"}, "trajectory": {"name": "turn"}})
-np.testing.assert_array_equal(run.torque.sel(axis="z"), run.time)
-np.testing.assert_allclose(run.hip_orientation.sel(quaternion="y"), np.sin(run.time), atol=1e-15)
+np.testing.assert_array_equal(run.torque.sel(xyz="z"), run.time)
+np.testing.assert_allclose(run.hip_orientation.sel(wxyz="y"), np.sin(run.time), atol=1e-15)
 np.testing.assert_array_equal(run.tool_orientation, run.hip_orientation)
 ''')
 

@@ -5,6 +5,7 @@ import h5py
 import numpy as np
 import pytest
 import remote_touch as rt
+import xarray
 from conftest import PRESS, digest_in
 
 EXPERIMENTS = [  # with a proxy, with regions, with a tool, with guidance and a hand; the last two for a part of their time
@@ -41,13 +42,26 @@ def test_every_column_is_that_of_the_file_as_h5py_reads_it(command_line, tmp_pat
             np.testing.assert_array_equal(run[name].values, stored[...], err_msg=name)
             assert run[name].dtype == stored.dtype
             assert run[name].attrs["units"].encode() == np.bytes_(stored.attrs["units"])
-        assert set(run.attrs["columns"].split(",")) == set(file["trace"])
+        assert set(run.attrs["columns"].split(",")) == set(file["trace"]) - {"xyz", "wxyz"}
         assert run.attrs["config"].encode() == np.bytes_(file.attrs["config"])
 
 
 def test_opened_is_what_was_run(tmp_path):
     run = rt.run(PRESS, output=tmp_path / "a.h5")
     assert rt.open(tmp_path / "a.h5").identical(run[run.attrs["columns"].split(",")[1:]])
+
+
+def test_it_is_what_xarray_reads_of_the_file(tmp_path):
+    """Dimensions, coordinates, units and names of values, by the reader of netCDF 4 files."""
+    run = rt.run("fig6.3", set={"duration_s": 0.05}, output=tmp_path / "a.h5")
+    stored = xarray.open_dataset(tmp_path / "a.h5", group="trace", engine="h5netcdf")
+    assert set(stored.data_vars) == set(run.attrs["columns"].split(",")) - {"time"}
+    for name, variable in stored.variables.items():
+        np.testing.assert_array_equal(run[name].values, variable.values, err_msg=name)
+        assert run[name].dims == variable.dims
+        for attribute in ("units", "long_name", "flag_meanings"):
+            if name in stored.data_vars:
+                assert run[name].attrs.get(attribute) == variable.attrs.get(attribute), (name, attribute)
 
 
 def test_no_column_is_copied():
@@ -62,7 +76,7 @@ def test_no_column_is_copied():
             owner = owner.base
         assert type(owner).__name__ == "PyCapsule", name  # which deletes the vector of C++
     force = run.force.values
-    assert np.shares_memory(force, run.force.sel(axis="y").values)
+    assert np.shares_memory(force, run.force.sel(xyz="y").values)
     kept = force.copy()
     del run
     rt.run(PRESS, seed=99)
@@ -71,7 +85,7 @@ def test_no_column_is_copied():
 
 def test_units_names_and_coordinates():
     run = rt.run(PRESS)
-    assert run.force.dims == ("time", "axis") and list(run.axis.values) == ["x", "y", "z"]
+    assert run.force.dims == ("time", "xyz") and list(run.xyz.values) == ["x", "y", "z"]
     assert run.force.attrs["units"] == "N" and "force on the hand" in run.force.attrs["long_name"]
     assert run.time.attrs["units"] == "s" and run.sizes["time"] == 200
     assert run.state.attrs["flag_meanings"] == "free contact entrenched"
@@ -80,7 +94,7 @@ def test_units_names_and_coordinates():
     for name in ("version", "git_commit", "source_digest", "digest", "command", "isa"):
         assert run.attrs[name], name
     tool = rt.run("fig6.3", set={"duration_s": 0.05})
-    assert tool.tool_orientation.dims == ("time", "quaternion") and list(tool["quaternion"].values) == list("wxyz")
+    assert tool.tool_orientation.dims == ("time", "wxyz") and list(tool.wxyz.values) == list("wxyz")
 
 
 def test_attributes_are_texts():
@@ -102,7 +116,7 @@ def test_measures_are_those_that_the_command_prints(command_line, tmp_path):
 
 def test_a_measure_is_what_its_column_says():
     run = rt.run(PRESS)
-    assert float(run.max_force) == pytest.approx(float(np.sqrt((run.force ** 2).sum("axis")).max()), rel=1e-12)
+    assert float(run.max_force) == pytest.approx(float(np.sqrt((run.force ** 2).sum("xyz")).max()), rel=1e-12)
 
 
 def test_a_dict_a_file_and_a_name_are_the_same(tmp_path):
