@@ -111,11 +111,20 @@ PythonOutput make_output(const py::object& proxy_m, const py::object& force_N, c
   return made;
 }
 
+constexpr const char* kOutput =
+    R"(What a tick gives; metres, newtons, world frame.
+
+proxy_m: of the proxy, or of the tool's centre of mass; None: the HIP. force_N: on the hand; None: none.
+slave_m: command to a slave robot; None: none yet. state: free, contact or entrenched. normal: unit, out of
+the surface. nearest_distance_m: of the proxy to the nearest point. The others are the columns of a trace of
+these names: rt.describe("trace"). torque_Nm, about the HIP, and tool_orientation, w x y z, are for classes
+with degrees_of_freedom = 6.)";
+
 }  // namespace
 
 void bind_classes(py::module_& module) {
   const py::object none = py::none();
-  py::class_<PythonOutput>(module, "Output", "What a tick gives; metres, newtons, world frame.")
+  py::class_<PythonOutput>(module, "Output", kOutput)
       .def(py::init(&make_output), py::kw_only(), py::arg("proxy_m") = none, py::arg("force_N") = none,
            py::arg("slave_m") = none, py::arg("state") = "free", py::arg("normal") = none,
            py::arg("surface_velocity_m_per_s") = 0.0,

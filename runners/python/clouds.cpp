@@ -97,16 +97,27 @@ void bind_cloud(py::module_& module) {
       .def_readonly("arrives_s", &PythonFrame::arrives_s);
 }
 
+std::uint64_t unsigned_of(const py::object& value, int bits, const char* subject) {
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+  const std::uint64_t read = number ? PyLong_AsUnsignedLongLong(number.ptr()) : 0;
+  const bool is_unreadable = PyErr_Occurred() != nullptr;
+  if (is_unreadable) PyErr_Clear();
+  if (is_unreadable || (bits < 64 && read >> bits != 0))
+    throw InputError(subject, "expected an integer of " + std::to_string(bits) + " bits, 0 or more");
+  return read;
+}
+
 void bind_device(py::module_& module) {
   py::class_<DeviceState>(module, "Device", "Where the hand is: the haptic interface point (HIP).")
-      .def(py::init([](const py::object& position_m, const py::object& orientation, std::uint32_t buttons) {
-             DeviceState device;
-             device.position_W = vector_of(position_m, [] { return "Device: position_m"; });
-             if (!orientation.is_none())
-               device.orientation_W = quaternion_of(orientation, [] { return "Device: orientation"; });
-             device.buttons = buttons;
-             return device;
-           }),
+      .def(py::init(
+               [](const py::object& position_m, const py::object& orientation, const py::object& buttons) {
+                 DeviceState device;
+                 device.position_W = vector_of(position_m, [] { return "Device: position_m"; });
+                 if (!orientation.is_none())
+                   device.orientation_W = quaternion_of(orientation, [] { return "Device: orientation"; });
+                 device.buttons = static_cast<std::uint32_t>(unsigned_of(buttons, 32, "Device: buttons"));
+                 return device;
+               }),
            py::arg("position_m"), py::arg("orientation") = py::none(), py::arg("buttons") = 0)
       .def_property_readonly("position_m", [](const DeviceState& d) { return array_of(d.position_W); })
       .def_property_readonly("orientation", [](const DeviceState& d) { return array_of(d.orientation_W); })
@@ -166,8 +177,9 @@ auto checked() {
 
 void bind_noise(py::module_& module) {
   py::class_<NoiseKey>(module, "NoiseKey", "What the random numbers of a run are made from.")
-      .def(py::init([](std::uint64_t seed, std::uint32_t cell, std::uint32_t replicate) {
-             return NoiseKey{seed, cell, replicate};
+      .def(py::init([](const py::object& seed, const py::object& cell, const py::object& replicate) {
+             return NoiseKey{unsigned_of(seed, 64, "NoiseKey: seed"), unsigned_of(cell, 32, "NoiseKey: cell"),
+                             unsigned_of(replicate, 32, "NoiseKey: replicate")};
            }),
            py::arg("seed") = 1, py::arg("cell") = 0, py::arg("replicate") = 0)
       .def_readonly("seed", &NoiseKey::seed)

@@ -1,13 +1,13 @@
 """What the commands of remote-touch do, as functions."""
 import json
+import operator
 import os
 
 from remote_touch import _core
 from remote_touch._core import InputError
 from remote_touch.classes import Renderer, name_of
 
-# Names of this package that are also those of built-in functions.
-_list, _set = list, set
+_list = list  # which is a function of this file, below
 
 
 def run(experiment, *, seed=None, set=None, output=None, force=False, timing=False, progress=None):
@@ -37,9 +37,7 @@ def sweep(sweep, *, set=None, threads=None, output=None, progress=None):
     """
     from remote_touch import dataset
     subject, text = _subject(sweep)
-    if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 4096):
-        raise InputError(f"threads = {threads}: expected 1 to 4096, or None")
-    result = _core.sweep(subject, text, _overrides(set), threads or 0, _path(output), _report(progress, subject))
+    result = _core.sweep(subject, text, _overrides(set), _threads(threads), _path(output), _report(progress, subject))
     return dataset.warned(dataset.of_sweep(result), os.fsdecode(subject))
 
 
@@ -52,10 +50,12 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     file, attributes = "", []
     if isinstance(sweep, (str, os.PathLike)):
         file = _native(sweep)
-    else:
+    elif "config" in getattr(sweep, "attrs", {}):
         attributes = [(name, value) for name, value in sweep.attrs.items() if isinstance(value, str)]
-    result = _core.replay(file, attributes, _cell(cell), int(replicate), _path(output), bool(force),
-                          _report(progress, "replay"))
+    else:
+        raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
+    result = _core.replay(file, attributes, _cell(cell), _integer("replicate", replicate, 0, 2**31 - 1), _path(output),
+                          bool(force), _report(progress, "replay"))
     return dataset.of_trace(result)
 
 
@@ -100,7 +100,7 @@ class Comparison:
 def compare(baseline, candidate, *, tolerance=None, paired=False):
     """Compares two results: files, or Datasets of traces. tolerance: {"force": 1e-9} or {"force": (1e-9, 1e-6)},
     absolute and relative; "*" is every column. All else must be equal bit for bit."""
-    tolerances = {name: _tolerance(name, value) for name, value in (tolerance or {}).items()}
+    tolerances = {_native(name): _tolerance(name, value) for name, value in _items("tolerance", tolerance)}
     if isinstance(baseline, (str, os.PathLike)) and isinstance(candidate, (str, os.PathLike)):
         return _comparison(_core.compare_files(_native(baseline), _native(candidate), tolerances, bool(paired)))
     from remote_touch import dataset
@@ -132,7 +132,7 @@ def scorecard(methods=(), *, scenes=(), seeds=10, output, threads=None, progress
     folder = _native(output)
     with tempfile.TemporaryDirectory() as files:
         names = [_method(method, files) for method in methods]
-        failed, first = _core.scorecard(names, [_native(scene) for scene in scenes], int(seeds), threads or 0, folder,
+        failed, first = _core.scorecard(names, [_native(scene) for scene in scenes], _integer("seeds", seeds, 1, 10**6), _threads(threads), folder,
                                         _report(progress, "scorecard"))
     if failed:
         warnings.warn(f"{os.fspath(output)}: {failed} runs failed, the first: {first}", stacklevel=2)
@@ -196,7 +196,7 @@ def _json(value, subject=""):
 
 def _overrides(given, seed=None):
     """As --set takes them."""
-    pairs = [*(given or {}).items()]
+    pairs = [*_items("set", given)]
     if seed is not None:
         pairs.append(("seed", seed))
     return [_native(f"{path}={_text(value, path)}") for path, value in pairs]
@@ -218,11 +218,33 @@ def _cell(cell):
         return _native(",".join(f"{name}={_text(value, name)}" for name, value in cell.items()))
     if isinstance(cell, str):
         return cell.encode("utf-8", "replace")
-    return ",".join(str(int(place)) for place in (cell if hasattr(cell, "__iter__") else (cell,)))
+    places = cell if hasattr(cell, "__iter__") else (cell,)
+    return ",".join(str(_integer("cell", place, 0, 2**31 - 1)) for place in places)
+
+
+def _items(name, given):
+    """Of a dict, or none of None."""
+    if given is not None and not hasattr(given, "items"):
+        raise InputError(f"{name} = {given!r}: expected a dict")
+    return given.items() if given is not None else ()
+
+
+def _integer(name, value, low, high):
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InputError(f"{name} = {value!r}: expected an integer") from None
+    if not low <= number <= high:
+        raise InputError(f"{name} = {number}: expected {low} to {high}")
+    return number
+
+
+def _threads(threads):
+    return 0 if threads is None else _integer("threads", threads, 1, 4096)
 
 
 def _tolerance(name, value):
-    pair = (value, 0.0) if isinstance(value, (int, float)) else tuple(value)
+    pair = tuple(value) if isinstance(value, (tuple, _list)) else (value, 0.0)
     if len(pair) != 2 or not all(isinstance(part, (int, float)) and 0 <= part < float("inf") for part in pair):
         raise InputError(f"tolerance {name} = {value}: expected a number of 0 or more, or two: absolute and relative")
     return float(pair[0]), float(pair[1])

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+import remote_touch as rt
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "runners" / "python" / "examples"
@@ -45,3 +46,10 @@ def in_python(tmp_path):
 
 def digest_in(text):
     return re.search(r"digest ([0-9a-f]{64})", text).group(1)
+
+
+def assert_same_file(a, b):
+    """First what differs if module and program were built at different times."""
+    for name, value in rt.open(a).attrs.items():
+        assert rt.open(b).attrs[name] == value, f"{name}: build both, remote_touch_python and remote-touch"
+    assert a.read_bytes() == b.read_bytes()

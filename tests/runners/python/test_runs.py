@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import remote_touch as rt
 import xarray
-from conftest import PRESS, digest_in
+from conftest import PRESS, assert_same_file, digest_in
 
 EXPERIMENTS = [  # with a proxy, with regions, with a tool, with guidance and a hand; the last two for a part of their time
     ("fig4.12", {}, 7),
@@ -29,7 +29,7 @@ def test_digest_and_file_are_those_of_the_command_line(experiment, settings, see
     text = command_line("run", experiment, *as_options(settings, seed), "-o", tmp_path / "command.h5")
     run = rt.run(experiment, set=settings, seed=seed, output=tmp_path / "python.h5")
     assert run.attrs["digest"] == digest_in(text)
-    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "command.h5").read_bytes()
+    assert_same_file(tmp_path / "python.h5", tmp_path / "command.h5")
     assert rt.run(experiment, set=settings, seed=seed).attrs == run.attrs  # without a file, too
 
 

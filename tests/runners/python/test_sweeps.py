@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import remote_touch as rt
-from conftest import PRESS, digest_in
+from conftest import PRESS, assert_same_file, digest_in
 
 SWEEP = {
     "title": "presses",
@@ -32,7 +32,7 @@ def test_threads_do_not_matter_and_the_file_is_that_of_the_command_line(command_
     one, two = rt.sweep(file, threads=1), rt.sweep(file, threads=2, output=tmp_path / "python.h5")
     assert one.attrs["digest"] == two.attrs["digest"] == digest_in(text)
     assert one.identical(two)
-    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "command.h5").read_bytes()
+    assert_same_file(tmp_path / "python.h5", tmp_path / "command.h5")
     opened = rt.open(tmp_path / "command.h5")
     assert opened.identical(two)
 
@@ -60,7 +60,7 @@ def test_replay_is_the_command(command_line, tmp_path):
     cell = {"noise_sigma_m": 0.002, "steps_per_tick": 30, "contact_rule": rule}
     again = rt.replay(file, cell=cell, replicate=1, output=tmp_path / "python.h5")
     assert again.attrs["digest"] == digest_in(text)
-    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "command.h5").read_bytes()
+    assert_same_file(tmp_path / "python.h5", tmp_path / "command.h5")
     assert rt.replay(sweep, cell=(2, 1, 0), replicate=1).attrs["digest"] == again.attrs["digest"]
 
 
