@@ -4,7 +4,7 @@ import pathlib
 import re
 
 FOLDERS_WITHOUT_PAGES = {".git", "build", "node_modules", "out"}
-LANGUAGES = {"sh", "json", "text"}
+LANGUAGES = {"sh", "json", "text", "cmake", "cpp"}
 
 
 class PageError(Exception):
