@@ -2,46 +2,24 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
 #include "runners/cli/progress.h"
 #include "runners/cli/scorecard_runs.h"
 #include "runners/provenance/provenance.h"
 #include "runners/scorecard/benchmark_choice.h"
+#include "runners/scorecard/card_folder.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/report_json.h"
 #include "runners/scorecard/stored_card.h"
-#include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 
 namespace remote_touch {
 
 namespace {
-
-constexpr const char* kScorecardFile = "scorecard.h5";
-
-// What a folder's scorecard has, this one must have too: its results are replaced.
-void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {
-  std::error_code unreachable;
-  if (!std::filesystem::exists(file, unreachable)) return;
-  const Json stored = Json::parse(attribute(Hdf5Reader(file).attributes(), "config"), nullptr,
-                                  false);  // broken: not an object
-  const Json wanted = Json::parse(configuration_of(plan));
-  for (const char* kind : {"methods", "scenes"}) {
-    if (!stored.is_object() || !stored.contains(kind) || !stored[kind].is_object())
-      throw InputError(file.string(), "is not a scorecard and would be overwritten: expected another folder");
-    for (const auto& item : stored[kind].items())
-      if (!wanted.contains(kind) || !wanted[kind].contains(item.key()))
-        throw InputError(file.string(), std::string("has more ") + kind + ", first " + item.key() +
-                                            ", and would be replaced: expected those and others too, or "
-                                            "another folder");
-  }
-}
 
 std::string normalised(const ScorecardRequest& request) {
   std::string command = program_text() + " scorecard";

@@ -17,17 +17,6 @@ constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes: there may be hundre
 
 }  // namespace
 
-void make_scorecard_folder(const std::string& folder) {
-  for (const char* part : {"runs", "traces"}) {
-    const std::filesystem::path path = std::filesystem::path(folder) / part;
-    std::error_code failure;
-    std::filesystem::create_directories(path, failure);
-    if (failure)
-      throw InputError(path.string(),
-                       "cannot be made (" + failure.message() + "): expected a writable folder");
-  }
-}
-
 void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps) {
   Progress progress("scorecard", line.quiet);
   do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {

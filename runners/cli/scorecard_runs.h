@@ -1,4 +1,4 @@
-// What the commands of a scorecard share: its folder and its runs.
+// What the commands of a scorecard share: its runs.
 #pragma once
 
 #include <string>
@@ -10,8 +10,6 @@
 
 namespace remote_touch {
 
-// Makes the folder with its subfolders. Throws InputError.
-void make_scorecard_folder(const std::string& folder);
 // Does the runs that are left, with a line of progress. Throws Interrupted.
 void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps);
 // Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted, and

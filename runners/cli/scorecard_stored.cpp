@@ -9,6 +9,7 @@
 #include "runners/cli/scorecard_runs.h"
 #include "runners/provenance/provenance.h"
 #include "runners/scorecard/benchmark_choice.h"
+#include "runners/scorecard/card_folder.h"
 #include "runners/scorecard/evaluation.h"
 #include "runners/scorecard/stored_card.h"
 #include "runners/simulation/simulation.h"

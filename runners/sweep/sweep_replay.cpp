@@ -1,6 +1,7 @@
 #include "runners/sweep/sweep_replay.h"
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/digest.h"
 #include "core/kernels/isa.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
@@ -30,13 +31,15 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
                   const std::filesystem::path& output) {
   const std::size_t cell = stored.result.cell_of(run);
   const int replicate = stored.result.replicate_of(run);
-  Replay replay{sweep.experiment(cell, replicate), {}, {}};
+  Replay replay{sweep.experiment(cell, replicate), {}, {}, {}};
   options.hash_frames = true;
   options.find_true_contact = sweep.needs_true_contact();
   const std::string inputs = input_hashes(replay.experiment.inputs());
   replay.trace = simulate(replay.experiment, options);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
-  replay.digest = write_trace(output, replay.trace, origin(stored, cell, replay, replicate, isa, inputs), {});
+  replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);
+  const std::vector<Column> columns = replay.trace.columns();
+  replay.digest = output.empty() ? digest(columns) : write_trace(output, columns, replay.attributes, {});
   return replay;
 }
 

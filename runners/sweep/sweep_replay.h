@@ -14,11 +14,12 @@ namespace remote_touch {
 struct Replay {
   Experiment experiment;
   Trace trace;
+  TextAttributes attributes;  // its provenance
   std::string digest;
 };
 
-// Runs it and writes the trace, with frame_hash computed. pre: sweep was read from the configuration of
-// `stored`. Throws InputError when a file cannot be read or written.
+// Runs it and writes the trace, with frame_hash computed; output empty: it is not written. pre: sweep was
+// read from the configuration of `stored`. Throws InputError when a file cannot be read or written.
 Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
                   const std::filesystem::path& output);
 

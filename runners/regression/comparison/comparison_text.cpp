@@ -14,22 +14,23 @@ std::string text(const char* format, Values... values) {
   return line;
 }
 
-void print_columns(const TraceComparison& comparison) {
-  std::printf("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "max", "rms", "outside",
-              "tolerance");
+void print_columns(const TraceComparison& comparison, std::FILE* out) {
+  std::fprintf(out, "  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "max", "rms",
+               "outside", "tolerance");
   for (const ColumnComparison& column : comparison.columns) {
-    std::printf("  %-28s %-6s %9zu %12.4g %12.4g %8.3g%%  %s", column.name.c_str(), column.units.c_str(),
-                column.rows, column.max, column.rms,
-                column.rows == 0
-                    ? 0.0
-                    : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows),
-                tolerance_text(column.tolerance).c_str());
-    if (column.not_numbers > 0) std::printf("; %zu rows: no number against a number", column.not_numbers);
-    if (!column.problem.empty()) std::printf("; %s", column.problem.c_str());
-    std::puts(column.is_same() ? "" : "  DIFFERS");
+    std::fprintf(out, "  %-28s %-6s %9zu %12.4g %12.4g %8.3g%%  %s", column.name.c_str(),
+                 column.units.c_str(), column.rows, column.max, column.rms,
+                 column.rows == 0
+                     ? 0.0
+                     : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows),
+                 tolerance_text(column.tolerance).c_str());
+    if (column.not_numbers > 0)
+      std::fprintf(out, "; %zu rows: no number against a number", column.not_numbers);
+    if (!column.problem.empty()) std::fprintf(out, "; %s", column.problem.c_str());
+    std::fputs(column.is_same() ? "\n" : "  DIFFERS\n", out);
   }
   for (const std::string& name : comparison.added)
-    std::printf("  %-28s only in the candidate: not compared\n", name.c_str());
+    std::fprintf(out, "  %-28s only in the candidate: not compared\n", name.c_str());
 }
 
 // One row of a column, as many digits as it takes to see the last bit.
@@ -50,16 +51,16 @@ std::string row_text(const Column& column, std::size_t row) {
   return all;
 }
 
-void print_divergence(const Divergence& found) {
-  std::printf("first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
-              found.quantity.c_str(), found.deviation);
+void print_divergence(const Divergence& found, std::FILE* out) {
+  std::fprintf(out, "first divergent tick %zu (%.6g s): %s, by %.4g\n", found.tick, found.time_s,
+               found.quantity.c_str(), found.deviation);
   if (found.first_difference != found.tick)
-    std::printf("  within the tolerances the runs part at tick %zu; what follows is there\n",
-                found.first_difference);
-  std::printf("  cause   %s: %s\n", name_of(found.cause), found.explanation.c_str());
+    std::fprintf(out, "  within the tolerances the runs part at tick %zu; what follows is there\n",
+                 found.first_difference);
+  std::fprintf(out, "  cause   %s: %s\n", name_of(found.cause), found.explanation.c_str());
   if (found.cause != found.situation)
-    std::printf("  there   %s: %s\n", name_of(found.situation), found.observation.c_str());
-  std::printf("  frames  %s\n", found.frame.c_str());
+    std::fprintf(out, "  there   %s: %s\n", name_of(found.situation), found.observation.c_str());
+  std::fprintf(out, "  frames  %s\n", found.frame.c_str());
   const std::size_t here = found.first_difference - found.first_row;
   for (std::size_t i = 0; i < found.baseline.size(); ++i) {
     const Column &ours = found.baseline[i], &theirs = found.candidate[i];
@@ -67,13 +68,13 @@ void print_divergence(const Divergence& found) {
     const std::string name = ours.name + (ours.units == "1" ? "" : " / " + ours.units);
     const std::string before = row_text(ours, 0);
     const bool is_shown = here > 0 && (before != was || was != is);  // what rests is told once
-    if (is_shown) std::printf("  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
+    if (is_shown) std::fprintf(out, "  %-26s tick %-9zu %s\n", name.c_str(), found.first_row, before.c_str());
     const char* label = is_shown ? "" : name.c_str();
     if (was == is) {
-      std::printf("  %-26s tick %-9zu %s\n", label, found.first_difference, was.c_str());
+      std::fprintf(out, "  %-26s tick %-9zu %s\n", label, found.first_difference, was.c_str());
     } else {
-      std::printf("  %-26s   baseline     %s\n", label, was.c_str());
-      std::printf("  %-26s   candidate    %s\n", "", is.c_str());
+      std::fprintf(out, "  %-26s   baseline     %s\n", label, was.c_str());
+      std::fprintf(out, "  %-26s   candidate    %s\n", "", is.c_str());
     }
   }
 }
@@ -92,13 +93,14 @@ const char* word_for(Judgement judgement) {
   return "undecided";
 }
 
-void print_measures(const SweepComparison& sweep) {
-  std::printf("  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "max", "rms", "outside",
-              "tolerance");
+void print_measures(const SweepComparison& sweep, std::FILE* out) {
+  std::fprintf(out, "  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "max", "rms",
+               "outside", "tolerance");
   for (const MeasureComparison& measure : sweep.measures)
-    std::printf("  %-22s %-6s %9lld %12.4g %12.4g %9lld  %s\n", measure.name.c_str(), measure.units.c_str(),
-                static_cast<long long>(measure.compared), measure.max_deviation, measure.rms_deviation,
-                static_cast<long long>(measure.outside), tolerance_text(measure.tolerance).c_str());
+    std::fprintf(out, "  %-22s %-6s %9lld %12.4g %12.4g %9lld  %s\n", measure.name.c_str(),
+                 measure.units.c_str(), static_cast<long long>(measure.compared), measure.max_deviation,
+                 measure.rms_deviation, static_cast<long long>(measure.outside),
+                 tolerance_text(measure.tolerance).c_str());
 }
 
 // What is told of a region: all of an event's, and of other measures the whole and what changed.
@@ -108,12 +110,13 @@ bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t m
 }
 
 // Shares with their intervals, the flips both ways, and what the paired test says.
-void print_regions(const SweepComparison& sweep) {
+void print_regions(const SweepComparison& sweep, std::FILE* out) {
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     if (sweep.measures[m].outside == 0) continue;
     const bool event = sweep.measures[m].event;
-    std::printf("  %s by region: %s, more / less in the candidate, interval of the difference of shares, p\n",
-                sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference");
+    std::fprintf(
+        out, "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p\n",
+        sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference");
     for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
       if (!is_reported(sweep, r, m)) continue;
       const RegionComparison& region = sweep.at(r, m);
@@ -124,29 +127,30 @@ void print_regions(const SweepComparison& sweep) {
                        region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
                        region.candidate_fraction.first, region.candidate_fraction.second)
                 : text("%.4g (%.4g to %.4g)", region.mean.mean, region.mean.low, region.mean.high);
-      std::printf("    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  p %.3g  %s  %s\n",
-                  static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),
-                  static_cast<long long>(region.down), region.difference.first, region.difference.second,
-                  region.adjusted_p, word_for(region.judgement), sweep.regions[r].label.c_str());
+      std::fprintf(out, "    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  p %.3g  %s  %s\n",
+                   static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),
+                   static_cast<long long>(region.down), region.difference.first, region.difference.second,
+                   region.adjusted_p, word_for(region.judgement), sweep.regions[r].label.c_str());
     }
   }
 }
 
-void print_sweep(const SweepComparison& sweep) {
-  for (const std::string& problem : sweep.problems) std::printf("  %s\n", problem.c_str());
-  for (const std::string& note : sweep.notes) std::printf("  %s\n", note.c_str());
+void print_sweep(const SweepComparison& sweep, std::FILE* out) {
+  for (const std::string& problem : sweep.problems) std::fprintf(out, "  %s\n", problem.c_str());
+  for (const std::string& note : sweep.notes) std::fprintf(out, "  %s\n", note.c_str());
   if (!sweep.problems.empty()) return;
-  print_measures(sweep);
+  print_measures(sweep, out);
   if (!sweep.first) return;
-  print_regions(sweep);
+  print_regions(sweep, out);
   std::string cell;
   for (const std::size_t place : sweep.first->place)
     cell.append(cell.empty() ? "" : ",").append(std::to_string(place));
-  std::printf("  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
+  std::fprintf(out, "  first run that differs: cell %s, replicate %d", cell.c_str(), sweep.first->replicate);
   if (!sweep.first->measure.empty())
-    std::printf(", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,
-                sweep.first->candidate);
-  std::printf(
+    std::fprintf(out, ", %s %.17g against %.17g", sweep.first->measure.c_str(), sweep.first->baseline,
+                 sweep.first->candidate);
+  std::fprintf(
+      out,
       "\n  see it: remote-touch replay FILE --cell %s --replicate %d -o trace.h5, of both, then compare\n",
       cell.c_str(), sweep.first->replicate);
 }
@@ -172,19 +176,19 @@ const char* word_for(Outcome outcome) {
   return "COULD NOT COMPARE";
 }
 
-void print_comparison(const ResultComparison& comparison) {
-  std::printf("%s: %s against %s\n", comparison.kind.c_str(), comparison.candidate.c_str(),
-              comparison.baseline.c_str());
+void print_comparison(const ResultComparison& comparison, std::FILE* out) {
+  std::fprintf(out, "%s: %s against %s\n", comparison.kind.c_str(), comparison.candidate.c_str(),
+               comparison.baseline.c_str());
   for (const std::string& difference : comparison.configuration)
-    std::printf("  configuration: %s\n", difference.c_str());
+    std::fprintf(out, "  configuration: %s\n", difference.c_str());
   for (const std::string& difference : comparison.provenance)
-    std::printf("  provenance: %s\n", difference.c_str());
+    std::fprintf(out, "  provenance: %s\n", difference.c_str());
   if (comparison.columns) {
-    print_columns(*comparison.columns);
-    if (comparison.columns->divergence) print_divergence(*comparison.columns->divergence);
+    print_columns(*comparison.columns, out);
+    if (comparison.columns->divergence) print_divergence(*comparison.columns->divergence, out);
   }
-  if (comparison.sweep) print_sweep(*comparison.sweep);
-  std::printf("%s: %s\n", word_for(comparison.outcome), comparison.verdict.c_str());
+  if (comparison.sweep) print_sweep(*comparison.sweep, out);
+  std::fprintf(out, "%s: %s\n", word_for(comparison.outcome), comparison.verdict.c_str());
 }
 
 }  // namespace remote_touch

@@ -1,11 +1,13 @@
-// A comparison for people: tables on standard output.
+// A comparison for people: tables, on standard output if nothing else is said.
 #pragma once
+
+#include <cstdio>
 
 #include "runners/regression/comparison/result_comparison.h"
 
 namespace remote_touch {
 
-void print_comparison(const ResultComparison& comparison);
+void print_comparison(const ResultComparison& comparison, std::FILE* out = stdout);
 
 // "same", "REGRESSED", "COULD NOT COMPARE".
 const char* word_for(Outcome outcome);

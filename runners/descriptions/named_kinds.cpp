@@ -1,0 +1,50 @@
+#include "runners/descriptions/descriptions.h"
+#include "runners/experiment/catalog.h"
+#include "runners/experiment/experiment.h"
+#include "runners/experiment/sections.h"
+#include "runners/figures/figures.h"
+#include "runners/scorecard/benchmark.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+namespace {
+
+void add_sections(std::vector<NamedKind>& all) {
+  NamedKind& sections = all.emplace_back(NamedKind{"sections", {}});
+  for (const auto& section : experiment_sections()) sections.rows.push_back({section.key, section.summary});
+  for (const auto& section : experiment_sections()) {
+    if (!section.heading) continue;
+    NamedKind& kind = all.emplace_back(NamedKind{section.heading, {}});
+    for (const auto& entry : section.entries()) kind.rows.push_back({entry.name, entry.summary});
+  }
+}
+
+}  // namespace
+
+std::vector<NamedKind> named_kinds() {
+  std::vector<NamedKind> all;
+  add_sections(all);
+  const auto add = [&all](const char* name) -> auto& {
+    return all.emplace_back(NamedKind{name, {}}).rows;
+  };
+  auto& experiments = add("experiments");
+  for (const auto& stored : embedded_experiments())
+    experiments.push_back({stored.name, Experiment::load(stored.name).settings().title});
+  auto& sweeps = add("sweeps");
+  for (const auto& stored : embedded_sweeps())
+    sweeps.push_back({stored.name, Sweep::load(stored.name).title()});
+  auto& methods = add("methods");
+  for (const Method& method : chosen_methods({})) methods.push_back({method.name, method.title});
+  auto& scenes = add("scenes");
+  for (const BenchmarkScene& scene : chosen_scenes({})) scenes.push_back({scene.name, scene.title});
+  auto& drawn = add("figures");
+  for (const auto& entry : figures()) drawn.push_back({entry.name, entry.summary});
+  auto& numbers = add("measures");
+  for (const auto& measure : measures())
+    numbers.push_back(
+        {measure.name, measure.meaning + "; unit: " + measure.unit + "; " + name_of(measure.runs)});
+  return all;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,22 @@
+// The parts of the module remote_touch._core. What users call is in the Python files of remote_touch/, which
+// check and convert arguments and make data sets of the columns.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <functional>
+#include <string>
+
+namespace remote_touch {
+
+void bind_clouds(pybind11::module_& module);   // Cloud, Frame, Device, Output, NoiseKey, Scene
+void bind_classes(pybind11::module_& module);  // register_class
+void bind_experiments(pybind11::module_& module);
+void bind_sweeps(pybind11::module_& module);
+void bind_scorecards(pybind11::module_& module);
+void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
+
+// What a function writes that prints to a file of C.
+std::string printed(const std::function<void(std::FILE*)>& print);
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// Work that takes a while, called from Python: without the interpreter's lock, and stopped by Ctrl-C.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <functional>
+
+#include "core/kernels/kernels.h"
+
+namespace remote_touch {
+
+// What the work is given.
+struct LongWork {
+  const Kernels& kernels;
+  const std::atomic<bool>& stop;         // set by Ctrl-C: the work ends with Interrupted
+  std::function<void(double)> progress;  // takes the fraction that is done; from any thread
+};
+
+// Does the work in a thread of its own, with so many threads of OpenMP (0: as it decides), while this thread
+// waits without the lock and looks for signals. report: a callable that is told the fraction about 20 times a
+// second, or None. Throws what the work throws; error_already_set if a signal or the report raised an
+// exception.
+void do_long_work(const pybind11::object& report, int threads,
+                  const std::function<void(const LongWork&)>& work);
+
+// Throws InputError while such work goes on: the catalog must not change then.
+void require_no_long_work(const char* subject);
+
+// The kernels that all calls use: of this x86-64 level; empty: the machine's best. Throws InputError for
+// another.
+void choose_kernels(const std::string& isa);
+const Kernels& chosen_python_kernels();
+
+// The HDF5 library is not made for several threads: one call reads or writes at a time, and none while a
+// sweep or a scorecard is written. Throws InputError instead of waiting for that, since a class in Python may
+// be what asks.
+class FileTurn {
+ public:
+  enum class For { a_moment, a_sweep };
+  explicit FileTurn(For duration = For::a_moment);
+  ~FileTurn();
+  FileTurn(const FileTurn&) = delete;
+  FileTurn& operator=(const FileTurn&) = delete;
+
+ private:
+  const For duration_;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,108 @@
+// A class of Python that takes a place in the catalog: its settings, its objects, and calls of their methods.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+// What a class raised: one line, with the exception as its cause.
+class PythonProblem : public InputError {
+ public:
+  PythonProblem(const std::string& subject, const std::string& problem, pybind11::error_already_set raised)
+      : InputError(subject, problem),
+        raised_(std::make_shared<pybind11::error_already_set>(std::move(raised))) {}
+  pybind11::error_already_set& raised() const { return *raised_; }
+
+ private:
+  std::shared_ptr<pybind11::error_already_set> raised_;
+};
+
+// Says what an exception was: "ValueError: the spring broke (mine.py, line 12)".
+std::string problem_text(const pybind11::error_already_set& raised);
+
+// A number of Python; throws error_already_set where it is none, with Python's own words.
+double real_of(const pybind11::handle& value);
+int integer_of(const pybind11::handle& value);
+
+// One setting of a class, and its present value.
+struct PythonSetting {
+  std::string name, help;
+  double low = 0, high = 0;
+  bool is_live = false;
+  std::variant<double, int, bool, std::string, Vec3> value;
+};
+
+// The values of one object. Copies have their own; parameters() points into them.
+class PythonSettings {
+ public:
+  // settings: objects with name, value, low, high, help, live and integer; see rt.Setting. Throws InputError.
+  PythonSettings(const std::string& subject, const pybind11::list& settings);
+  Parameters parameters();
+  void give_to(const pybind11::object& object) const;  // as attributes
+
+ private:
+  std::vector<PythonSetting> all_;
+};
+
+// The class lives as long as the process: the catalog may be destroyed after the interpreter.
+class PythonClass {
+ public:
+  // kind: "renderer", "scenario", "trajectory". name: in the catalog.
+  PythonClass(std::string kind, std::string name, const pybind11::object& type);
+  const std::string& name() const { return name_; }
+  std::string subject(const char* method) const;  // "renderer mine: Mine.step"
+
+  // An object with its settings and whatever else is given as attributes; made: __init__ was called. pre: the
+  // lock.
+  enum class Made { settings_only, yes };
+  pybind11::object object(const PythonSettings& settings, Made made, const pybind11::dict& given = {}) const;
+
+  // work(), with the interpreter's lock; what it raises becomes a PythonProblem of the method.
+  template <class Work>
+  auto call(const char* method, Work&& work) const {
+    const pybind11::gil_scoped_acquire lock;
+    try {
+      return work();
+    } catch (pybind11::error_already_set& raised) {
+      throw PythonProblem(subject(method), problem_text(raised), raised);
+    } catch (const pybind11::cast_error&) {
+      throw InputError(subject(method), "gave a value of another type than expected");
+    }
+  }
+
+ private:
+  const std::string kind_, name_;
+  std::string type_name_;
+  const pybind11::object& type_;  // never destroyed
+};
+
+// An object of Python in an object of C++ that is destroyed without the lock.
+class HeldObject {
+ public:
+  HeldObject() = default;
+  ~HeldObject() { reset(); }
+  HeldObject(const HeldObject&) = delete;
+  HeldObject& operator=(const HeldObject&) = delete;
+  void hold(pybind11::object object) { object_ = std::move(object); }  // pre: the lock
+  void reset() {
+    if (!object_) return;
+    const pybind11::gil_scoped_acquire lock;
+    object_ = pybind11::object();
+  }
+  const pybind11::object& operator*() const { return object_; }
+
+ private:
+  pybind11::object object_;
+};
+
+}  // namespace remote_touch

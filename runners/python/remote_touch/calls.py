@@ -1,0 +1,249 @@
+"""What the commands of remote-touch do, as functions."""
+import json
+import os
+
+from remote_touch import _core
+from remote_touch._core import InputError
+from remote_touch.classes import Renderer, name_of
+
+# Names of this package that are also those of built-in functions.
+_list, _set = list, set
+
+
+def run(experiment, *, seed=None, set=None, output=None, force=False, timing=False, progress=None):
+    """Runs an experiment; returns its trace as an xarray.Dataset over time.
+
+    experiment: a name, a path of a JSON file, or a dict. set: settings by path, {"scenario.noise_sigma_m": 0.003};
+    a registered class stands for its name. seed: set["seed"]. output: also writes the file that the command
+    `remote-touch run` writes, over an existing result, or with force over anything. timing: also the time of each tick.
+    progress: True for a line on standard error, or a function that takes the fraction that is done.
+
+    Measures that summarise the run, such as max_force, are variables without dimension. Attributes are those of the
+    file: config, command, recipe, version, digest and so on.
+    """
+    from remote_touch import dataset
+    subject, text = _subject(experiment)
+    result = _core.run(subject, text, _overrides(set, seed), _path(output), bool(force), bool(timing),
+                       _report(progress, subject))
+    return dataset.of_trace(result)
+
+
+def sweep(sweep, *, set=None, threads=None, output=None, progress=None):
+    """Does all runs of a sweep; returns the measures as an xarray.Dataset over its axes and replicate.
+
+    sweep: a name, a path of a JSON file, or a dict. set: settings of the sweep or of its experiment, by path. threads:
+    of all processors if None; the result does not depend on it. output: a file that goes on where an interrupted call
+    stopped. Failed runs are NaN, with their reason in the variable error, and a warning.
+    """
+    from remote_touch import dataset
+    subject, text = _subject(sweep)
+    if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 4096):
+        raise InputError(f"threads = {threads}: expected 1 to 4096, or None")
+    result = _core.sweep(subject, text, _overrides(set), threads or 0, _path(output), _report(progress, subject))
+    return dataset.warned(dataset.of_sweep(result), os.fsdecode(subject))
+
+
+def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None):
+    """Repeats one run of a sweep as a full trace. sweep: a file, or what sweep() returned.
+
+    cell: the place on each axis from 0, as a tuple, or the value of each axis, as a dict. output: as of run().
+    """
+    from remote_touch import dataset
+    file, attributes = "", []
+    if isinstance(sweep, (str, os.PathLike)):
+        file = _native(sweep)
+    else:
+        attributes = [(name, value) for name, value in sweep.attrs.items() if isinstance(value, str)]
+    result = _core.replay(file, attributes, _cell(cell), int(replicate), _path(output), bool(force),
+                          _report(progress, "replay"))
+    return dataset.of_trace(result)
+
+
+def open(path):
+    """Reads a result: a trace or a sweep as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
+
+    A folder of a scorecard stands for the file scorecard.h5 in it.
+    """
+    from remote_touch import dataset
+    file = _native(path)
+    if os.path.isdir(file):
+        file = os.path.join(file, b"scorecard.h5")
+    result = _core.open(file)
+    return {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "figure": dataset.of_figure}[result["kind"]](result)
+
+
+class Comparison:
+    """The comparison of two results. str() is what `remote-touch compare` prints."""
+
+    def __init__(self, outcome, text, report):
+        self.outcome = ("same", "regressed", "not comparable")[outcome]
+        self.text, self.report = text, report
+
+    @property
+    def same(self):
+        """Whether all values are within their tolerances."""
+        return self.outcome == "same"
+
+    @property
+    def differences(self):
+        """The names of columns or measures of which a value is outside."""
+        parts = self.report.get("columns") or self.report.get("measures") or []
+        return [part["name"] for part in parts if part.get("outside") or part.get("problem")]
+
+    def __str__(self):
+        return self.text
+
+    def __repr__(self):
+        return f"<Comparison: {self.outcome}>"
+
+
+def compare(baseline, candidate, *, tolerance=None, paired=False):
+    """Compares two results: files, or Datasets of traces. tolerance: {"force": 1e-9} or {"force": (1e-9, 1e-6)},
+    absolute and relative; "*" is every column. All else must be equal bit for bit."""
+    tolerances = {name: _tolerance(name, value) for name, value in (tolerance or {}).items()}
+    if isinstance(baseline, (str, os.PathLike)) and isinstance(candidate, (str, os.PathLike)):
+        return _comparison(_core.compare_files(_native(baseline), _native(candidate), tolerances, bool(paired)))
+    from remote_touch import dataset
+    sides = []
+    for side in (baseline, candidate):
+        sides += dataset.columns_of(open(side) if isinstance(side, (str, os.PathLike)) else side)
+    return _comparison(_core.compare_columns(*sides, tolerances))
+
+
+def describe(name):
+    """All that has the name, as text: parameters of a renderer, the configuration of an experiment, and so on."""
+    return _core.describe(_native(name))
+
+
+def list():
+    """Names and summaries by kind: rt.list()["renderers"]["proxy"]."""
+    return _core.list()
+
+
+def scorecard(methods=(), *, scenes=(), seeds=10, output, threads=None, progress=None):
+    """Compares methods on many scenes; returns the tables of the scorecard as a dict of Datasets.
+
+    methods: names, JSON files, dicts {"title", "renderer"} by name, or registered renderer classes; empty: all. scenes:
+    names or JSON files; empty: all that fit. output: a folder, which goes on where an interrupted call stopped. The
+    page of it: scripts/plot FOLDER.
+    """
+    import tempfile
+    import warnings
+    folder = _native(output)
+    with tempfile.TemporaryDirectory() as files:
+        names = [_method(method, files) for method in methods]
+        failed, first = _core.scorecard(names, [_native(scene) for scene in scenes], int(seeds), threads or 0, folder,
+                                        _report(progress, "scorecard"))
+    if failed:
+        warnings.warn(f"{os.fspath(output)}: {failed} runs failed, the first: {first}", stacklevel=2)
+    return open(output)
+
+
+def _method(method, folder):
+    if isinstance(method, (str, os.PathLike)):
+        return _native(method)
+    if not (isinstance(method, type) and issubclass(method, Renderer)):
+        raise InputError(f"method {method!r}: expected a name, a JSON file or a registered class of a renderer")
+    name = name_of(method)
+    file = os.path.join(folder, name + ".json")
+    with _open_text(file) as out:
+        json.dump({"title": f"{method.__name__}, in Python", "renderer": {"name": name}}, out)
+    return file
+
+
+def _open_text(file):
+    import io
+    return io.open(file, "w", encoding="utf-8")
+
+
+def _native(text):
+    """A text or path as bytes: a file may have a name that is no UTF-8."""
+    if not isinstance(text, (str, os.PathLike)):
+        raise InputError(f"{text!r}: expected a text or a path")
+    try:
+        return os.fsencode(text)
+    except UnicodeEncodeError:
+        raise InputError(f"{text!r}: expected text that can be written as UTF-8") from None
+
+
+def _subject(given):
+    """The name of what is run, and its JSON text if it is a dict."""
+    if isinstance(given, dict):
+        return b"configuration", _json(given)
+    if isinstance(given, (str, os.PathLike)):
+        return _native(given), None
+    raise InputError(f"{given!r}: expected a name, a path or a dict")
+
+
+def _plain(value):
+    """What JSON does not know: numbers and arrays of NumPy, classes."""
+    if isinstance(value, type):
+        return name_of(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise InputError(f"{value!r}: expected a number, a text, a list or a dict")
+
+
+def _json(value, subject=""):
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except InputError:
+        raise
+    except (TypeError, ValueError, RecursionError) as error:  # of a key, NaN, a circle
+        raise InputError(f"{subject}{type(value).__name__}: {error}: expected finite numbers, texts, lists or dicts "
+                         "with texts as keys") from None
+
+
+def _overrides(given, seed=None):
+    """As --set takes them."""
+    pairs = [*(given or {}).items()]
+    if seed is not None:
+        pairs.append(("seed", seed))
+    return [_native(f"{path}={_text(value, path)}") for path, value in pairs]
+
+
+def _text(value, path):
+    value = name_of(value) if isinstance(value, type) else value
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    return _json(value, f"{path} = ")
+
+
+def _path(output):
+    return b"" if output is None else _native(output)
+
+
+def _cell(cell):
+    if isinstance(cell, dict):
+        return _native(",".join(f"{name}={_text(value, name)}" for name, value in cell.items()))
+    if isinstance(cell, str):
+        return cell.encode("utf-8", "replace")
+    return ",".join(str(int(place)) for place in (cell if hasattr(cell, "__iter__") else (cell,)))
+
+
+def _tolerance(name, value):
+    pair = (value, 0.0) if isinstance(value, (int, float)) else tuple(value)
+    if len(pair) != 2 or not all(isinstance(part, (int, float)) and 0 <= part < float("inf") for part in pair):
+        raise InputError(f"tolerance {name} = {value}: expected a number of 0 or more, or two: absolute and relative")
+    return float(pair[0]), float(pair[1])
+
+
+def _comparison(result):
+    outcome, text, report = result
+    return Comparison(outcome, text, json.loads(report))
+
+
+def _report(progress, subject):
+    """None, or a function of the fraction."""
+    if progress is None or progress is False:
+        return None
+    if callable(progress):
+        return progress
+    import sys
+    name = subject if isinstance(subject, str) else os.fsdecode(subject)
+
+    def line(fraction):
+        end = "\n" if fraction >= 1 else ""
+        sys.stderr.write(f"\r{name}: {100 * fraction:3.0f} %{end}")
+        sys.stderr.flush()
+    return line

@@ -1,0 +1,99 @@
+"""xarray data sets of columns. No column is copied: the arrays are those in which the program computed."""
+import warnings
+
+import numpy as np
+import xarray as xr
+
+from remote_touch._core import InputError
+
+_PARTS = {3: ("axis", ["x", "y", "z"]), 4: ("quaternion", ["w", "x", "y", "z"])}
+
+
+def _attributes(units, long_name, value_names):
+    attributes = {"units": units, "long_name": long_name}
+    if value_names:
+        attributes["flag_values"] = np.arange(len(value_names), dtype=np.int32)
+        attributes["flag_meanings"] = " ".join(name.replace(" ", "_") for name in value_names)
+    return attributes
+
+
+def _rows(columns, dimension):
+    """Variables over the rows, and the coordinates that their other dimensions have."""
+    variables, coordinates = {}, {}
+    for name, units, long_name, values, value_names in columns:
+        values = np.asarray(values, dtype=object) if isinstance(values, list) else values
+        dimensions = (dimension,)
+        if values.ndim == 2:
+            other, labels = _PARTS.get(values.shape[1], (f"part_{values.shape[1]}", None))
+            dimensions = (dimension, other)
+            if labels:
+                coordinates[other] = labels
+        variables[name] = (dimensions, values, _attributes(units, long_name, value_names))
+    return variables, coordinates
+
+
+def of_trace(result):
+    """A trace over time, with the measures of the run if they are known."""
+    variables, coordinates = _rows([*result["columns"], *result.get("timing", [])], "time")
+    coordinates["time"] = variables.pop("time")
+    for name, units, long_name, values, _ in result.get("measures", []):
+        variables[name] = ((), values[0], _attributes(units, long_name, []))
+    attributes = {name: value for name, value in result["attributes"] if name != "default"}
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def of_sweep(result):
+    """Measures over the axes and the replicates."""
+    dimensions, coordinates = [], {}
+    for name, units, long_name, values, value_names in result["axes"]:
+        if value_names:
+            values, units = np.array(value_names)[values], "1"
+        dimensions.append(name)
+        coordinates[name] = (name, values, _attributes(units, long_name, []))
+    dimensions.append("replicate")
+    coordinates["replicate"] = ("replicate", np.arange(result["replicates"]),
+                                _attributes("1", "number of the repeated run", []))
+    variables = {name: (dimensions, values, _attributes(units, long_name, value_names))
+                 for name, units, long_name, values, value_names in result["measures"]}
+    if any(result["error"]):
+        shape = variables["state"][1].shape
+        variables["error"] = (dimensions, np.array(result["error"], dtype=object).reshape(shape),
+                              _attributes("1", "why the run failed", []))
+    return xr.Dataset(variables, coordinates, dict(result["attributes"]))
+
+
+def warned(sweep, subject):
+    """The same, after a warning if some of its runs failed."""
+    if "error" in sweep:
+        failed = [text for text in sweep["error"].values.ravel() if text]
+        warnings.warn(f"{subject}: {len(failed)} of {sweep['error'].size} runs failed, the first: {failed[0]}",
+                      stacklevel=3)
+    return sweep
+
+
+def of_figure(result):
+    """The tables of a figure by name, each with the attributes of the figure."""
+    tables = {}
+    for column in result["columns"]:
+        table, name = column[0].split("/", 1)
+        tables.setdefault(table, []).append((name, *column[1:]))
+    attributes = {name: value for name, value in result["attributes"] if name != "default"}
+    data_sets = {}
+    for table, columns in tables.items():
+        variables, coordinates = _rows(columns, "row")
+        data_sets[table] = xr.Dataset(variables, coordinates, attributes)
+    return data_sets
+
+
+def columns_of(trace):
+    """The columns and attributes of a trace that of_trace() made, for a comparison."""
+    if not isinstance(trace, xr.Dataset) or "columns" not in trace.attrs:
+        raise InputError(f"{type(trace).__name__}: expected files, or data sets of traces")
+    columns = []
+    for name in trace.attrs["columns"].split(","):
+        if name not in trace.variables:
+            continue
+        variable = trace[name]
+        columns.append((name, variable.attrs.get("units", "1"), variable.attrs.get("long_name", ""),
+                        variable.values, variable.attrs.get("flag_meanings", "").split()))
+    return [columns, [(name, value) for name, value in trace.attrs.items() if isinstance(value, str)]]

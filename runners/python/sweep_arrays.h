@@ -1,0 +1,15 @@
+// A sweep as arrays over its axes.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/python/arrays.h"
+
+namespace remote_touch {
+
+// {"axes", "measures", "error", "replicates", "attributes"}: measures are arrays over the axes and the
+// replicates.
+pybind11::dict to_python(StoredSweep stored);
+
+}  // namespace remote_touch

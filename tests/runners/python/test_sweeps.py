@@ -1,0 +1,106 @@
+"""Sweeps: the same bits as the command line gives, for any number of threads, over named axes."""
+import copy
+import json
+
+import numpy as np
+import pytest
+import remote_touch as rt
+from conftest import PRESS, digest_in
+
+SWEEP = {
+    "title": "presses",
+    "experiment": PRESS,
+    "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.002, "count": 3},
+             {"parameter": "renderer.steps_per_tick", "values": [5, 30]},
+             {"parameter": "renderer.contact_rule", "values": ["mean-plane", "regions"]}],
+    "replicates": 2,
+    "measures": ["max_force", "popped_through"],
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def rules():
+    """The second axis takes the names that the renderer has."""
+    text = next(line for line in rt.describe("proxy").split("contact_rule")[1].splitlines() if "allowed" in line)
+    SWEEP["axes"][2]["values"] = text.split("allowed ")[1].split(", ")[:2]
+
+
+def test_threads_do_not_matter_and_the_file_is_that_of_the_command_line(command_line, tmp_path):
+    (tmp_path / "sweep.json").write_text(json.dumps(SWEEP))
+    file = tmp_path / "sweep.json"
+    text = command_line("sweep", file, "-o", tmp_path / "command.h5")
+    one, two = rt.sweep(file, threads=1), rt.sweep(file, threads=2, output=tmp_path / "python.h5")
+    assert one.attrs["digest"] == two.attrs["digest"] == digest_in(text)
+    assert one.identical(two)
+    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "command.h5").read_bytes()
+    opened = rt.open(tmp_path / "command.h5")
+    assert opened.identical(two)
+
+
+def test_axes_units_and_values():
+    sweep = rt.sweep(SWEEP)
+    assert sweep.max_force.dims == ("noise_sigma_m", "steps_per_tick", "contact_rule", "replicate")
+    assert sweep.max_force.shape == (3, 2, 2, 2)
+    assert list(sweep.noise_sigma_m.values) == [0, 0.001, 0.002] and sweep.noise_sigma_m.attrs["units"] == "m"
+    assert list(sweep.contact_rule.values) == SWEEP["axes"][2]["values"]
+    assert sweep.max_force.attrs["units"] == "N" and (sweep.state == 2).all()
+    assert not sweep.max_force.values.flags.owndata
+    # Cell (1, 0, 0) is that run, with its own noise.
+    run = rt.replay(sweep, cell=(1, 0, 0), replicate=1)
+    assert float(run.max_force) == float(sweep.max_force[1, 0, 0, 1])
+    without_noise = rt.run(PRESS, set={"scenario.noise_sigma_m": 0, "renderer.steps_per_tick": 30})
+    assert float(without_noise.max_force) == float(sweep.max_force.sel(noise_sigma_m=0, steps_per_tick=30)[0, 0])
+
+
+def test_replay_is_the_command(command_line, tmp_path):
+    file = tmp_path / "map.h5"
+    sweep = rt.sweep(SWEEP, output=file)
+    text = command_line("replay", file, "--cell", "2,1,0", "--replicate", "1", "-o", tmp_path / "command.h5")
+    rule = SWEEP["axes"][2]["values"][0]
+    cell = {"noise_sigma_m": 0.002, "steps_per_tick": 30, "contact_rule": rule}
+    again = rt.replay(file, cell=cell, replicate=1, output=tmp_path / "python.h5")
+    assert again.attrs["digest"] == digest_in(text)
+    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "command.h5").read_bytes()
+    assert rt.replay(sweep, cell=(2, 1, 0), replicate=1).attrs["digest"] == again.attrs["digest"]
+
+
+def test_settings_of_a_sweep():
+    sweep = rt.sweep(SWEEP, set={"replicates": 1, "seed": 9, "axes.0.count": 2})
+    assert sweep.sizes == {"noise_sigma_m": 2, "steps_per_tick": 2, "contact_rule": 2, "replicate": 1}
+    assert json.loads(sweep.attrs["config"])["experiment"]["seed"] == 9
+
+
+def test_failed_runs_are_nan_with_their_reason():
+    failing = copy.deepcopy(SWEEP)
+    failing["axes"] = [{"parameter": "trajectory.depth_m", "values": [0.001, 0.002]}]
+    failing["experiment"] = {**PRESS, "scenario": {"name": "box"}}  # which has no height to press at
+    with pytest.warns(UserWarning, match="4 of 4 runs failed, the first: .*expected"):
+        sweep = rt.sweep(failing)
+    assert np.isnan(sweep.max_force).all() and (sweep.state == 3).all()
+    assert all("\n" not in text and text for text in sweep.error.values.ravel())
+
+
+def test_a_sweep_goes_on_where_it_stopped(tmp_path):
+    file = tmp_path / "map.h5"
+
+    def stop_half_way(fraction):
+        if fraction > 0.1:
+            raise KeyboardInterrupt
+    longer = {**SWEEP, "replicates": 20, "experiment": {**PRESS, "duration_s": 5}}
+    with pytest.raises(KeyboardInterrupt):
+        rt.sweep(longer, output=file, progress=stop_half_way)
+    part = rt.open(file)
+    done = int((part.state == 2).sum())
+    assert 0 < done < part.state.size
+    whole = rt.sweep(longer, output=file)
+    assert (whole.state == 2).all() and whole.attrs["digest"] == rt.sweep(longer).attrs["digest"]
+
+
+def test_a_figure_is_a_dict_of_tables(command_line, tmp_path):
+    command_line("figure", "4.11", "-o", tmp_path)
+    tables = rt.open(next(tmp_path.glob("*.h5")))
+    assert len(tables) > 0
+    for table in tables.values():
+        assert table.attrs["figure"] and table.sizes["row"] > 0
+        for variable in table.data_vars.values():
+            assert variable.attrs["units"]
