@@ -15,6 +15,7 @@ namespace remote_touch {
 namespace {
 
 int exit_code_of_last_resorts = EXIT_FAILURE;
+std::terminate_handler without_last_resorts = std::abort;
 volatile std::sig_atomic_t found_no_memory = 0;
 
 constexpr std::string_view kNoMemory = "remote-touch: out of memory\n";
@@ -35,6 +36,7 @@ constexpr std::string_view kHdf5Failed =
   } catch (...) {
   }
   std::signal(SIGABRT, SIG_DFL);
+  without_last_resorts();  // says what was thrown
   std::abort();
 }
 
@@ -74,7 +76,7 @@ void use_own_stack() {
 
 void install_last_resorts(int exit_code) {
   exit_code_of_last_resorts = exit_code;
-  std::set_terminate(on_terminate);
+  without_last_resorts = std::set_terminate(on_terminate);
   std::set_new_handler(note_that_memory_ran_out);
   std::atexit(on_exit_by_a_library);
   use_own_stack();

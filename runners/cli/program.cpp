@@ -98,12 +98,14 @@ int flushed(int code) {
 
 }  // namespace
 
-int command_line(Catalog catalog, int argc, char** argv) {
+int command_line(const std::function<void(Catalog&)>& add_entries, int argc, char** argv) {
   // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   const CommandLine line = with_signals();
   try {
+    Catalog catalog = built_in_catalog();
+    add_entries(catalog);
     take_catalog(std::move(catalog), argc > 0 ? argv[0] : "");
     take_data_folder();
     return flushed(run_command_line(argc, argv, line, chosen_kernels));
@@ -123,6 +125,10 @@ int command_line(Catalog catalog, int argc, char** argv) {
     complain(error.what());
   }
   return kBadInput;
+}
+
+int command_line(Catalog catalog, int argc, char** argv) {
+  return command_line([&catalog](Catalog& whole) { whole = std::move(catalog); }, argc, argv);
 }
 
 }  // namespace remote_touch

@@ -47,6 +47,7 @@ class Repro {
     for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
       if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
         comment("this program has another " + name + ": " + value);
+    say_who_made_it();
     if (!of("input_digests").empty()) comment("it read:\n" + of("input_digests"));
     if (kind_ == "figure")
       print_figure_command();
@@ -86,6 +87,14 @@ class Repro {
     if (kind_ == "figure" && of("figure") == kScorecardFigure)
       throw InputError(file_, "is a scorecard, which " + of("command") +
                                   " -o FOLDER makes again: expected a file of its runs/");
+  }
+
+  // Entries of a catalog or a plug-in, which this program may lack.
+  void say_who_made_it() const {
+    if (!of("program").empty() && of("program") != program_identity().name)
+      comment("it was made by " + of("program") + ": use that program");
+    if (!of("plugins").empty() && program_identity().plugins.empty())
+      comment("it was made with --plugin: give the same\n" + of("plugins"));
   }
 
   // A replay's command is that of its sweep, and then its own.

@@ -19,6 +19,9 @@ std::span<const ContractCheck<TrajectoryEntry>> trajectory_checks();
 std::span<const ContractCheck<RendererEntry>> renderer_checks();
 std::span<const ContractCheck<Measure>> measure_checks();
 
+// The defaults are in their ranges and valid together; names are different, and none is `name`.
+void check_settings(Configurable& factory);
+
 // A new factory of the entry, with its defaults and what fill adds.
 template <class Entry>
 auto filled(const Entry& entry, const FillSettings& fill) {

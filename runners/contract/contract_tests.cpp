@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "runners/contract/checks.h"
 
 namespace remote_touch {
@@ -46,6 +48,19 @@ Catalog with_built_in(const Catalog& catalog) {
 }
 
 }  // namespace
+
+void check_settings(Configurable& factory) {
+  std::set<std::string> names = {"name"};  // of the entry itself, in every configuration
+  for (const Parameter& p : factory.settings()) {
+    EXPECT_TRUE(names.insert(p.name).second) << "a setting called " << p.name << ": expected another name";
+    EXPECT_FALSE(p.help.empty()) << p.name << ": expected a line of help";
+    if (const auto* number = std::get_if<double*>(&p.value)) {
+      EXPECT_TRUE(p.low <= **number && **number <= p.high)
+          << p.name << " = " << **number << ": expected " << p.low << " to " << p.high;
+    }
+  }
+  EXPECT_EQ(factory.validate(), "");
+}
 
 void contract_tests(const Catalog& catalog, const FillSettings& fill) {
   use_catalog(with_built_in(catalog));

@@ -29,7 +29,7 @@ PointCloud coloured_image() {
 }
 
 void the_defaults_of_a_rule_are_valid(const FixtureEntry& entry, const FillSettings& fill) {
-  EXPECT_EQ(filled(entry, fill)->validate(), "");
+  check_settings(*filled(entry, fill));
 }
 
 void weights_are_one_a_point_and_from_nothing_to_one(const FixtureEntry& entry, const FillSettings& fill) {

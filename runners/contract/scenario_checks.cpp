@@ -21,7 +21,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 void its_defaults_are_valid(const ScenarioEntry& entry, const FillSettings& fill) {
-  EXPECT_EQ(filled(entry, fill)->validate(), "");
+  check_settings(*filled(entry, fill));
 }
 
 // A result holds the hashes of all files that it was made from.

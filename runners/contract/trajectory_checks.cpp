@@ -14,7 +14,7 @@ std::unique_ptr<Scenario> scene_for_hands() {
 }
 
 void the_defaults_of_a_hand_are_valid(const TrajectoryEntry& entry, const FillSettings& fill) {
-  EXPECT_EQ(filled(entry, fill)->validate(), "");
+  check_settings(*filled(entry, fill));
 }
 
 void poses_are_pure_and_finite(const TrajectoryEntry& entry, const FillSettings& fill) {

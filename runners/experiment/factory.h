@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -41,10 +42,10 @@ class Factory : public Configurable {
 // For a product with a constructor (Settings, Arguments...). In the namespace of the settings are the
 // functions
 //   Parameters parameters(Settings&)                  the settings by name
-//   std::string validate(const Settings&)             empty, or the first problem
-//   double max_stiffness_N_per_m(const Settings&)     of every renderer
-//   RenderedContact rendered_contact(const Settings&) of a renderer whose rest distance is known
-//   RecordingPart input_files(const Settings&)        if the settings name files
+//   std::string validate(const Settings&)             empty, or the first problem: "r1_m = 1: expected below
+//   r2_m" double max_stiffness_N_per_m(const Settings&)     of every renderer RenderedContact
+//   rendered_contact(const Settings&) of a renderer whose rest distance is known RecordingPart
+//   input_files(const Settings&)        if the settings name files
 template <class Product, class Settings, class Seam, class... Arguments>
 class FactoryFor final : public Factory<Seam, Arguments...> {
  public:
@@ -69,7 +70,7 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
     if constexpr (requires { rendered_contact(values_); })
       return rendered_contact(values_);
     else
-      return {};
+      return {std::numeric_limits<double>::quiet_NaN()};
   }
   std::unique_ptr<Seam> build(Arguments... arguments) const override {
     return std::make_unique<Product>(values_, arguments...);
@@ -81,7 +82,7 @@ class FactoryFor final : public Factory<Seam, Arguments...> {
 
 template <class... Seam>
 struct CatalogEntry {
-  std::string name;     // lower case letters, digits and hyphens
+  std::string name;     // lower case letters, digits, - and _
   std::string summary;  // one line, for lists
   std::function<std::unique_ptr<Factory<Seam...>>()> make;
 };

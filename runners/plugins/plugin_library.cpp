@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "core/parameters/input_error.h"
@@ -27,12 +28,19 @@ remote_touch_plugin_function function_of(const std::string& file) {
     throw InputError("--plugin " + file, "no such file: expected a shared library");
   const std::string path = std::filesystem::absolute(file).string();
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw InputError("--plugin " + file, loader_problem(path));
+  if (library == nullptr)
+    throw InputError("--plugin " + file, loader_problem(path) + ": expected a shared library");
   void* address = ::dlsym(library, REMOTE_TOUCH_PLUGIN_FUNCTION);
   if (address == nullptr)
     throw InputError("--plugin " + file, "has no function " REMOTE_TOUCH_PLUGIN_FUNCTION
                                          "(): expected a library as remote_touch_plugin.h describes it");
   return reinterpret_cast<remote_touch_plugin_function>(address);
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
 }
 
 void check(const remote_touch_renderer& r, const std::string& file) {
@@ -43,8 +51,13 @@ void check(const remote_touch_renderer& r, const std::string& file) {
   if (r.degrees_of_freedom != 3 && r.degrees_of_freedom != 6) refuse("degrees_of_freedom: expected 3 or 6");
   if (r.contact_model < REMOTE_TOUCH_POINTS || r.contact_model > REMOTE_TOUCH_ORIENTED)
     refuse("contact_model: expected REMOTE_TOUCH_POINTS to REMOTE_TOUCH_ORIENTED");
-  if (!r.max_stiffness_N_per_m || !r.create || !r.destroy || !r.on_frame || !r.step)
-    refuse("lacks max_stiffness_N_per_m, create, destroy, on_frame or step");
+  const auto require = [&](const char* name, bool is_there) {
+    if (!is_there) refuse(std::string("lacks the function ") + name);
+  };
+  require("max_stiffness_N_per_m", r.max_stiffness_N_per_m != nullptr),
+      require("create", r.create != nullptr);
+  require("destroy", r.destroy != nullptr), require("on_frame", r.on_frame != nullptr),
+      require("step", r.step != nullptr);
   if (!r.prepare != !r.release) refuse("has only one of prepare and release");
   if (r.setting_count > kMaxSettings || (r.setting_count > 0 && !r.settings))
     refuse("settings: expected at most " + std::to_string(kMaxSettings));
@@ -53,7 +66,8 @@ void check(const remote_touch_renderer& r, const std::string& file) {
     const remote_touch_setting& s = r.settings[i];
     if (!s.name || !s.help) refuse("a setting without name or help");
     if (!(s.low <= s.value && s.value <= s.high))
-      refuse(std::string(s.name) + ": its value is not in its range");
+      refuse(std::string(s.name) + " = " + number_text(s.value) + ": expected " + number_text(s.low) +
+             " to " + number_text(s.high));
     any_live |= s.is_live != 0;
   }
   if (any_live && !r.set_values) refuse("has live settings and no set_values");

@@ -164,8 +164,8 @@ class PluginFactory final : public RendererFactory {
   std::vector<RecordingPart> inputs() const override { return {}; }
   double stiffness_N_per_m() const override { return functions_.max_stiffness_N_per_m(values_.data()); }
   RenderedContact contact() const override {
-    return functions_.rest_distance_m ? RenderedContact{functions_.rest_distance_m(values_.data())}
-                                      : RenderedContact{};
+    return {functions_.rest_distance_m ? functions_.rest_distance_m(values_.data())
+                                       : std::numeric_limits<double>::quiet_NaN()};
   }
   std::unique_ptr<Renderer> build(double haptic_rate_hz, const Kernels& kernels) const override {
     return std::make_unique<PluginRenderer>(functions_, values_, haptic_rate_hz, kernels);

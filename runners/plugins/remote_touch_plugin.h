@@ -94,7 +94,7 @@ enum {
 
 /* One renderer. `values` are those of its settings, in their order. */
 typedef struct {
-  const char* name;           /* lower case letters, digits and hyphens */
+  const char* name;           /* lower case letters, digits, - and _ */
   const char* summary;        /* one line */
   int32_t degrees_of_freedom; /* 3 or 6 */
   int32_t contact_model;      /* REMOTE_TOUCH_POINTS ... */
@@ -106,8 +106,9 @@ typedef struct {
   /* Distance of proxy_m from the surface that it touches; null or NaN: not known, then no contact measures.
    */
   double (*rest_distance_m)(const double* values);
-  /* Null if values together make no sense or there is no memory; then `problem` (of `size` bytes) says why in
-   * one line. haptic_rate_hz: how often step is called. */
+  /* Null if values make no sense together, or there is no memory; then `problem` (of `size` bytes) says why
+   * in one line, for values as "reach_m = 2: expected below 1". haptic_rate_hz: how often step is called. It
+   * is also called to check values, and what it made destroyed at once. */
   void* (*create)(const double* values, double haptic_rate_hz, char* problem, size_t size);
   void (*destroy)(void* renderer);
   /* Frames will have up to so many points; may be null. */

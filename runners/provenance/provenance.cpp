@@ -66,7 +66,10 @@ TextAttributes provenance(const std::string& config, const std::string& command,
   }
   std::string plugins;
   for (const ProgramIdentity::Plugin& plugin : program.plugins)
-    plugins += in_one_line(plugin.file) + ": sha256 " + plugin.sha256 + "\n";
+    plugins.append(plugins.empty() ? "" : "\n")
+        .append(in_one_line(plugin.file))
+        .append(": sha256 ")
+        .append(plugin.sha256);
   if (!plugins.empty()) list.emplace_back("plugins", plugins);
   if (!isa.empty()) list.emplace_back("isa", isa);
   if (!inputs.empty()) list.emplace_back("input_digests", inputs);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "analysis/measures/settled_contact_measures.h"
 #include "core/parameters/input_error.h"
+#include "runners/experiment/catalog.h"
 #include "runners/settings/embedded_data.h"
 #include "runners/settings/json_parameters.h"
 #include "scenarios/text_files/text_file.h"
@@ -260,8 +262,20 @@ std::string configuration(const std::vector<Method>& methods, const std::vector<
   return all.dump();
 }
 
+// The name of a renderer stands for it with its defaults, where no method has that name.
 std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
-  return chosen<Method>(embedded_methods(), names, "method", read_method);
+  const auto stored = embedded_methods();
+  if (names.empty()) return chosen<Method>(stored, names, "method", read_method);
+  std::vector<EmbeddedText> known(stored.begin(), stored.end());
+  std::deque<std::string> texts;
+  for (const RendererEntry& entry : renderers()) {
+    if (std::any_of(stored.begin(), stored.end(),
+                    [&](const EmbeddedText& text) { return text.name == entry.name; }))
+      continue;
+    texts.push_back(Json{{"title", entry.summary}, {"renderer", {{"name", entry.name}}}}.dump());
+    known.push_back({entry.name.c_str(), texts.back().c_str()});
+  }
+  return chosen<Method>(std::span<const EmbeddedText>(known), names, "method", read_method);
 }
 
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names) {

@@ -98,6 +98,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   SimulatedHand hand = experiment.build_hand();
   const std::size_t ticks = tick_count(experiment, *trajectory);
   const RenderedContact contact = experiment.rendered_contact();
+  const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
 
   Trace trace;
   trace.reserve(ticks);
@@ -115,7 +116,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
     hand.apply(device, out);
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
-    if (options.find_true_contact)
+    if (finds_contact)
       known.contact =
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
     trace.append(time_s, device, out, known, hand.state());

@@ -35,8 +35,8 @@ foreach(top core scenarios analysis runners)
   get_property(links_of_${top} GLOBAL PROPERTY LINKS_OF_${top})
 endforeach()
 list(REMOVE_ITEM rooms_of_runners runners/contract runners/python)
-list(REMOVE_ITEM links_of_runners GTest::gtest pybind11::headers Python::Module)
-list(REMOVE_ITEM links_of_runners CLI11::CLI11)  # headers only, in no header of ours
+# CLI11: headers only, in no header of ours
+list(REMOVE_ITEM links_of_runners GTest::gtest CLI11::CLI11 pybind11::headers Python::Module)
 
 installed_library(core ROOMS ${rooms_of_core} LINKS Eigen3::Eigen OpenMP::OpenMP_CXX)
 get_property(kernel_objects GLOBAL PROPERTY KERNEL_OBJECTS)

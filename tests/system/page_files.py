@@ -4,7 +4,7 @@ import pathlib
 import re
 
 FOLDERS_WITHOUT_PAGES = {".git", "build", "node_modules", "out"}
-LANGUAGES = {"sh", "json", "text", "python"}
+LANGUAGES = {"sh", "json", "text", "cmake", "cpp", "python"}
 
 
 class PageError(Exception):

@@ -74,6 +74,10 @@ TEST(Catalog, AnEntryNeedsAFreeAndPlainName) {
   EXPECT_EQ(own_entries(catalog).scenarios().size(), 1u);
   EXPECT_EQ(refusal([&] { add("mine"); }), "scenario \"mine\": is in the catalog already");
   EXPECT_HAS(refusal([&] { add("flat-grid"); }), "is in the catalog already");
+  EXPECT_HAS(refusal([&] {
+               catalog.add(Measure{"empty", "N", "no function", MeasuredRuns::all, {}});
+             }),
+             "has no function");
   for (const char* name : {"", "My scene", "a/b", "a=b"})
     EXPECT_HAS(refusal([&] { add(name); }), "expected a name of lower case letters");
 }

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "analysis/storage/digest.h"
+#include "runners/contract/allocation_counter.h"
 #include "runners/experiment/experiment.h"
 #include "runners/simulation/simulation.h"
-#include "runners/contract/allocation_counter.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -88,8 +88,8 @@ TEST(Plugin, ALibraryWithAMistakeIsRefused) {
   EXPECT_HAS(load(0), "has no renderer for version 1 of the interface");
   EXPECT_HAS(load(1), "a renderer without name or summary");
   EXPECT_HAS(load(2), "mistaken: degrees_of_freedom: expected 3 or 6");
-  EXPECT_HAS(load(3), "mistaken: lacks");
-  EXPECT_HAS(load(4), "mistaken: a_m: its value is not in its range");
+  EXPECT_HAS(load(3), "mistaken: lacks the function step");
+  EXPECT_HAS(load(4), "mistaken: a_m = nan: expected 0 to 2");
   EXPECT_HAS(load(5), "mistaken: has live settings and no set_values");
   EXPECT_HAS(load(7), "mistaken: settings: expected at most");
   EXPECT_HAS(load(8), "mistaken: contact_model");

@@ -32,7 +32,7 @@ TEST_F(Provenance, NamesEachPlugin) {
   Recipe replay{"replay", "fig4.13"};
   replay.cell = {3, 4};
   const TextAttributes of = provenance("{}", replay, "");
-  EXPECT_EQ(attribute(of, "plugins"), "./a.so: sha256 01\nb c.so: sha256 02\n");
+  EXPECT_EQ(attribute(of, "plugins"), "./a.so: sha256 01\nb c.so: sha256 02");
   EXPECT_EQ(attribute(of, "program"), "");
   EXPECT_EQ(attribute(of, "command"),
             "remote-touch --plugin ./a.so --plugin 'b c.so' sweep fig4.13; "

@@ -8,6 +8,7 @@
 #include <core/kernels/kernels.h>
 #include <core/rendering/frame_order.h>
 #include <core/rendering/renderer.h>
+#include <runners/experiment/rendered_contact.h>
 
 namespace lab {
 
@@ -20,6 +21,11 @@ remote_touch::Parameters parameters(CentroidSettings& settings);
 std::string validate(const CentroidSettings& settings);
 inline double max_stiffness_N_per_m(const CentroidSettings& settings) {
   return settings.stiffness_N_per_m;
+}
+
+// A spring without a proxy: over a plane its force ends where the centroid is radius_m away.
+inline remote_touch::RenderedContact rendered_contact(const CentroidSettings& settings) {
+  return {settings.radius_m, settings.stiffness_N_per_m};
 }
 
 class CentroidRenderer final : public remote_touch::Renderer {

@@ -3,7 +3,5 @@
 #include "entries.h"
 
 int main(int argc, char** argv) {
-  remote_touch::Catalog catalog = remote_touch::built_in_catalog();
-  lab::add_entries(catalog);
-  return remote_touch::command_line(std::move(catalog), argc, argv);
+  return remote_touch::command_line(lab::add_entries, argc, argv);
 }

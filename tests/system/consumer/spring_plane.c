@@ -27,6 +27,8 @@ static void take_values(void* renderer, const double* values) {
 
 static double max_stiffness(const double* values) { return values[STIFFNESS]; }
 
+static double rest_distance(const double* values) { return values[REACH_M]; }
+
 static void* create(const double* values, double haptic_rate_hz, char* problem, size_t size) {
   (void)haptic_rate_hz;
   Spring* spring = calloc(1, sizeof *spring);
@@ -63,11 +65,12 @@ static int32_t step(void* renderer, const remote_touch_device* device, double ti
     output->status = REMOTE_TOUCH_NO_FRAME;
     return 0;
   }
-  output->nearest_distance_m = fabs(hip[1] - spring->top_m);
+  output->nearest_distance_m = fabs(hip[1] - spring->top_m); /* of the proxy, which is the HIP in free space */
   const double depth_m = spring->top_m + spring->values[REACH_M] - hip[1];
   if (!(depth_m > 0)) return 0;
   output->force_N[1] = spring->values[STIFFNESS] * depth_m;
   output->proxy_m[1] += depth_m;
+  output->nearest_distance_m = spring->values[REACH_M];
   output->normal[1] = 1;
   output->state = REMOTE_TOUCH_CONTACT;
   return 0;
@@ -80,6 +83,7 @@ static const remote_touch_renderer renderer = {.name = "spring-plane",
                                                .setting_count = SETTINGS,
                                                .settings = settings,
                                                .max_stiffness_N_per_m = max_stiffness,
+                                               .rest_distance_m = rest_distance,
                                                .create = create,
                                                .destroy = free,
                                                .on_frame = on_frame,
