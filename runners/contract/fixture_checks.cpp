@@ -19,9 +19,10 @@ PointCloud coloured_image() {
   PointCloud cloud;
   cloud.image = ImageLayout{{8, 6, 10, 10, 3.5, 2.5}, RigidTransform::Identity(), 0};
   for (int i = 0; i < 48; ++i) {
-    const bool seen = i % 8 > 1 || i / 8 > 1;
+    const int row = i / 8;
+    const bool seen = i % 8 > 1 || row > 1;
     const double z = seen ? 0.6 : std::numeric_limits<double>::quiet_NaN();
-    const Vec3 p = unproject(cloud.image->camera, i % 8, i / 8, z);
+    const Vec3 p = unproject(cloud.image->camera, i % 8, row, z);
     cloud.append(seen ? p : Vec3::Constant(z));
     cloud.colour.push_back(static_cast<std::uint32_t>(i * 349525));
   }

@@ -130,10 +130,12 @@ std::vector<RenderOutput> press_on_rising(const RendererEntry& entry, Renderer& 
   std::vector<RenderOutput> outputs;
   for (int tick = 0; tick < 300; ++tick) {
     if (tick % 33 == 0) {
+      const int number = tick / 33;
+      const double rise_m = 0.002 * number;
       PointCloud cloud = grid_for(entry, 60);
       for (std::size_t i = 0; i < cloud.size(); ++i)
-        cloud.y[i] += 0.002 * (tick / 33) + 0.0004 * static_cast<double>(i * i % 7);
-      renderer.on_frame({tick / 33, 0.001 * tick, 0.001 * tick, scenes::frame(cloud).points});
+        cloud.y[i] += rise_m + 0.0004 * static_cast<double>(i * i % 7);
+      renderer.on_frame({number, 0.001 * tick, 0.001 * tick, scenes::frame(cloud).points});
     }
     const double depth = tick < 100 ? 0.02 - 0.0003 * tick : -0.01;
     outputs.push_back(renderer.step({Vec3(0.0001 * tick, depth, 0)}, 0.001 * tick));
