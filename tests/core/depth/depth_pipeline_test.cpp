@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "tests/core/depth/depth_cases.h"
 #include "runners/contract/allocation_counter.h"
+#include "tests/core/depth/depth_cases.h"
 
 namespace remote_touch::depth_pipeline_test {
 namespace {

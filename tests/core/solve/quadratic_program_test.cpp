@@ -9,8 +9,8 @@
 #include <limits>
 #include <numeric>
 
-#include "tests/core/solve/program_problems.h"
 #include "runners/contract/allocation_counter.h"
+#include "tests/core/solve/program_problems.h"
 
 namespace remote_touch::quadratic_program_test {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <thread>
 
+#include "runners/contract/allocation_counter.h"
 #include "runners/live/devices/haply.h"
 #include "runners/live/timing/steady_clock.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
-#include "runners/contract/allocation_counter.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 

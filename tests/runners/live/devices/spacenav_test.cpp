@@ -12,11 +12,11 @@
 #include <limits>
 #include <vector>
 
+#include "runners/contract/allocation_counter.h"
 #include "runners/live/timing/steady_clock.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/doubles/spacenav_daemon.h"
 #include "tests/doubles/spacenav_socket.h"
-#include "runners/contract/allocation_counter.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 
