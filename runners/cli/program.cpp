@@ -96,17 +96,14 @@ int flushed(int code) {
   return code;
 }
 
-}  // namespace
-
-int command_line(const std::function<void(Catalog&)>& add_entries, int argc, char** argv) {
+// make_catalog may throw.
+int run(const std::function<Catalog()>& make_catalog, int argc, char** argv) {
   // Sweeps build and drop scenes by the thousand: memory given back to the system each time costs a tenth.
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   const CommandLine line = with_signals();
   try {
-    Catalog catalog = built_in_catalog();
-    add_entries(catalog);
-    take_catalog(std::move(catalog), argc > 0 ? argv[0] : "");
+    take_catalog(make_catalog(), argc > 0 ? argv[0] : "");
     take_data_folder();
     return flushed(run_command_line(argc, argv, line, chosen_kernels));
   } catch (const Interrupted&) {
@@ -127,8 +124,19 @@ int command_line(const std::function<void(Catalog&)>& add_entries, int argc, cha
   return kBadInput;
 }
 
+}  // namespace
+
 int command_line(Catalog catalog, int argc, char** argv) {
-  return command_line([&catalog](Catalog& whole) { whole = std::move(catalog); }, argc, argv);
+  return run([&catalog] { return std::move(catalog); }, argc, argv);
+}
+
+int command_line(const std::function<void(Catalog&)>& add_entries, int argc, char** argv) {
+  const auto with_added = [&add_entries] {
+    Catalog catalog = built_in_catalog();
+    add_entries(catalog);
+    return catalog;
+  };
+  return run(with_added, argc, argv);
 }
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/provenance/maker.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
 
@@ -48,7 +49,9 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
   const StoredSweep stored = read_sweep(request.map);
-  const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
+  const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
+    return Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
+  });
   const SweepResult& result = stored.result;
   const SweepResult planned = sweep.plan();
   if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())

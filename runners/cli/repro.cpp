@@ -15,6 +15,7 @@
 #include "runners/cli/outputs.h"
 #include "runners/cli/progress.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/provenance/maker.h"
 #include "runners/provenance/provenance.h"
 #include "runners/provenance/shell_command.h"
 #include "runners/regression/comparison/comparison_text.h"
@@ -47,8 +48,10 @@ class Repro {
     for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
       if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
         comment("this program has another " + name + ": " + value);
-    say_who_made_it();
+    const std::string maker = other_maker(attributes_);
+    if (!maker.empty()) comment("it " + maker);
     if (!of("input_digests").empty()) comment("it read:\n" + of("input_digests"));
+    if (!maker.empty() && !is_known()) return;
     if (kind_ == "figure")
       print_figure_command();
     else if (command_makes_it())
@@ -89,12 +92,23 @@ class Repro {
                                   " -o FOLDER makes again: expected a file of its runs/");
   }
 
-  // Entries of a catalog or a plug-in, which this program may lack.
-  void say_who_made_it() const {
-    if (!of("program").empty() && of("program") != program_identity().name)
-      comment("it was made by " + of("program") + ": use that program");
-    if (!of("plugins").empty() && program_identity().plugins.empty())
-      comment("it was made with --plugin: give the same\n" + of("plugins"));
+  // Whether this program's catalog has all that the configuration names.
+  bool is_known() const {
+    try {
+      if (kind_ == "sweep") stored_sweep();
+      if (kind_ == "trace" || kind_ == "hashes") stored_experiment();
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+  Experiment stored_experiment() const {
+    return read_configuration(attributes_, file_,
+                              [&] { return Experiment::from_json(of("config"), file_ + " config"); });
+  }
+  Sweep stored_sweep() const {
+    return read_configuration(attributes_, file_,
+                              [&] { return Sweep::from_json(of("config"), file_ + " config"); });
   }
 
   // A replay's command is that of its sweep, and then its own.
@@ -170,14 +184,14 @@ class Repro {
   }
 
   ResultComparison trace_again(Progress& progress) const {
-    const Experiment experiment = Experiment::from_json(of("config"), file_ + " config");
+    const Experiment experiment = stored_experiment();
     const ColumnsInMemory made(columns_again(experiment, progress));
     const StoredTrace stored(file_);
     return compare_trace(stored, attributes_, made,
                          ours(experiment.to_json(), input_hashes(experiment.inputs())), {});
   }
   ResultComparison hashes_again(Progress& progress) const {
-    const Experiment experiment = Experiment::from_json(of("config"), file_ + " config");
+    const Experiment experiment = stored_experiment();
     const Column all = columns_again(experiment, progress).back();
     TickHashes made;
     for (const std::uint64_t hash : std::get<std::vector<std::uint64_t>>(all.values)) {
@@ -191,7 +205,7 @@ class Repro {
     const StoredSweep stored = read_sweep(file_);
     if (!of("shard").empty() || stored.in_progress)
       throw InputError(file_, "is a part of a sweep: expected a finished one, whole or merged");
-    const Sweep sweep = Sweep::from_json(of("config"), file_ + " config");
+    const Sweep sweep = stored_sweep();
     SweepRunOptions options;
     options.kernels = line_.kernels, options.stop = line_.stop;
     return compare_sweep(stored.result, stored.attributes, run_sweep(sweep, options),

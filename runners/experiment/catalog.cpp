@@ -1,6 +1,7 @@
 #include "runners/experiment/catalog.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/proxy/proxy_renderer.h"
 #include "core/rivals/averaged_proxy_renderer.h"
@@ -151,7 +152,7 @@ std::vector<RendererEntry> built_in_renderers() {
 // Of an own entry: a name that --set, lists and files can hold.
 bool is_name(const std::string& name) {
   return !name.empty() &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_.") == std::string::npos;
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") == std::string::npos;
 }
 
 template <class Entry>
@@ -173,8 +174,19 @@ void add_new(std::span<const Entry> entries, std::span<const Entry> known, Catal
       own.add(entry);
 }
 
-Catalog& current() {
-  static Catalog catalog = built_in_catalog();
+Catalog built_in_entries() {
+  Catalog catalog;
+  for (ScenarioEntry& entry : built_in_scenarios()) catalog.add(std::move(entry));
+  for (FixtureEntry& entry : built_in_fixtures()) catalog.add(std::move(entry));
+  for (TrajectoryEntry& entry : built_in_trajectories()) catalog.add(std::move(entry));
+  for (RendererEntry& entry : built_in_renderers()) catalog.add(std::move(entry));
+  for (const Measure& measure : built_in_measures()) catalog.add(measure);
+  return catalog;
+}
+
+// What use_catalog() was given.
+std::optional<Catalog>& chosen_catalog() {
+  static std::optional<Catalog> catalog;
   return catalog;
 }
 
@@ -202,13 +214,8 @@ Catalog& Catalog::add(Measure measure) {
   return *this;
 }
 
-Catalog built_in_catalog() {
-  Catalog catalog;
-  for (ScenarioEntry& entry : built_in_scenarios()) catalog.add(std::move(entry));
-  for (FixtureEntry& entry : built_in_fixtures()) catalog.add(std::move(entry));
-  for (TrajectoryEntry& entry : built_in_trajectories()) catalog.add(std::move(entry));
-  for (RendererEntry& entry : built_in_renderers()) catalog.add(std::move(entry));
-  for (const Measure& measure : built_in_measures()) catalog.add(measure);
+const Catalog& built_in_catalog() {
+  static const Catalog catalog = built_in_entries();
   return catalog;
 }
 
@@ -218,7 +225,7 @@ bool Catalog::is_empty() const {
 }
 
 Catalog own_entries(const Catalog& catalog) {
-  const Catalog built_in = built_in_catalog();
+  const Catalog& built_in = built_in_catalog();
   Catalog own;
   add_new(catalog.scenarios(), built_in.scenarios(), own);
   add_new(catalog.fixtures(), built_in.fixtures(), own);
@@ -229,27 +236,27 @@ Catalog own_entries(const Catalog& catalog) {
 }
 
 void use_catalog(Catalog catalog) {
-  current() = std::move(catalog);
+  chosen_catalog() = std::move(catalog);
 }
 
 const Catalog& catalog_in_use() {
-  return current();
+  return chosen_catalog() ? *chosen_catalog() : built_in_catalog();
 }
 
 std::span<const ScenarioEntry> scenarios() {
-  return current().scenarios();
+  return catalog_in_use().scenarios();
 }
 std::span<const FixtureEntry> fixtures() {
-  return current().fixtures();
+  return catalog_in_use().fixtures();
 }
 std::span<const TrajectoryEntry> trajectories() {
-  return current().trajectories();
+  return catalog_in_use().trajectories();
 }
 std::span<const RendererEntry> renderers() {
-  return current().renderers();
+  return catalog_in_use().renderers();
 }
 std::span<const Measure> measures() {
-  return current().measures();
+  return catalog_in_use().measures();
 }
 
 }  // namespace remote_touch

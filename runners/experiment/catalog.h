@@ -39,7 +39,7 @@ class Catalog {
 };
 
 // What comes with this project.
-Catalog built_in_catalog();
+const Catalog& built_in_catalog();
 
 // Those of this catalog that the built-in one does not have.
 Catalog own_entries(const Catalog& catalog);

@@ -196,6 +196,19 @@ void write_parameters(const Parameters& parameters, Json& object) {
   for (const Parameter& p : parameters) object[p.name] = std::visit(Writer{}, p.value);
 }
 
+namespace {
+
+// JSON does not take .3 and 3. for numbers, but users type them.
+Json number_or_text(const std::string& text) {
+  if (!text.starts_with('.') && !text.starts_with("-.") && !text.ends_with('.')) return Json(text);
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
+  return error == std::errc() && last == end ? Json(number) : Json(text);
+}
+
+}  // namespace
+
 void apply_override(Json& configuration, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -203,7 +216,8 @@ void apply_override(Json& configuration, const std::string& assignment) {
   const std::string text = assignment.substr(equals + 1);
   if (!is_utf8(assignment)) throw InputError("--set " + assignment, "expected UTF-8");
   const std::string path = assignment.substr(0, equals);
-  set_value(configuration, path, json_or_none(text, "--set " + path).value_or(text), "--set " + assignment);
+  const std::optional<Json> value = json_or_none(text, "--set " + path);
+  set_value(configuration, path, value ? *value : number_or_text(text), "--set " + assignment);
 }
 
 namespace {

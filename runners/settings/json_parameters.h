@@ -26,8 +26,8 @@ std::string value_text(const Parameter& parameter);
 // Throws InputError, about the subject, if the path leads through a value or past the end of a list.
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
 
-// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON, or as plain text if it is not
-// JSON.
+// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON or as a number such as .3
+// and 3., else it is plain text.
 void apply_override(Json& configuration, const std::string& assignment);
 
 }  // namespace remote_touch

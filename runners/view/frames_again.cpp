@@ -5,6 +5,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/frame_stream.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/provenance/maker.h"
 #include "runners/provenance/recipe.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/text_files/json_text.h"
@@ -31,7 +32,8 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
     throw InputError(
         name,
         "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
-  Experiment experiment = Experiment::from_json(parse_json(attribute(trace, "config"), name));
+  Experiment experiment = read_configuration(
+      trace, name, [&] { return Experiment::from_json(parse_json(attribute(trace, "config"), name)); });
   for (const ChangedInput& input :
        changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
     throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +

@@ -22,17 +22,23 @@ MEASURE = SWEEP["measures"][0]
 
 
 def plot(sweep, file):
-    """Mean and spread of a measure over the first axis, a line for each value of the second."""
-    x, lines = [name for name in sweep.sizes if name != "replicate"]
+    """Mean and spread of a measure over the first axis, a line for each value of the second where there is one."""
+    x, *others = [name for name in sweep.sizes if name != "replicate"]
     mean, spread = sweep[MEASURE].mean("replicate"), sweep[MEASURE].std("replicate")
     figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
-    for value in sweep[lines].values:
-        axes.errorbar(sweep[x], mean.sel({lines: value}), spread.sel({lines: value}), capsize=3,
-                      label=f"{value:g} {sweep[lines].attrs['units']}")
+    if not others:
+        axes.errorbar(sweep[x], mean, spread, capsize=3)
+    elif len(others) == 1:
+        lines = others[0]
+        for value in sweep[lines].values:
+            axes.errorbar(sweep[x], mean.sel({lines: value}), spread.sel({lines: value}), capsize=3,
+                          label=f"{value:g} {sweep[lines].attrs['units']}")
+        axes.legend(title=lines)
+    else:
+        sys.exit(f"plot_sweep.py: {len(others) + 1} axes: expected one or two")
     axes.set_xlabel(f"{x} / {sweep[x].attrs['units']}")
     axes.set_ylabel(f"{MEASURE} / {sweep[MEASURE].attrs['units']}")
     axes.set_title(f"version {sweep.attrs['version']}, digest {sweep.attrs['digest'][:12]}")
-    axes.legend(title=lines)
     figure.savefig(file, dpi=100)
     plt.close(figure)
 

@@ -38,6 +38,18 @@ void check_values(std::uint64_t size, const std::string& subject) {
                                   " bytes of values: expected up to " + std::to_string(kMaxValues));
 }
 
+// bytes(from, size): of a file or of an unpacked chunk.
+template <class Bytes>
+Ros1Record record_of(Bytes&& bytes, std::uint64_t at, const std::string& subject) {
+  Ros1Record record;
+  const std::uint64_t values = number_in(bytes(at, kLength));
+  check_values(values, subject);
+  record.values = named_values(bytes(at + kLength, values), subject);
+  record.data_size = number_in(bytes(at + kLength + values, kLength));
+  record.data_at = at + 2 * kLength + values;
+  return record;
+}
+
 // Two numbers of 32 bits: seconds and nanoseconds.
 std::int64_t time_ns(MessageCursor& cursor) {
   const std::int64_t seconds = cursor.u32();
@@ -83,23 +95,13 @@ Ros1Bag::Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted)
 }
 
 Ros1Record Ros1Bag::record_at(std::uint64_t at) const {
-  Ros1Record record;
-  const std::uint64_t values = number_in(file_.bytes(at, kLength));
-  check_values(values, file_.name());
-  record.values = named_values(file_.bytes(at + kLength, values), file_.name());
-  record.data_size = number_in(file_.bytes(at + kLength + values, kLength));
-  record.data_at = at + 2 * kLength + values;
-  return record;
+  return record_of([this](std::uint64_t from, std::uint64_t size) { return file_.bytes(from, size); }, at,
+                   file_.name());
 }
 
 Ros1Record Ros1Bag::record_in(BagChunk& chunk, std::uint64_t at) const {
-  Ros1Record record;
-  const std::uint64_t values = number_in(chunk.view(at, kLength));
-  check_values(values, file_.name());
-  record.values = named_values(chunk.view(at + kLength, values), file_.name());
-  record.data_size = number_in(chunk.view(at + kLength + values, kLength));
-  record.data_at = at + 2 * kLength + values;
-  return record;
+  return record_of([&chunk](std::uint64_t from, std::uint64_t size) { return chunk.view(from, size); }, at,
+                   file_.name());
 }
 
 // The records of the file itself: what is in chunks is not looked at.

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "scenarios/recordings/recording.h"
 #include "tests/core/depth/depth_cases.h"
 #include "tests/core/depth/reference_depth_pipeline.h"
+#include "tests/support/recorded_data.h"
 
 namespace remote_touch::depth_agreement_test {
 namespace {
@@ -95,11 +95,6 @@ TEST(DepthPipeline, AgreesWithTheEquationsForEveryWindow) {
   for (int window = 3; window <= 15; window += 2)
     expect_as_reference("window " + std::to_string(window), with_holes(noisy_waves(70, 50), 0.1),
                         {true, window, 0.01, 18 - window, 0.008}, 0.02);
-}
-
-std::filesystem::path data_root() {
-  const char* root = std::getenv("REMOTE_TOUCH_DATA");
-  return root ? root : std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
 scenes::DepthScene recorded(const std::filesystem::path& path) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -18,6 +17,7 @@
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
+#include "tests/support/recorded_data.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::benchmark_plan_test {
@@ -28,13 +28,6 @@ void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
 }
 
 namespace {
-
-// Recordings are in REMOTE_TOUCH_DATA, else in ../shared/data beside the project.
-void look_for_recordings() {
-  const auto beside = std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR).parent_path() / "shared/data";
-  const char* named = std::getenv("REMOTE_TOUCH_DATA");
-  set_data_folder(named != nullptr ? named : beside.string());
-}
 
 // The run with the noise of 0.6 r_c, or the scene's own, cut short: four frames.
 Experiment beginning(const Sweep& sweep) {
@@ -51,7 +44,7 @@ std::vector<Method> methods_for(const BenchmarkScene& scene) {
 class Scenes : public testing::TestWithParam<BenchmarkScene> {};
 
 TEST_P(Scenes, RunWithEveryMethodOverTheSameNoise) {
-  look_for_recordings();
+  set_data_folder(data_root().string());
   const BenchmarkScene& scene = GetParam();
   std::vector<std::uint64_t> hashes;
   for (const Method& method : methods_for(scene)) {

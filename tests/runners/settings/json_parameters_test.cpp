@@ -27,6 +27,15 @@ TEST(ApplyOverride, SetsWhatAPathLeadsTo) {
   EXPECT_EQ(with(R"({"a": null})", "a.b=1").dump(), R"({"a":{"b":1}})");
 }
 
+TEST(ApplyOverride, TakesNumbersAsTheyAreTyped) {
+  EXPECT_EQ(with("{}", "a=.3").dump(), R"({"a":0.3})");
+  EXPECT_EQ(with("{}", "a=-.25").dump(), R"({"a":-0.25})");
+  EXPECT_EQ(with("{}", "a=3.").dump(), R"({"a":3.0})");
+  EXPECT_EQ(with("{}", "a=1e-3").dump(), R"({"a":0.001})");
+  for (const char* text : {"01", "..", ".", "./a.h5", "x.", ".3s", "-."})
+    EXPECT_EQ(with("{}", std::string("a=") + text)["a"], text);
+}
+
 // Each level is one call of what prints or destroys the value: 60000 of them exhausted the stack.
 TEST(ApplyOverride, APathHasSoManyLevels) {
   const auto path = [](int levels) {

@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "core/tool/mesh/mesh_check.h"
 #include "core/tool/voxels/voxel_tool.h"
 #include "tests/support/meshes.h"
+#include "tests/support/recorded_data.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::mesh_file_test {
@@ -117,12 +116,6 @@ TEST_F(MeshFileTest, CornersThatAreNoVerticesAreRefusedOrCounted) {
     if (!check_mesh(read_mesh(file)).closed()) throw InputError(file.string(), "not closed");
   });
   EXPECT_HAS(message, "far.obj: ");
-}
-
-// REMOTE_TOUCH_DATA, else ../shared/data beside the project.
-fs::path data_root() {
-  const char* root = std::getenv("REMOTE_TOUCH_DATA");
-  return root ? fs::path(root) : fs::path(REMOTE_TOUCH_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
 struct Known {

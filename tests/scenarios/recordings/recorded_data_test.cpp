@@ -3,23 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
 #include "scenarios/recordings/recording.h"
+#include "tests/support/recorded_data.h"
 
 namespace remote_touch::recorded_data_test {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-// REMOTE_TOUCH_DATA, else ../shared/data beside the project.
-fs::path data_root() {
-  const char* root = std::getenv("REMOTE_TOUCH_DATA");
-  return root ? fs::path(root) : fs::path(REMOTE_TOUCH_SOURCE_DIR) / ".." / "shared" / "data";
-}
 
 #define SKIP_WITHOUT(path) \
   if (!fs::exists(path)) GTEST_SKIP() << "recorded data are missing: " << (path)

@@ -61,11 +61,11 @@ RenderOutput CentroidRenderer::step(const DeviceState& device, double) {
     const Vec3 offset_m = Vec3(points.x[i], points.y[i], points.z[i]) - device.position_W;
     sum += Vec3((offset_m / grid_m).array().round());
   }
-  const Vec3 away_m = -grid_m / static_cast<double>(near_.size()) * sum;
-  const double distance_m = away_m.norm();
+  const Vec3 from_centroid_m = -grid_m / static_cast<double>(near_.size()) * sum;
+  const double distance_m = from_centroid_m.norm();
   if (distance_m == 0) return out;
   out.nearest_distance_m = distance_m;
-  out.normal_W = away_m / distance_m;
+  out.normal_W = from_centroid_m / distance_m;
   const double stiffness_N_per_m = mean_stiffness_N_per_m(points, near_.size(), settings_.stiffness_N_per_m);
   out.force_N = stiffness_N_per_m * (settings_.radius_m - distance_m) * out.normal_W;
   out.state = ContactState::contact;

@@ -1,0 +1,15 @@
+// Where real recordings and meshes are, for tests that read them.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace remote_touch {
+
+// REMOTE_TOUCH_DATA, else ../shared/data beside the project.
+inline std::filesystem::path data_root() {
+  if (const char* named = std::getenv("REMOTE_TOUCH_DATA")) return named;
+  return std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR).parent_path() / "shared/data";
+}
+
+}  // namespace remote_touch
