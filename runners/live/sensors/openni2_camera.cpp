@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/live/sensors/lasting_threads.h"
 #include "runners/live/sensors/openni2_library.h"
 #include "runners/live/sensors/pixel_rows.h"
 #include "runners/live/sensors/sensor_clock.h"
@@ -281,13 +282,32 @@ SensorState Openni2Camera::end() {
   return SensorState::ended;
 }
 
-}  // namespace
+// The library remembers every thread that ever called it. In each call it asks whether these threads still
+// exist, in a way that crashes once the memory of one that has ended is given back. So all calls come from
+// one that lasts.
+class LastingOpenni2Camera final : public DepthSource {
+ public:
+  LastingOpenni2Camera(const std::string& address, const Clock& host) : thread_(lasting_thread()) {
+    thread_->run([&] { camera_ = std::make_unique<Openni2Camera>(address, host); });
+  }
+  ~LastingOpenni2Camera() override {
+    thread_->run([&] { camera_.reset(); });
+  }
 
-std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clock) {
-  return std::make_unique<Openni2Camera>(address, clock);
-}
+  const SensorView& view() const override { return camera_->view(); }
+  SensorState next(SensorFrame& frame, double timeout_s) override {
+    SensorState state = SensorState::failed;
+    thread_->run([&] { state = camera_->next(frame, timeout_s); });
+    return state;
+  }
+  std::string failure() const override { return camera_->failure(); }
 
-Availability openni2_availability() {
+ private:
+  const std::shared_ptr<LastingThread> thread_;
+  std::unique_ptr<Openni2Camera> camera_;
+};
+
+Availability found_cameras() {
   try {
     const openni2::Library library;
     const std::vector<openni::DeviceInfo> cameras = library.cameras();
@@ -299,6 +319,18 @@ Availability openni2_availability() {
   } catch (const InputError& error) {
     return {.detail = error.what()};
   }
+}
+
+}  // namespace
+
+std::unique_ptr<DepthSource> open_openni2(const std::string& address, Clock& clock) {
+  return std::make_unique<LastingOpenni2Camera>(address, clock);
+}
+
+Availability openni2_availability() {
+  Availability found;
+  lasting_thread()->run([&] { found = found_cameras(); });
+  return found;
 }
 
 }  // namespace remote_touch
