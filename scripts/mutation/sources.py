@@ -78,11 +78,11 @@ def render(data, order, first, start, end):
     return b"".join([*parts, data[at:end]]), first
 
 
-def write_file(source, target, mutations, header):
+def write_file(source, target, mutations):
     """target is source with its mutations, each line one line lower."""
     data = source.read_bytes()
     text, _ = render(data, edits(mutations), 0, 0, len(data))
-    write_changed(target, f'#include "{header}"\n'.encode() + text)
+    write_changed(target, f'#include "{HEADER}"\n'.encode() + text)
 
 
 def write_changed(target, text):
@@ -93,8 +93,7 @@ def write_changed(target, text):
 
 def write_tree(root, tree, folders, files, mutations):
     """tree is a copy of root's folders and files, with {number: mutation} in it."""
-    header = tree / HEADER
-    write_changed(header, CHOICE.encode())
+    write_changed(tree / HEADER, CHOICE.encode())
     by_file = {}
     for number, mutation in mutations.items():
         by_file.setdefault(mutation.file, {})[number] = mutation
@@ -104,7 +103,7 @@ def write_tree(root, tree, folders, files, mutations):
     for path in sorted(wanted):
         source, target = root / path, tree / path
         if str(path) in by_file:
-            write_file(source, target, by_file[str(path)], header)
+            write_file(source, target, by_file[str(path)])
         elif not target.exists() or not filecmp.cmp(source, target, shallow=False):
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, target)  # not its time stamp: what was compiled from a mutated copy is out of date
