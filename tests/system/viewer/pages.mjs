@@ -1,11 +1,11 @@
-// Pages of results, as people use them. Usage: node pages.mjs PROGRAM CHROMIUM [all]
+// Pages of results, as people use them. Usage: node pages.mjs PROGRAM CHROMIUM [EXPERIMENT... | all]
 import assert from "node:assert/strict";
 import { execFile, execFileSync, spawnSync } from "node:child_process";
 import { test } from "node:test";
 import { promisify } from "node:util";
 import { goTo, noComplaints, openBrowser, openPage, picture, tick } from "./browser.mjs";
 
-const [program, chromium, extent] = process.argv.slice(2);
+const [program, chromium, ...wanted] = process.argv.slice(2);
 const remoteTouch = (...args) => execFileSync(program, ["-q", "--force", ...args], { encoding: "utf8" });
 const columns = (trace, ticks, ...names) =>
   JSON.parse(execFileSync("/usr/bin/python3", ["columns.py", trace, ticks.join(","), ...names], { encoding: "utf8" }));
@@ -170,24 +170,26 @@ test("without WebGL the page says so and shows the scene from the side", async (
   }
 });
 
-if (extent === "all") {
+function experiments() {
   const list = execFileSync(program, ["list"], { encoding: "utf8" }).split(/^(?=\S)/m).find((part) => part.startsWith("experiments"));
-  const names = list.trim().split("\n").slice(1).map((line) => line.trim().split(/ +/)[0]);
-  const execute = promisify(execFile);
-  async function makePage(name) {
-    await execute(program, ["-q", "--force", "run", name, "-o", `${name}.h5`]);
-    await execute(program, ["-q", "--force", "view", `${name}.h5`, "-o", `${name}.html`, "--max-mb", "3"]);
-  }
-  let coming; // the page of the next experiment is made while the browser is busy with this one
-  for (const [i, name] of names.entries())
-    test(`a page of ${name}`, async () => {
-      const made = coming ?? makePage(name);
-      coming = i + 1 < names.length ? made.catch(() => {}).then(() => makePage(names[i + 1])) : undefined;
-      coming?.catch(() => {}); // its own test reports that
-      await made;
-      await withPage(`${name}.html`, {}, async (page) => {
-        const last = await page.evaluate(() => window.remoteTouch.player.ticks - 1);
-        await showsMotion(page, [Math.floor(last / 5), last]);
-      });
-    });
+  return list.trim().split("\n").slice(1).map((line) => line.trim().split(/ +/)[0]);
 }
+
+const names = wanted[0] === "all" ? experiments() : wanted;
+const execute = promisify(execFile);
+async function makePage(name) {
+  await execute(program, ["-q", "--force", "run", name, "-o", `${name}.h5`]);
+  await execute(program, ["-q", "--force", "view", `${name}.h5`, "-o", `${name}.html`, "--max-mb", "3"]);
+}
+let coming; // the page of the next experiment is made while the browser is busy with this one
+for (const [i, name] of names.entries())
+  test(`a page of ${name}`, async () => {
+    const made = coming ?? makePage(name);
+    coming = i + 1 < names.length ? made.catch(() => {}).then(() => makePage(names[i + 1])) : undefined;
+    coming?.catch(() => {}); // its own test reports that
+    await made;
+    await withPage(`${name}.html`, {}, async (page) => {
+      const last = await page.evaluate(() => window.remoteTouch.player.ticks - 1);
+      await showsMotion(page, [Math.floor(last / 5), last]);
+    });
+  });

@@ -1,0 +1,99 @@
+// Every tick of the experiments with a tool, audited: whether points got into it between two frames. The
+// ticks in which a frame comes are left out, because its points can be anywhere.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "core/parameters/input_error.h"
+#include "runners/figures/tool_picture.h"
+#include "runners/simulation/simulation.h"
+#include "scenarios/recordings/recording_part.h"
+#include "tests/runners/simulation/tool_audit.h"
+#include "tests/support/recorded_data.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::tool_crossings_test {
+namespace {
+
+// Less than this deep is no collision for the look-ahead rule (look_ahead_motion.cpp).
+constexpr double kLookAhead_m = 1e-4;
+// The printed rule lets points into the shell: a point of it is within 1.5 sqrt(3) voxels of the centre of a
+// free voxel, which is outside.
+constexpr double kVoxels_m = 2.5981 * 5e-4;
+
+ToolPose pose_at(const Trace& trace, std::size_t tick) {
+  return {trace.proxy_position_m[tick], trace.tool_orientation[tick]};
+}
+
+ToolAudit audited(const Trace& trace, const std::map<int, PointCloud>& clouds, ToolAuditor auditor) {
+  int shown = -1;
+  for (std::size_t i = 1; i < trace.length(); ++i) {
+    if (trace.frame_index[i] == shown) {
+      auditor.tick(pose_at(trace, i - 1), pose_at(trace, i));
+    } else {
+      shown = trace.frame_index[i];
+      auditor.on_frame(clouds.at(shown));
+    }
+  }
+  return auditor.audit();
+}
+
+ToolAudit audited(const std::string& name, const std::string& rule, double tolerance_m) {
+  const Experiment experiment = Experiment::load(name, {"renderer.contact_rule=" + rule});
+  std::map<int, PointCloud> clouds;
+  SimulationOptions options;
+  options.on_frame = [&](const Frame& frame) {
+    PointCloud buffer;
+    clouds[frame.index] = frame.points->every_point(scenes::kernels(), buffer);
+  };
+  const Trace trace = simulate(experiment, options);
+  const ToolAudit audit = audited(trace, clouds, {tool_of(experiment)->mesh, tolerance_m});
+  std::printf("%s, %s: of %lld point-ticks %lld entered the tool by more than %g mm\n", name.c_str(),
+              rule.c_str(), static_cast<long long>(audit.point_ticks), static_cast<long long>(audit.entered),
+              1e3 * tolerance_m);
+  return audit;
+}
+
+class ToolCrossings : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, ToolCrossings, testing::Values("fig6.3", "tool-slab", "tool-slot"));
+// In scripts/test --full only.
+INSTANTIATE_TEST_SUITE_P(LongExperiments, ToolCrossings,
+                         testing::Values("tool-walk", "fig6.4", "fig6.4-organ", "fig6.4-box"));
+
+void expect_none(const std::string& name, const std::string& rule, double tolerance_m) {
+  set_data_folder(data_root().string());
+  try {
+    const ToolAudit audit = audited(name, rule, tolerance_m);
+    EXPECT_GT(audit.point_ticks, 1'000'000);
+    EXPECT_EQ(audit.entered, 0) << audit.deepest_m;
+  } catch (const InputError& missing) {
+    ASSERT_TRUE(contains(missing.what(), "no such recording")) << missing.what();
+    GTEST_SKIP() << missing.what();
+  }
+}
+
+TEST_P(ToolCrossings, ThereAreNoneByLookAhead) {
+  expect_none(GetParam(), "look-ahead", kLookAhead_m);
+}
+
+TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
+  expect_none(GetParam(), "voxels", kVoxels_m);
+}
+
+// What the printed rule does to a tool that comes from the back of a surface.
+TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
+  EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);
+  EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
+}
+
+// Walls that close to less than the tool's thickness: no pose keeps their points out.
+TEST(ToolCrossings, BetweenClosingWallsNoRuleKeepsThePointsOut) {
+  EXPECT_GT(audited("tool-wedge", "look-ahead", kLookAhead_m).entered, 0);
+  EXPECT_GT(audited("tool-wedge", "voxels", kVoxels_m).entered, 0);
+}
+
+}  // namespace
+}  // namespace remote_touch::tool_crossings_test
