@@ -57,7 +57,8 @@ struct RenderOutput {
   Vec3 proxy_W = Vec3::Zero();
   Vec3 force_N = Vec3::Zero();
   // The commanded position of the slave robot, 5.2: never a proxy position inside a region, so the last
-  // command is repeated until there is a valid one. NaN before the first.
+  // command is repeated until there is a valid one. NaN before the first. A slave robot with a tool also
+  // follows the orientation of the pose that is commanded, the tool's or the device's.
   Vec3 slave_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   ContactState state = ContactState::free;  // of proxy_W
   Vec3 normal_W = Vec3::Zero();         // unit, out of the surface; zero before the first points came near

@@ -11,8 +11,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
-
 double reach_m(const SphereTree& spheres) {
   double reach = 0;
   for (const Sphere& leaf : spheres.leaves()) reach = std::max(reach, leaf.centre.norm() + leaf.radius_m);
@@ -30,7 +28,7 @@ Parameters region_parameters(ToolParameters& p) {
   Parameters all = parameters(p);
   std::erase_if(all, [](const Parameter& parameter) {
     for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio",
-                              "velocity_estimate", "max_prediction_s"})
+                              "velocity_estimate", "max_prediction_s", "velocity_force"})
       if (parameter.name == other) return true;
     return false;
   });
@@ -49,7 +47,8 @@ SphereTreeRenderer::SphereTreeRenderer(const ToolParameters& parameters,
       tool_(std::move(tool)),
       kernels_(kernels),
       contacts_(spheres, parameters.look_ahead_m, kernels),
-      motion_(parameters, *tool_, reach_m(*spheres)) {}
+      motion_(parameters, *tool_, reach_m(*spheres)),
+      slave_(parameters.slave_command) {}
 
 void SphereTreeRenderer::prepare(Frame& frame) const {
   frame.prepared = prepared_form<RegionTree>(*frame.points, kernels_);
@@ -68,15 +67,7 @@ void SphereTreeRenderer::on_frame(const Frame& frame) {
 // One tick of the quasi-static motion, 7.4.2, and the springs of 7.4.3.
 void SphereTreeRenderer::follow(const ToolPose& device, RenderOutput& out) {
   const ToolMotionReport report = motion_.move(pose_, device, contacts_, std::exchange(updated_, false));
-  if (!report.push_W.isZero(0))
-    normal_W_ = report.push_W.normalized();
-  else if (report.touch_W.norm() > kNoDirection)
-    normal_W_ = report.touch_W.normalized();
-  out.steps = report.steps;
-  out.converged = report.at_rest;
-  out.tool->active_constraints = report.active_count;
-  out.tool->detections = report.detections;
-  out.tool->budget_exhausted = !report.at_rest;
+  take_report(report, normal_W_, out);
 }
 
 RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
@@ -103,7 +94,8 @@ RenderOutput SphereTreeRenderer::step(const DeviceState& device, double) {
     out.force_N = wrench.force_N;
     out.tool->torque_Nm = wrench.torque_Nm;
   }
-  out.proxy_W = out.slave_W = pose_.p_W;
+  out.proxy_W = pose_.p_W;
+  out.slave_W = slave_.command_W(pose_, target);
   out.tool->orientation_W = pose_.q_WT;
   out.normal_W = normal_W_;
   out.state = state_of(touch.nearest_distance_m);

@@ -7,6 +7,7 @@
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/sphere_tree/region_contacts.h"
+#include "core/tool/dynamics/slave_position.h"
 #include "core/tool/dynamics/tool_parameters.h"
 #include "core/tool/motion/look_ahead_motion.h"
 #include "core/tool/voxels/voxel_tool.h"
@@ -45,6 +46,7 @@ class SphereTreeRenderer final : public Renderer {
   Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the regions push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
+  SlavePosition slave_;
   FrameOrder order_;
 };
 

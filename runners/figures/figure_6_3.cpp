@@ -23,7 +23,7 @@ const std::vector<std::pair<std::string, std::string>> kRules = {{"look_ahead", 
 const std::vector<int> kSpacings_mm = {3, 2, 1};
 
 struct BoxRun {
-  std::string name, rule;  // in tables; of the experiment
+  std::string name, tool, rule;  // in tables; of the experiment
   int spacing_mm;
   Trace trace;
 };
@@ -97,11 +97,11 @@ Table motion_table(const BoxRun& run) {
 
 // Over all runs of a rule, one row for each.
 Table summary_table(const std::vector<BoxRun>& runs) {
-  std::vector<std::string> rules;
+  std::vector<std::string> tools, rules;
   std::vector<std::vector<double>> rows;
   for (const BoxRun& run : runs) {
     const Trace& t = run.trace;
-    rules.push_back(run.rule);
+    tools.push_back(run.tool), rules.push_back(run.rule);
     rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau(t)), double(max(t.contact_count)),
                     double(max(t.active_constraints)), double(max(t.contact_clusters)),
                     *std::max_element(t.tool_penetration_m.begin(), t.tool_penetration_m.end()),
@@ -119,19 +119,23 @@ Table summary_table(const std::vector<BoxRun>& runs) {
                                            {"exhausted", "1", "ticks that used up their detections"},
                                            {"unheld", "1", "ticks in which points touch without holding"}};
   Table table = table_of("runs", "both rules, points 3, 2 and 1 mm apart", columns, rows);
-  table.columns.insert(table.columns.begin(), {"rule", "1", "contact rule", rules, 1, {}});
+  table.columns.insert(table.columns.begin(), {{"tool", "1", "tool_mesh of the run", tools, 1, {}},
+                                               {"rule", "1", "contact rule", rules, 1, {}}});
   return table;
 }
 
 std::vector<BoxRun> box_runs(const FigureContext& context) {
   std::vector<BoxRun> runs;
   std::vector<Experiment> experiments;
+  const auto add = [&](const std::string& name, const std::string& tool, const std::string& rule, int mm) {
+    runs.push_back({name, tool, rule, mm, {}});
+    experiments.push_back(
+        Experiment::load("fig6.3", {"renderer.tool_mesh=" + tool, "renderer.contact_rule=" + rule,
+                                    "scenario.spacing_m=" + std::to_string(mm) + "e-3"}));
+  };
   for (const auto& [name, rule] : kRules)
-    for (const int mm : kSpacings_mm) {
-      runs.push_back({name, rule, mm, {}});
-      experiments.push_back(Experiment::load(
-          "fig6.3", {"renderer.contact_rule=" + rule, "scenario.spacing_m=" + std::to_string(mm) + "e-3"}));
-    }
+    for (const int mm : kSpacings_mm) add(name, "husky", rule, mm);
+  for (const auto& [name, rule] : kRules) add(name, "block", rule, kSpacings_mm[0]);
   std::vector<Trace> traces = context.run(experiments);
   for (std::size_t r = 0; r < runs.size(); ++r) runs[r].trace = std::move(traces[r]);
   return runs;
@@ -157,6 +161,16 @@ std::pair<double, double> plateau_slack_mm(const std::string& rule) {
   return {kVoxel, kChord + kVoxel + kSubStep + kSinks};
 }
 
+// Where the outline of a tool stops in the closed form. place: of the tool's numbers in the table.
+Claim stop_claim(const std::string& name, const std::string& what, const BoxRun& run,
+                 const std::string& place) {
+  const auto [early, late] = plateau_slack_mm(run.rule);
+  const double stops_deg = second_number("chapter_6", place + "/stop_angle_deg"),
+               deg_per_mm = second_number("chapter_6", place + "/deg_per_mm");
+  return claim_between(name, what, "-", tool_deg(run.trace, plateau(run.trace)),
+                       stops_deg - early * deg_per_mm, stops_deg + late * deg_per_mm, "deg");
+}
+
 void add_rule_claims(Figure& figure, const BoxRun& run) {
   const Trace& t = run.trace;
   const auto claim = [&](Claim made) { figure.claims.push_back(std::move(made)); };
@@ -172,11 +186,7 @@ void add_rule_claims(Figure& figure, const BoxRun& run) {
       name, rule + "ticks without a point that touches while the tool lags by over 1 deg", "0",
       ticks_with(t, [&](std::size_t i) { return lag_rad(t, i) > kBlocked_rad && t.contact_count[i] == 0; }),
       0, "ticks"));
-  const auto [early, late] = plateau_slack_mm(run.rule);
-  const double stops = second_number("chapter_6", "/box/stop_angle_deg"),
-               deg_per_mm = second_number("chapter_6", "/box/deg_per_mm");
-  claim(claim_between(name, rule + "rotation of the tool where the device has turned 30 deg", "-",
-                      tool_deg(t, plateau(t)), stops - early * deg_per_mm, stops + late * deg_per_mm, "deg"));
+  claim(stop_claim(name, rule + "rotation of the tool where the device has turned 30 deg", run, "/box"));
   claim(claim_at_most(name, rule + "gap between device and tool along y while nothing touches", "0",
                       max_gap_untouched_m(t), 1e-9, "m"));
   claim(claim_at_most(name, rule + "fraction of ticks with a value that is not finite", "-",
@@ -201,7 +211,16 @@ void add_spacing_claim(Figure& figure, std::span<const BoxRun> runs) {
       "6 at an unknown spacing", min_rise, 1, "points"));
 }
 
-// A tool that was not made for this box: a bar of 80 x 10 mm, turned between two walls 40 mm apart. Its
+// Tools that were not made for this box. A block as long, wide and high as the husky stops elsewhere.
+void add_block_claims(Figure& figure, std::span<const BoxRun> runs) {
+  for (const BoxRun& run : runs)
+    figure.claims.push_back(stop_claim(figure.name,
+                                       run.rule + ": a block of the husky's length, width and height: "
+                                                  "its rotation there",
+                                       run, "/box/block"));
+}
+
+// And a bar of 80 x 10 mm, turned between two walls 40 mm apart. Its
 // corner is at a wall where 40 sin(a) + 5 cos(a) = 20.
 void add_slot_claim(Figure& figure, const FigureContext& context) {
   const double stops_deg =
@@ -218,6 +237,26 @@ void add_slot_claim(Figure& figure, const FigureContext& context) {
       "look-ahead: a bar in a slot (tool-slot) stops at 22.62 deg, from its sides alone: maximum "
       "difference for points 3, 2 and 1 mm apart",
       "-", max_error_deg, 0.02, "deg"));
+}
+
+// The fifth side, 6.3.1: the device goes 20 mm deeper than the floor lets the tool. Its top is at -20 mm, and
+// half of the husky, or the block, is 10 mm high.
+void add_floor_claims(Figure& figure, const FigureContext& context) {
+  constexpr double kDevice_m = -0.03, kTool_m = -0.01, kSubStep_m = 0.5 * kBoxVoxel_m;
+  std::vector<Experiment> experiments;
+  for (const auto& [name, rule] : kRules)
+    experiments.push_back(
+        Experiment::load("fig6.3", {"renderer.tool_mesh=block", "renderer.contact_rule=" + rule,
+                                    "trajectory.poses.1.1=" + std::to_string(kDevice_m), "duration_s=2"}));
+  const std::vector<Trace> traces = context.run(experiments);
+  for (std::size_t r = 0; r < kRules.size(); ++r) {
+    // As printed the floor is in the shell, whose upper side is within half a voxel of the surface.
+    const double deep_m = r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m + kSubStep_m;
+    figure.claims.push_back(claim_between(figure.name,
+                                          kRules[r].second + ": height at which the floor stops the block",
+                                          "-", traces[r].proxy_position_m.back().y(), kTool_m - deep_m,
+                                          kTool_m + (r == 0 ? 1e-5 : 0.5 * kBoxVoxel_m), "m"));
+  }
 }
 
 Panel time_panel(const std::string& title, const char* label, int row, int column) {
@@ -272,7 +311,7 @@ Figure figure_6_3(const FigureContext& context) {
       "their distance, ahead of the tool. Right: the tool's voxels as printed. The picture is of the left "
       "run at 30 deg: the tool filled, the device transparent. The number of points that touch depends on "
       "how close they lie (table runs); the constraints that hold the tool are never more than 6."};
-  const std::size_t step = kSpacings_mm.size();
+  const std::size_t step = kSpacings_mm.size(), of_husky = step * kRules.size();
   for (std::size_t r = 0; r < kRules.size(); ++r) {
     const BoxRun& run = runs[r * step];
     figure.tables.push_back(motion_table(run));
@@ -280,7 +319,9 @@ Figure figure_6_3(const FigureContext& context) {
     add_rule_claims(figure, run);
     add_spacing_claim(figure, std::span(runs).subspan(r * step, step));
   }
+  add_block_claims(figure, std::span(runs).subspan(of_husky));
   add_slot_claim(figure, context);
+  add_floor_claims(figure, context);
   figure.tables.push_back(summary_table(runs));
   add_pictures(figure, context, runs[0]);
   return figure;

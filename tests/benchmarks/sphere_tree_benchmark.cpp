@@ -22,7 +22,7 @@
 namespace remote_touch::benchmarks {
 namespace {
 
-constexpr double kLookAhead_m = ToolParameters{}.look_ahead_m;
+const double kLookAhead_m = ToolParameters{}.look_ahead_m;
 constexpr double kSettled_m = 1e-4;
 constexpr double kAtRest_m = 1e-5;  // these two as the renderer sphere-tree has them by default
 constexpr int kDetections = 30;

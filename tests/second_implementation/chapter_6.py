@@ -1,19 +1,20 @@
 """Chapter 6 from its equations: the depth filter of 6.2.1, and a tool turned between walls, 6.3.1.
 
 The tool is turned about the axis along which the walls stand, so the plane across it is enough: the tool is its outline
-there, the hull of four discs (core/tool/mesh/generated_tools.cpp, "husky"); a motion is two displacements and a rotation.
+there, the hull of four discs (core/tool/mesh/generated_tools.cpp, "husky" and "block"); a motion is two displacements and
+a rotation.
 
 Readings, where the print leaves a choice (analysis/README.md has the evidence for each):
 - 6.2.2: a point less than a voxel deep in the tool is in contact, a deeper one in collision.
 - (6.1): a displacement per unit step. (6.4): the factor 1/2 changes nothing.
-- 6.2.5: the motion that is wanted and the one that is found are limited to s_max; sub-steps are half a voxel.
+- 6.2.5: the motion that is found is limited to s_max; sub-steps are half a voxel.
 """
 import itertools
 import math
 
 import numpy
 
-VOXEL, S_MAX = 0.5e-3, 1e-3
+VOXEL = 0.5e-3  # sub-steps of half of that are shorter than s_max, 1 mm
 
 
 # --- 6.2.1: the filter at a step in depth ---
@@ -55,6 +56,7 @@ def filter_numbers(seed):
 # --- 6.3.1: a tool turned between walls ---
 
 DISCS = [((34.75e-3, 24e-3), 10e-3), ((-34.75e-3, 24e-3), 10e-3), ((35.12e-3, -26e-3), 8e-3), ((-35.12e-3, -26e-3), 8e-3)]
+BLOCK = [((x, z), 8e-3) for x in (39.5e-3, -39.5e-3) for z in (26e-3, -26e-3)]
 BOX = (0.110, 0.090)
 DIRECTIONS = numpy.stack([f(numpy.linspace(0, 2 * math.pi, 1440, endpoint=False)) for f in (numpy.cos, numpy.sin)], axis=1)
 
@@ -153,10 +155,10 @@ def extremes(rows):
     return numpy.unique(numpy.array([row for pair in kept.values() for row in pair]), axis=0)
 
 
-def plateau_deg(spacing, free_deg=18.0, commanded_deg=30.0, degrees_a_tick=0.05, detections=60):
+def plateau_deg(spacing, discs=DISCS, free_deg=15.0, commanded_deg=30.0, degrees_a_tick=0.05, detections=60):
     """6.2.5 while the device turns on from a rotation at which nothing touches; the rotation of the tool at its end."""
     points, normals = walls(spacing)
-    tool = Tool()
+    tool = Tool(discs)
     tool.pose[2] = math.radians(free_deg)
     if (tool.depth(points) > 0).any():
         raise ValueError("the tool touches where it should be free")
@@ -171,7 +173,7 @@ def plateau_deg(spacing, free_deg=18.0, commanded_deg=30.0, degrees_a_tick=0.05,
                 motion = tool.nearest_motion(numpy.zeros(3), extremes(tool.rows(points, normals)[collides]), 1.0)
                 motion = tool.limited(motion, VOXEL / 2)
             elif touches.any():
-                motion = tool.nearest_motion(tool.limited(wanted, S_MAX), extremes(tool.rows(points, normals)[touches]), 0.0)
+                motion = tool.nearest_motion(wanted, extremes(tool.rows(points, normals)[touches]), 0.0)
                 motion = tool.limited(motion, VOXEL / 2)
             else:
                 motion = tool.limited(wanted, VOXEL / 2)
@@ -181,7 +183,11 @@ def plateau_deg(spacing, free_deg=18.0, commanded_deg=30.0, degrees_a_tick=0.05,
     return math.degrees(tool.pose[2])
 
 
+def stop(discs):
+    wider = stop_angle_deg(discs, (BOX[0] + 2e-4, BOX[1] + 2e-4))  # every wall 0.1 mm further away
+    return {"stop_angle_deg": stop_angle_deg(discs), "deg_per_mm": (wider - stop_angle_deg(discs)) / 0.1}
+
+
 def box_numbers():
-    wider = stop_angle_deg(box=(BOX[0] + 2e-4, BOX[1] + 2e-4))  # every wall 0.1 mm further away
-    return {"stop_angle_deg": stop_angle_deg(), "deg_per_mm": (wider - stop_angle_deg()) / 0.1,
-            "plateau_deg": {f"{mm} mm": plateau_deg(mm * 1e-3) for mm in (3, 2, 1)}}
+    return {**stop(DISCS), "plateau_deg": {f"{mm} mm": plateau_deg(mm * 1e-3) for mm in (3, 2, 1)},
+            "block": {**stop(BLOCK), "plateau_deg": {"3 mm": plateau_deg(3e-3, BLOCK)}}}

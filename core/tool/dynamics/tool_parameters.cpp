@@ -22,7 +22,11 @@ Parameters parameters(ToolParameters& p) {
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "stiffness K of the virtual coupling (6.9)",
        kLive},
       {"gyration_radius_m", &p.gyration_radius_m, 0, 1,
-       "rotational stiffness = stiffness times this squared, (6.9) with K = k I"},
+       "rotational stiffness = stiffness times this squared, (6.9)"},
+      {"stiffness_ratio", &p.stiffness_ratio, 0, 10,
+       "diagonal of K of (6.9): stiffness along x, y, z of the world as a multiple of stiffness_N_per_m"},
+      {"rotational_stiffness_ratio", &p.rotational_stiffness_ratio, 0, 10,
+       "diagonal of K of (6.9): stiffness about x, y, z of the world as a multiple of the rotational stiffness"},
       {"max_force_N", &p.max_force_N, 0, 1000,
        "maximum magnitude of the force; larger forces are scaled down to it"},
       {"max_torque_Nm", &p.max_torque_Nm, 0, 100,
@@ -34,6 +38,10 @@ Parameters parameters(ToolParameters& p) {
        kLive},
       {"max_prediction_s", &p.max_prediction_s, 0, 10,
        "maximum time after a frame for which its velocity estimate is used"},
+      {"velocity_force", choice(p.velocity_force, {"minus", "plus", "none"}), 0, 0,
+       "with velocity_estimate: sign of the velocity term of (4.15) in the force on a tool that is held; plus is printed"},
+      {"slave_command", choice(p.slave_command, {"tool", "hip"}), 0, 0,
+       "pose that the slave robot follows, 5.2: tool: never inside the points; hip: the device's"},
   };
 }
 

@@ -3,12 +3,15 @@
 
 #include <string>
 
+#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
 
 enum class TouchRule { look_ahead, voxels };          // on the distance field, or 6.2.3 to 6.2.5 as printed
 enum class TorqueRule { inverse_jacobian, printed };  // of (6.9)
+enum class ToolForce { minus, plus, none };           // sign of the velocity term of (4.15), for a tool
+enum class ToolCommand { tool, hip };                 // what the slave robot follows, 5.2
 
 struct ToolParameters {
   TouchRule contact_rule = TouchRule::look_ahead;
@@ -21,11 +24,15 @@ struct ToolParameters {
   double rest_threshold_m = 1e-6;
   double stiffness_N_per_m = 600;  // K of (6.9) for a tool of 1 kg
   double gyration_radius_m = 0.03;
+  Vec3 stiffness_ratio{1, 1, 1};             // the diagonal of K, in world axes: along them
+  Vec3 rotational_stiffness_ratio{1, 1, 1};  // and about them
   double max_force_N = 20;
   double max_torque_Nm = 1;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
   bool velocity_estimate = false;  // not in the dissertation
   double max_prediction_s = 0.1;
+  ToolForce velocity_force = ToolForce::minus;
+  ToolCommand slave_command = ToolCommand::tool;
 };
 
 Parameters parameters(ToolParameters& p);
@@ -33,7 +40,7 @@ Parameters parameters(ToolParameters& p);
 std::string validate(const ToolParameters& p);
 // Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ToolParameters& p) {
-  return p.stiffness_N_per_m;
+  return p.stiffness_N_per_m * p.stiffness_ratio.maxCoeff();
 }
 
 }  // namespace remote_touch

@@ -31,12 +31,14 @@ Wrench coupling_wrench(const WrenchSpring& spring, const Eigen::Matrix3d& inerti
   const double k = spring.stiffness_N_per_m;
   Vec3 torque;
   if (spring.torque_rule == TorqueRule::printed) {
-    torque = k * (tool.q_WT * (inertia_m2 * (tool.q_WT.conjugate() * phi)));
+    const Vec3 turned = tool.q_WT * (inertia_m2 * (tool.q_WT.conjugate() * phi));
+    torque = k * spring.rotational_ratio.cwiseProduct(turned);
   } else {
     const double rotational = k * spring.gyration_radius_m * spring.gyration_radius_m;
-    torque = inverse_left_jacobian(phi).transpose() * (rotational * phi);
+    torque =
+        inverse_left_jacobian(phi).transpose() * (rotational * spring.rotational_ratio.cwiseProduct(phi));
   }
-  return {limited_length(-k * a_gu.head<3>(), spring.max_force_N),
+  return {limited_length(-k * spring.ratio.cwiseProduct(a_gu.head<3>()), spring.max_force_N),
           limited_length(-torque, spring.max_torque_Nm)};
 }
 

@@ -86,6 +86,11 @@ double key_mm(const Vec3& p) {
   return std::max(blend(blend(handle, shaft, 6), head, 4), -socket);
 }
 
+// As long, wide and high as the husky; edges of 8 mm, so that its outline from above is that of a plate.
+double block_mm(const Vec3& p) {
+  return rounded_box(p, Vec3::Zero(), {47.5, 10, 34}, 8);
+}
+
 double ball_mm(const Vec3& p) {
   return p.norm() - 10;
 }
@@ -108,6 +113,10 @@ const GeneratedTool kTools[] = {
      }},
     {"bar", "a bar with sharp edges, 80 mm (x) x 20 mm (y) x 10 mm (z)",
      [] { return box_mesh(kMm * Vec3(80, 20, 10)); }},
+    {"block", "a block with round edges, 95 x 20 x 68 mm, the size of the husky",
+     [] {
+       return meshed(block_mm, {49.1, 11.6, 35.6}, 2.5);
+     }},
     {"fork", "a hand with four stiff fingers, about 126 x 22 x 77 mm",
      [] {
        return meshed(fork_mm, {72.3, 12.8, 42.3}, 3);

@@ -27,4 +27,17 @@ std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, c
   return std::make_unique<LookAheadOnPoints>(parameters, tool);
 }
 
+void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out) {
+  constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
+  if (!report.push_W.isZero(0))
+    normal_W = report.push_W.normalized();
+  else if (report.touch_W.norm() > kNoDirection)
+    normal_W = report.touch_W.normalized();
+  out.steps = report.steps;
+  out.converged = report.at_rest;
+  out.tool->active_constraints = report.active_count;
+  out.tool->detections = report.detections;
+  out.tool->budget_exhausted = !report.at_rest;
+}
+
 }  // namespace remote_touch

@@ -21,6 +21,10 @@ struct ToolMotionReport {
   Vec3 first_step_m = Vec3::Zero();
 };
 
+// The part of an output that a motion explains. normal_W: of contact, kept where nothing tells it.
+// pre: out.tool is there.
+void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out);
+
 // The interface of the two rules.
 class ToolMotion {
  public:

@@ -9,12 +9,6 @@
 
 namespace remote_touch {
 
-namespace {
-
-constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
-
-}  // namespace
-
 ToolRenderer::ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                            const Kernels& kernels)
     : ToolRenderer(parameters, tool, kernels, make_tool_motion(parameters, *tool)) {}
@@ -26,7 +20,8 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       kernels_(kernels),
       contacts_(tool_, parameters, kernels),
       motion_(std::move(rule)),
-      velocity_(parameters.max_prediction_s) {}
+      velocity_(parameters.max_prediction_s),
+      slave_(parameters.slave_command) {}
 
 void ToolRenderer::prepare(Frame& frame) const {
   frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
@@ -41,6 +36,7 @@ void ToolRenderer::on_frame(const Frame& frame) {
   contacts_.on_frame(form_of<TiledCloud>(frame, kernels_));
   is_measured_ = false;
   updated_ = true;
+  frame_arrived_s_ = frame.arrives_s;
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
   pose_.p_W += correction;
@@ -52,40 +48,49 @@ void ToolRenderer::parameters_changed() {
   if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
 }
 
-RenderOutput ToolRenderer::step(const DeviceState& device, double) {
+// One tick of 6.2.5.
+void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
+  const ToolMotionReport report = motion_->move(pose_, device, contacts_, std::exchange(updated_, false));
+  velocity_.on_step(report.first_step_m);  // (4.13)
+  is_held_ = report.active_count > 0;
+  take_report(report, normal_W_, out);
+}
+
+// Where the force takes the tool to be. Between frames what holds it goes on along v_hat, and so would the
+// tool, (4.15): the force rises evenly instead of by a step at each frame.
+ToolPose ToolRenderer::coupled_pose(double time_s) const {
+  ToolPose pose = pose_;
+  if (!p_.velocity_estimate || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
+  const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
+  const double sign = p_.velocity_force == ToolForce::minus ? 1 : -1;  // of u_hat = HIP - P - v t
+  pose.p_W += sign * since_frame_s * velocity_.vector();
+  return pose;
+}
+
+RenderOutput ToolRenderer::step(const DeviceState& device, double time_s) {
   RenderOutput out;
   out.frame_index = order_.newest();
   out.frame_correction_m = std::exchange(frame_correction_m_, Vec3::Zero());
   out.tool.emplace();
-  const std::optional<ToolPose> target = device_pose(device);
-  if (!target) {
+  const std::optional<ToolPose> goal = device_pose(device);
+  if (!goal) {
     out.status = RenderStatus::device_not_finite;  // hold still and let go
   } else {
-    const ToolPose& goal = *target;
-    if (!placed_) pose_ = goal, placed_ = true;
+    if (!placed_) pose_ = *goal, placed_ = true;
     if (order_.newest() < 0) {
-      pose_ = goal;
+      pose_ = *goal;
       out.converged = true;
       out.status = RenderStatus::no_frame;
     } else {
-      const ToolMotionReport report = motion_->move(pose_, goal, contacts_, std::exchange(updated_, false));
-      if (!report.push_W.isZero(0))
-        normal_W_ = report.push_W.normalized();
-      else if (report.touch_W.norm() > kNoDirection)
-        normal_W_ = report.touch_W.normalized();
-      velocity_.on_step(report.first_step_m);  // (4.13)
-      out.steps = report.steps;
-      out.converged = report.at_rest;
-      out.tool->active_constraints = report.active_count;
-      out.tool->detections = report.detections;
-      out.tool->budget_exhausted = !report.at_rest;
+      follow(*goal, out);
     }
-    const Wrench wrench =
-        coupling_wrench(coupling_of(p_, p_.stiffness_N_per_m), tool_->inertia_m2, pose_, goal);
+    const Wrench wrench = coupling_wrench(coupling_of(p_, p_.stiffness_N_per_m), tool_->inertia_m2,
+                                          coupled_pose(time_s), *goal);
     out.force_N = wrench.force_N;
     out.tool->torque_Nm = wrench.torque_Nm;
   }
-  out.proxy_W = out.slave_W = pose_.p_W;
+  out.proxy_W = pose_.p_W;
+  out.slave_W = slave_.command_W(pose_, goal);
   out.tool->orientation_W = pose_.q_WT;
   out.normal_W = normal_W_;
   out.surface_velocity_m_per_s = velocity_.m_per_s();

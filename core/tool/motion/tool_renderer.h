@@ -7,6 +7,7 @@
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"
 #include "core/tool/contact/contact_list.h"
+#include "core/tool/dynamics/slave_position.h"
 #include "core/tool/dynamics/tool_parameters.h"
 #include "core/tool/motion/tool_motion.h"
 
@@ -31,6 +32,8 @@ class ToolRenderer final : public Renderer {
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
+  void follow(const ToolPose& device, RenderOutput& out);
+  ToolPose coupled_pose(double time_s) const;
   void measure(RenderOutput& out);
 
   ToolParameters p_;
@@ -44,6 +47,9 @@ class ToolRenderer final : public Renderer {
   Vec3 normal_W_ = Vec3::Zero();  // of contact: direction in which the points push the tool
   bool placed_ = false;           // the tool starts at the first device pose
   bool updated_ = false;          // a frame came in since the last tick
+  bool is_held_ = false;          // points pushed the tool in the last step of the tick
+  double frame_arrived_s_ = 0;
+  SlavePosition slave_;
   FrameOrder order_;
   Vec3 frame_correction_m_ = Vec3::Zero();
 

@@ -31,7 +31,7 @@ VoxelMotion::DesiredStep VoxelMotion::desired_step(const ToolPose& pose, const V
   report.active_count = 0, report.push_W.setZero();
   // No farther than the budget leads.
   if (here.state == ContactState::free) return {capped(a_gu, reach_m_, p_.detections_per_tick * sub_step_m_)};
-  const Vector6 desired_T = rotated(pose.q_WT.conjugate(), capped(a_gu, reach_m_, p_.max_step_m));
+  const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion;
   bool trapped = false;
   if (here.state == ContactState::contact) {

@@ -306,6 +306,19 @@ TEST(GuidedRenderer, TellsWhereTheTaskIs) {
   EXPECT_TRUE(!told.active && told.sequence_step == 2);
 }
 
+// Only a step that waits until its goal is reached has a distance to it.
+TEST_P(EveryRenderer, AStepThatEndsAtOnceReportsNoDistance) {
+  const SequenceStep activate = step(FixtureAction::activate, "valve");
+  for (const bool waits : {false, true}) {
+    GuidedRenderer r = guided(GetParam(), {guide("valve")}, {waits ? until_reached(activate) : activate});
+    r.on_frame(frame({target(kAbove)}));
+    const RenderOutput out = r.step(device(kAbove), 0);
+    ASSERT_EQ(out.guidance->sequence_step, 1);
+    EXPECT_EQ(std::isnan(out.guidance->sequence_distance_m), !waits);
+    EXPECT_EQ(std::isnan(out.guidance->sequence_angle_rad), !waits);
+  }
+}
+
 TEST_P(EveryRenderer, AStepAllocatesNothing) {
   using enum FixtureAction;
   const StepStart button = StepStart::button;

@@ -132,6 +132,8 @@ bool carries_unit(const std::string& name) {
                                               "persistence_frames",
                                               "mean_frames",
                                               "radius_ratio",
+                                              "rotational_stiffness_ratio",
+                                              "stiffness_ratio",
                                               "neighbours"};
   static const char* const kUnits[] = {"_probability", "_fraction", "_m",          "_s",          "_hz",
                                        "_deg",         "_px",       "_per_m",      "_per_min",    "_N_per_m",

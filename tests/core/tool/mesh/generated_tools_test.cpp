@@ -33,9 +33,10 @@ TEST(GeneratedTools, AreClosedBodiesOfOnePart) {
 
 TEST(GeneratedTools, HaveTheSizesThatTheirSummariesTell) {
   const std::map<std::string, Vec3> mm = {
-      {"ball", {20, 20, 20}},    {"bar", {80, 20, 10}},     {"fork", {126, 22, 77}},
-      {"husky", {95, 20, 68}},   {"key", {151, 28, 90}},    {"slab-5", {40, 5, 40}},
-      {"slab-10", {40, 10, 40}}, {"slab-20", {40, 20, 40}}, {"slab-40", {40, 40, 40}},
+      {"ball", {20, 20, 20}},    {"bar", {80, 20, 10}},     {"block", {95, 20, 68}},
+      {"fork", {126, 22, 77}},   {"husky", {95, 20, 68}},   {"key", {151, 28, 90}},
+      {"slab-5", {40, 5, 40}},   {"slab-10", {40, 10, 40}}, {"slab-20", {40, 20, 40}},
+      {"slab-40", {40, 40, 40}},
   };
   EXPECT_EQ(mm.size(), generated_tools().size());
   for (const GeneratedTool& tool : generated_tools()) {

@@ -147,6 +147,31 @@ TEST_P(EveryRule, StaleFramesAreDroppedAndSaid) {
 
 // Turned and moved as one, scene and device give the same run, turned and moved, up to the length of a step
 // that ends a tick. Walls that are none, between the points of a flat surface, were found here.
+// 5.2 for a tool: a hard constraint on the slave robot, or a soft one.
+TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
+  ToolParameters p;
+  for (const ToolCommand command : {ToolCommand::tool, ToolCommand::hip}) {
+    p.slave_command = command;
+    ToolRenderer r = renderer(GetParam(), p);
+    r.on_frame(scenes::frame(sheet()));
+    RenderOutput out;
+    for (int i = 0; i < 300; ++i) out = r.step(device({0, 0.02 - 1e-4 * i, 0}), 0.001 * i);
+    const Vec3 device_W(0, 0.02 - 1e-4 * 299, 0);
+    ASSERT_GT((out.proxy_W - device_W).norm(), 0.01);  // the points hold it
+    const Vec3 expected = command == ToolCommand::tool ? out.proxy_W : device_W;
+    EXPECT_EQ(out.slave_W, expected);
+    out = r.step(device(Vec3::Constant(kNaN)), 0.3);
+    EXPECT_EQ(out.slave_W, expected);  // repeated
+  }
+}
+
+TEST(ToolRenderer, WithoutADeviceYetTheSlaveIsNotSentAnywhere) {
+  ToolParameters p;
+  p.slave_command = ToolCommand::hip;
+  ToolRenderer r = renderer(TouchRule::look_ahead, p);
+  EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0).slave_W.array().isNaN().all());
+}
+
 TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {
   const RigidTransform X = Eigen::Translation3d(0.3, -0.2, 0.5) * rotation({0.4, -0.7, 0.2});
   PointCloud rotated;
