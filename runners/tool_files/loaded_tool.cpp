@@ -28,6 +28,15 @@ ToolRenderer renderer_of(const ToolPenaltyParameters& motion, const std::shared_
   return {tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)};
 }
 
+ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
+  ToolSettings tool = settings;
+  tool.outer_field = motion.contact_rule == TouchRule::continuous;
+  return tool;
+}
+ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
+  return settings;
+}
+
 }  // namespace
 
 Parameters parameters(LoadedTool::Settings& s) {
@@ -53,7 +62,7 @@ std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
-    : renderer_(renderer_of(settings.motion, load_tool(settings.tool), kernels)) {}
+    : renderer_(renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
 
 // The penalty rule has settings of its own, which do not change.
 template <class MotionSettings>

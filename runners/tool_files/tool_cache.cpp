@@ -84,6 +84,7 @@ std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& se
   pack.value(kToolFormat);
   pack.text(mesh_sha256);
   pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
+  if (settings.outer_field) pack.text("outer field");
   return pack.hex();
 }
 

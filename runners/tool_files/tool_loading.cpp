@@ -67,7 +67,7 @@ struct KeyedTool {
 };
 
 KeyedTool built_or_cached(const ToolSettings& s) {
-  const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair};
+  const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair, s.outer_field};
   const GeneratedTool* built_in = find_generated_tool(s.mesh);
   const fs::path file = built_in != nullptr ? fs::path() : find_mesh(s.mesh);
   TriangleMesh mesh;

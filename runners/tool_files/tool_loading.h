@@ -17,6 +17,7 @@ struct ToolSettings {
   double size_m = 0;
   double voxel_m = 5e-4;
   bool repair = false;
+  bool outer_field = false;  // no parameter: a renderer that needs it sets it
 };
 
 Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_voxel_m, tool_repair

@@ -124,7 +124,7 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
 }
 
 Touched ContactList::touched(const ToolPose& pose) {
-  const bool disks = p_.contact_rule == TouchRule::look_ahead;
+  const bool disks = p_.contact_rule != TouchRule::voxels;
   const double shown_m = std::max(p_.look_ahead_m, 2 * finder_.tool().grid.size_m);
   const double reach_m = std::min(shown_m + (disks ? max_disk_m_ : 0), kMaxReach_m);
   Touched all;

@@ -41,6 +41,7 @@ class ContactList final : public NearContactSource {
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
+  const NearDisks& near_disks() const { return disks_; }  // of the last call of near() or touched()
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().

@@ -20,6 +20,9 @@ class NearContactSource {
   // side of the surface that the tool was on before a frame put points into it; 0: not known. Valid until the
   // next call.
   virtual NearContacts near(const ToolPose& pose, double side) = 0;
+  // How much of a motion from this pose the tool may go; sources that know no better allow all of it. pre:
+  // pose is that of the last call of near().
+  virtual double clear_fraction(const ToolPose&, const Vector6&) { return 1; }
 };
 
 }  // namespace remote_touch

@@ -4,8 +4,8 @@ namespace remote_touch {
 
 Parameters parameters(ToolParameters& p) {
   return {
-      {"contact_rule", choice(p.contact_rule, {"look-ahead", "voxels"}), 0, 0,
-       "look-ahead: every near point is a constraint with its signed distance; voxels: points in the tool's voxels are constraints, as printed, 6.2.3 to 6.2.5"},
+      {"contact_rule", choice(p.contact_rule, {"look-ahead", "voxels", "continuous"}), 0, 0,
+       "look-ahead: every near point is a constraint with its signed distance; voxels: points in the tool's voxels are constraints, as printed, 6.2.3 to 6.2.5; continuous: look-ahead, with no step longer than until a point would get into the tool"},
       {"detections_per_tick", &p.detections_per_tick, 1, 10000,
        "maximum number of collision detections in a tick; a tick that needs more stops and sets budget_exhausted"},
       {"max_step_m", &p.max_step_m, 1e-5, 0.01,
@@ -17,7 +17,9 @@ Parameters parameters(ToolParameters& p) {
       {"look_ahead_m", &p.look_ahead_m, 2e-4, 0.005,
        "points (sphere-tree: regions) within this distance of the tool are constraints; not used with contact_rule = voxels"},
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
-       "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead"},
+       "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead and continuous"},
+      {"frame_reach_m", &p.frame_reach_m, 0, 0.05,
+       "for contact_rule = continuous: a tool that points held, and that a frame puts into them or past them, comes from this far outside until a point stops it; 0: not"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "stiffness K of the virtual coupling (6.9)",
        kLive},
@@ -49,7 +51,7 @@ std::string validate(const ToolParameters& p) {
   if (10 * p.rest_threshold_m > p.max_step_m)
     return "rest_threshold_m = " + std::to_string(p.rest_threshold_m) +
            ": expected a tenth of max_step_m or less";
-  if (p.contact_rule == TouchRule::look_ahead && p.look_ahead_m < p.max_step_m)
+  if (p.contact_rule != TouchRule::voxels && p.look_ahead_m < p.max_step_m)
     return "look_ahead_m = " + std::to_string(p.look_ahead_m) + ": expected max_step_m or more";
   return {};
 }

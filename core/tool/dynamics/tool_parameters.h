@@ -8,7 +8,8 @@
 
 namespace remote_touch {
 
-enum class TouchRule { look_ahead, voxels };          // on the distance field, or 6.2.3 to 6.2.5 as printed
+// On the distance field; 6.2.3 to 6.2.5 as printed; or on the distance field, with certified steps.
+enum class TouchRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // of (6.9)
 enum class ToolForce { minus, plus, none };           // sign of the velocity term of (4.15), for a tool
 enum class ToolCommand { tool, hip };                 // what the slave robot follows, 5.2
@@ -21,6 +22,7 @@ struct ToolParameters {
   double exit_accuracy_m = 1e-4;  // epsilon_c
   double look_ahead_m = 2e-3;
   double disk_radius_ratio = 0.75;
+  double frame_reach_m = 0.02;
   double rest_threshold_m = 1e-6;
   double stiffness_N_per_m = 600;  // K of (6.9) for a tool of 1 kg
   double gyration_radius_m = 0.03;

@@ -52,25 +52,27 @@ Vector6 LookAheadMotion::step_towards(const Vector6& a_gu, const ToolPose& pose,
 }
 
 ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, NearContactSource& source,
-                                       bool updated) {
+                                       bool updated, int detections) {
   ToolMotionReport report;
+  report.detections = detections;
   const Vec3 start_W = pose.p_W;
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
   MotionProgress progress(p_.rest_threshold_m, kLookAheadPatience);
+  int stopped = 0;  // looks in a row after which the tool could not move
   while (true) {
     const NearContacts near = source.near(pose, settling_ ? side_ : 0);
     ++report.detections;
     if (near.deepest_m <= kCollision_m) settling_ = false;
     if (near.contacts.empty()) side_ = 1;  // what held the tool is left behind
-    if (report.detections == 1) first = state_of(near);
+    if (report.detections == detections + 1) first = state_of(near);
     same_state = same_state && state_of(near) == first;
 
     report.touch_W = pose.q_WT * touched_direction(near);
     const Vector6 a_gu = displacement(pose, device);
     const double remaining_m = max_point_displacement_m(a_gu, reach_m_);
-    if (near.contacts.empty() && remaining_m <= p_.look_ahead_m) {
+    if (near.contacts.empty() && remaining_m <= p_.look_ahead_m && source.clear_fraction(pose, a_gu) == 1) {
       // Nothing is as near as the device.
       report.steps += pose == device ? 0 : 1;
       pose = device;
@@ -82,10 +84,13 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
     const Vector6 a_g = step_towards(a_gu, pose, near, report);
     progress.update(remaining_m);
     report.at_rest = max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ||
-                     (near.deepest_m <= kCollision_m && progress.has_ended());
+                     (near.deepest_m <= kCollision_m && progress.has_ended()) ||
+                     stopped >= kLookAheadPatience;
     if (report.at_rest || report.detections >= p_.detections_per_tick) break;
-    const bool arrives = a_g == a_gu;
-    pose = arrives ? device : moved(pose, a_g);
+    // What a frame put into the tool is left first.
+    const double clear = settling_ && updated ? 1 : source.clear_fraction(pose, a_g);
+    stopped = clear * max_point_displacement_m(a_g, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
+    pose = clear == 1 && a_g == a_gu ? device : moved(pose, clear * a_g);
     ++report.steps;
     if (same_state) report.first_step_m = pose.p_W - start_W;  // with the step that ends the first state
   }

@@ -13,8 +13,12 @@ class LookAheadMotion {
   // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
   LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
       : p_(parameters), reach_m_(reach_m), program_(tool) {}
-  // As ToolMotion::move().
-  ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated);
+  // As ToolMotion::move(). detections: what the tick has used of its budget before.
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated,
+                        int detections = 0);
+
+  // Of the surface that held the tool last: +1 is the side of the sensor.
+  double side() const { return side_; }
 
  private:
   Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
@@ -23,7 +27,7 @@ class LookAheadMotion {
   const ToolParameters p_;
   const double reach_m_;
   MotionProgram program_;
-  double side_ = 1;        // of the surface that held the tool last: +1 is the side of the sensor
+  double side_ = 1;
   bool settling_ = false;  // a frame came, and the tool is still in its points
 };
 

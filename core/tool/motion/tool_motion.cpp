@@ -1,5 +1,6 @@
 #include "core/tool/motion/tool_motion.h"
 
+#include "core/tool/motion/continuous_motion.h"
 #include "core/tool/motion/look_ahead_motion.h"
 #include "core/tool/motion/voxel_motion.h"
 
@@ -23,7 +24,14 @@ class LookAheadOnPoints final : public ToolMotion {
 }  // namespace
 
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool) {
-  if (parameters.contact_rule == TouchRule::voxels) return std::make_unique<VoxelMotion>(parameters, tool);
+  switch (parameters.contact_rule) {
+    case TouchRule::voxels:
+      return std::make_unique<VoxelMotion>(parameters, tool);
+    case TouchRule::continuous:
+      return std::make_unique<ContinuousMotion>(parameters, tool);
+    case TouchRule::look_ahead:
+      break;
+  }
   return std::make_unique<LookAheadOnPoints>(parameters, tool);
 }
 

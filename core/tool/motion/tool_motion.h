@@ -1,4 +1,4 @@
-// Moving the tool towards the device, one tick: the algorithm of 6.2.5 in two rules.
+// Moving the tool towards the device, one tick: the algorithm of 6.2.5 in three rules.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct ToolMotionReport {
 // pre: out.tool is there.
 void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out);
 
-// The interface of the two rules.
+// The interface of the rules.
 class ToolMotion {
  public:
   virtual ~ToolMotion() = default;
@@ -34,6 +34,7 @@ class ToolMotion {
                                 bool updated) = 0;
 };
 
+// The tool has to outlive the result; for TouchRule::continuous it is made with outer_field.
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool);
 
 }  // namespace remote_touch

@@ -7,6 +7,7 @@
 #include "core/parameters/input_error.h"
 #include "core/tool/voxels/distance_field.h"
 #include "core/tool/voxels/mass_properties.h"
+#include "core/tool/voxels/outer_field.h"
 #include "core/tool/voxels/voxelisation.h"
 
 namespace remote_touch {
@@ -182,6 +183,7 @@ VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, 
   const std::vector<std::uint8_t> inside = place(tool, settings, report.by_winding_number, name);
   tool.distance_m = distance_field(TriangleTree(tool.mesh), tool.grid, inside);
   tool.voxels = voxels_of(tool.grid, tool.distance_m);
+  if (settings.outer_field) tool.distance_m = outer_field(tool.mesh, tool.grid, tool.distance_m);
   count_voxels(tool, report);
   if (report.voxels[2] == 0)
     refuse(name, "no voxel of " + std::to_string(settings.voxel_m) +

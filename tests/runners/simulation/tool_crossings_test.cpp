@@ -20,6 +20,7 @@ namespace {
 
 // Less than this deep is no collision for the look-ahead rule (look_ahead_motion.cpp).
 constexpr double kLookAhead_m = 1e-4;
+constexpr double kContinuous_m = 1e-5;
 // The printed rule lets points into the shell: a point of it is within 1.5 sqrt(3) voxels of the centre of a
 // free voxel, which is outside.
 constexpr double kVoxels_m = 2.5981 * 5e-4;
@@ -79,6 +80,10 @@ TEST_P(ToolCrossings, ThereAreNoneByLookAhead) {
   expect_none(GetParam(), "look-ahead", kLookAhead_m);
 }
 
+TEST_P(ToolCrossings, ThereAreNoneByTheContinuousRule) {
+  expect_none(GetParam(), "continuous", kContinuous_m);
+}
+
 TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
   expect_none(GetParam(), "voxels", kVoxels_m);
 }
@@ -86,11 +91,13 @@ TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
 // What the printed rule does to a tool that comes from the back of a surface.
 TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
   EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);
+  EXPECT_EQ(audited("tool-sheet", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
 }
 
 // Walls that close to less than the tool's thickness: no pose keeps their points out.
-TEST(ToolCrossings, BetweenClosingWallsNoRuleKeepsThePointsOut) {
+TEST(ToolCrossings, BetweenClosingWallsOnlyFramesPutPointsIntoTheToolByTheContinuousRule) {
+  EXPECT_EQ(audited("tool-wedge", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-wedge", "look-ahead", kLookAhead_m).entered, 0);
   EXPECT_GT(audited("tool-wedge", "voxels", kVoxels_m).entered, 0);
 }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/geometry/rotation.h"
+#include "core/tool/voxels/outer_field.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
@@ -27,7 +28,11 @@ PointCloud sheet(int n = 60, double spacing_m = 0.002, const Vec3& normal = Vec3
 
 ToolRenderer renderer(TouchRule rule = TouchRule::look_ahead, ToolParameters p = {}) {
   p.contact_rule = rule;
-  return ToolRenderer(p, scenes::box_tool(kHalf_m), scenes::kernels());
+  const auto box = scenes::box_tool(kHalf_m);
+  if (rule != TouchRule::continuous) return ToolRenderer(p, box, scenes::kernels());
+  VoxelTool outer = *box;
+  outer.distance_m = outer_field(outer.mesh, outer.grid, outer.distance_m);
+  return ToolRenderer(p, std::make_shared<const VoxelTool>(std::move(outer)), scenes::kernels());
 }
 
 DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
@@ -35,7 +40,8 @@ DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
 }
 
 class EveryRule : public testing::TestWithParam<TouchRule> {};
-INSTANTIATE_TEST_SUITE_P(Tool, EveryRule, testing::Values(TouchRule::look_ahead, TouchRule::voxels));
+INSTANTIATE_TEST_SUITE_P(Tool, EveryRule,
+                         testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous));
 
 TEST_P(EveryRule, InFreeSpaceTheToolIsTheDevice) {
   ToolRenderer r = renderer(GetParam());

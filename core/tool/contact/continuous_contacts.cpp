@@ -1,0 +1,82 @@
+#include "core/tool/contact/continuous_contacts.h"
+
+#include <algorithm>
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kMaxStops = 64;
+constexpr double kMinSlope = 0.3;  // at ridges of the field, where a distance tells little
+
+}  // namespace
+
+ContinuousContacts::ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool)
+    : tool_(tool),
+      reach_m_(tool.reach_m),
+      way_(tool),
+      max_motion_m_(way_.safe_motion_m(parameters.look_ahead_m)) {
+  contacts_.reserve(MotionProgram::kMaxContacts + kMaxStops);
+  stops_W_.reserve(kMaxStops);
+}
+
+void ContinuousContacts::begin(ContactList& points) {
+  points_ = &points;
+  stops_W_.clear();
+}
+
+void ContinuousContacts::add_stops(const ToolPose& pose) {
+  for (const Vec3& p_W : stops_W_) {
+    const Vec3 p_T = pose.q_WT.conjugate() * (p_W - pose.p_W);
+    const FieldSample at = sample_field(tool_, p_T);
+    const double slope = at.gradient_T.norm();
+    if (slope < kMinSlope) continue;
+    contacts_.push_back({p_T, -at.gradient_T / slope, (kGap_m - at.distance_m) / slope, 0});
+  }
+}
+
+NearContacts ContinuousContacts::near(const ToolPose& pose, double side) {
+  NearContacts found = points_->near(pose, side);
+  contacts_.clear();
+  add_stops(pose);  // first, for they are few, and the motion program ignores what is too many
+  for (ToolContact contact : found.contacts) {
+    contact.depth_m += kGap_m;
+    contacts_.push_back(contact);
+  }
+  return {contacts_, found.deepest_m + kGap_m};
+}
+
+double ContinuousContacts::known_fraction(const Vector6& a_g) const {
+  const double motion_m = max_point_displacement_m(a_g, reach_m_);
+  return motion_m > max_motion_m_ ? max_motion_m_ / motion_m : 1;
+}
+
+double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a_g) {
+  const ClearWay::Motion motion(pose, a_g);
+  double clear = known_fraction(a_g);
+  const NearDisks& points = points_->near_disks();
+  std::size_t first = points.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double fraction = way_.fraction(motion, points.p_T(i), points.distance_m(i));
+    if (fraction < clear) clear = fraction, first = i;
+  }
+  if (first < points.size() && stops_W_.size() < kMaxStops)
+    stops_W_.push_back(pose.p_W + pose.q_WT * points.p_T(first));
+  return clear;
+}
+
+double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const {
+  const ClearWay::Motion motion(pose, a_g);
+  double clear = known_fraction(a_g);
+  const NearDisks& points = points_->near_disks();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfaceDisk disk = points.disk(i);
+    const Vec3 out_T = disk.has_normal() ? Vec3(side * disk.n_T) : Vec3(-disk.at.gradient_T);
+    if (out_T.dot(motion.a_T) >= 0) continue;
+    if (points.distance_m(i) < -ClearWay::kInside_m) return 0;
+    clear = std::min(clear, way_.fraction(motion, points.p_T(i), points.distance_m(i)));
+  }
+  return clear;
+}
+
+}  // namespace remote_touch

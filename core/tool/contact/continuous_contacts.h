@@ -1,0 +1,49 @@
+// The points of a cloud for the continuous rule: contacts as the look-ahead rule has them, kept a small gap
+// away, and how far a motion may go until the first point would get into the tool. Not in the dissertation.
+#pragma once
+
+#include <vector>
+
+#include "core/tool/contact/clear_way.h"
+#include "core/tool/contact/contact_list.h"
+
+namespace remote_touch {
+
+class ContinuousContacts final : public NearContactSource {
+ public:
+  // Contacts hold the tool this far from the points, so that a step which is right only to first order does
+  // not take a point into the tool.
+  static constexpr double kGap_m = 5e-5;
+
+  // tool: made with outer_field; it has to outlive this.
+  ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool);
+  // No motion is longer, because points that are not near could stop it.
+  double max_motion_m() const { return max_motion_m_; }
+
+  // The points until the next call, and none that have stopped the tool yet. points has to outlive its use.
+  void begin(ContactList& points);
+
+  // With the gap. Points that have stopped the tool since begin() are contacts of their own: a step that runs
+  // against one of them is not tried again.
+  NearContacts near(const ToolPose& pose, double side) override;
+  // pre: pose is that of the last call of near().
+  double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;
+  // The same for a motion away from a surface, when a frame has put points anywhere: only those stop the tool
+  // that face it from ahead, and they do at once if they are in it, as between walls that have closed. side:
+  // of the surface, as in near(). pre: as above; the motion is a translation.
+  double fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const;
+
+ private:
+  void add_stops(const ToolPose& pose);
+  double known_fraction(const Vector6& a_g) const;
+
+  const VoxelTool& tool_;
+  const double reach_m_;  // of the farthest place of the tool from its centre of mass
+  ClearWay way_;
+  const double max_motion_m_;
+  ContactList* points_ = nullptr;
+  std::vector<ToolContact> contacts_;
+  std::vector<Vec3> stops_W_;
+};
+
+}  // namespace remote_touch

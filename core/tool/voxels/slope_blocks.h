@@ -1,0 +1,33 @@
+// How steep a trilinear field can be around a place: the range of its gradient in blocks of cells, so that a
+// point that slides along a flat face of a tool is known to stay outside with one look.
+#pragma once
+
+#include <vector>
+
+#include "core/tool/voxels/voxel_tool.h"
+
+namespace remote_touch {
+
+class SlopeBlocks {
+ public:
+  static constexpr int kSize = 4;    // cells along a block
+  static constexpr int kAround = 2;  // cells around it that its range covers, too
+
+  SlopeBlocks(const VoxelGrid& grid, const std::vector<float>& distance_m);
+
+  // Lower bound of how much the field changes anywhere on the way from `at` by `along` (both in cells from
+  // the grid's origin); minus infinity for a way of more than kAround cells along an axis, or from outside.
+  double min_change_m(const Vec3& at, const Vec3& along) const;
+
+ private:
+  struct Range {
+    float low[3], high[3];  // of the change per cell along each axis, m
+  };
+  Range range_around(const VoxelGrid& grid, const std::vector<float>& distance_m,
+                     const std::array<int, 3>& block) const;
+
+  std::array<int, 3> cells_, blocks_;
+  std::vector<Range> ranges_;
+};
+
+}  // namespace remote_touch

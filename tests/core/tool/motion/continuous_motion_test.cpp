@@ -1,0 +1,121 @@
+// What only the continuous rule keeps: the side of a surface that a frame has taken past the tool.
+#include "core/tool/motion/continuous_motion.h"
+
+#include <gtest/gtest.h>
+
+#include "core/tool/motion/tool_renderer.h"
+#include "core/tool/voxels/outer_field.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::continuous_motion_test {
+namespace {
+
+const Vec3 kHalf_m(0.015, 0.0025, 0.01);  // a plate of 5 mm
+
+std::shared_ptr<const VoxelTool> plate() {
+  VoxelTool tool = *scenes::box_tool(kHalf_m);
+  tool.distance_m = outer_field(tool.mesh, tool.grid, tool.distance_m);
+  return std::make_shared<const VoxelTool>(std::move(tool));
+}
+
+PointCloud sheet(double height_m, double facing = 1, double spacing_m = 0.0013) {
+  PointCloud cloud;
+  for (int j = 0; j < 41; ++j)
+    for (int i = 0; i < 41; ++i)
+      cloud.append({(i - 20) * spacing_m, height_m, (j - 20) * spacing_m}, {0, facing, 0});
+  return cloud;
+}
+
+struct Ride {
+  explicit Ride(ToolParameters p) : renderer(with_rule(p), plate(), scenes::kernels()) {}
+  static ToolParameters with_rule(ToolParameters p) {
+    p.contact_rule = TouchRule::continuous;
+    return p;
+  }
+  // Ten ticks of one frame with the device at a height; returns the height of the tool.
+  double frame(const PointCloud& cloud, double device_m) {
+    renderer.on_frame(scenes::frame(cloud, index++));
+    for (int tick = 0; tick < 10; ++tick) {
+      out = renderer.step({{0, device_m, 0}, Eigen::Quaterniond::Identity()}, 0);
+      most_detections = std::max(most_detections, out.tool->detections);
+    }
+    return out.proxy_W.y();
+  }
+
+  ToolRenderer renderer;
+  RenderOutput out;
+  int index = 0, most_detections = 0;
+};
+
+// A surface that rises by so much in every frame carries the plate, if that is no more than frame_reach_m.
+TEST(ContinuousMotion, IsCarriedAsFarAsItsReach) {
+  for (const double reach_m : {0.004, 0.01, 0.02}) {
+    ToolParameters p;
+    p.frame_reach_m = reach_m;
+    for (const double fraction : {0.2, 0.9, 1.1}) {
+      Ride ride(p);
+      double height_m = 0;
+      EXPECT_NEAR(ride.frame(sheet(0), 0.0), kHalf_m.y(), 1e-4);
+      for (int n = 0; n < 6; ++n) ride.frame(sheet(height_m += fraction * reach_m), 0);
+      // Less than its thickness any rule keeps.
+      const bool kept = fraction < 1 || fraction * reach_m < 2 * kHalf_m.y();
+      EXPECT_NEAR(ride.out.proxy_W.y(), kept ? height_m + kHalf_m.y() : 0.0, 1e-4) << reach_m << fraction;
+      EXPECT_EQ(ride.out.force_N.norm() > 1, kept);
+    }
+  }
+}
+
+TEST(ContinuousMotion, OfTheBackOfASurfaceToo) {
+  Ride ride({});
+  double height_m = 0;
+  ride.frame({}, 0.0);
+  EXPECT_NEAR(ride.frame(sheet(-0.004, -1), -0.003), -0.004 + kHalf_m.y(), 1e-4);
+  for (int n = 0; n < 6; ++n) ride.frame(sheet(height_m += 0.01, -1), -0.003);
+  EXPECT_NEAR(ride.out.proxy_W.y(), height_m + kHalf_m.y(), 1e-4);
+}
+
+// A surface that goes away is followed, and what was not held is not searched for.
+TEST(ContinuousMotion, ASurfaceThatSinksIsFollowed) {
+  Ride ride({});
+  ride.frame(sheet(0), 0);
+  for (double height_m = 0; height_m > -0.006; height_m -= 0.001)
+    EXPECT_NEAR(ride.frame(sheet(height_m), -0.01), height_m + kHalf_m.y(), 1e-4);
+  ride.frame(sheet(-0.03), -0.01);
+  EXPECT_EQ(ride.out.proxy_W.y(), -0.01);
+  EXPECT_EQ(ride.frame(sheet(0.0), -0.01), -0.01) << "it was free: nobody knows where the surface came from";
+}
+
+// Also with a budget in which the way there and back has no room.
+TEST(ContinuousMotion, UsesNoMoreThanItsBudget) {
+  for (const int budget : {1, 2, 5, 20, 60}) {
+    ToolParameters p;
+    p.detections_per_tick = budget;
+    Ride ride(p);
+    double height_m = 0;
+    ride.frame(sheet(0), 0);
+    for (int n = 0; n < 8; ++n) {
+      ride.frame(sheet(height_m += 0.003), 0);
+      EXPECT_TRUE(ride.out.proxy_W.allFinite());
+    }
+    EXPECT_LE(ride.most_detections, std::max(budget, 2)) << budget;
+    if (budget >= 20) {
+      EXPECT_NEAR(ride.out.proxy_W.y(), height_m + kHalf_m.y(), 1e-4) << budget;
+    }
+  }
+}
+
+// Between two sheets that close on the plate it stays, however often frames come.
+TEST(ContinuousMotion, StaysBetweenWallsThatClose) {
+  Ride ride({});
+  for (int n = 0; n < 20; ++n) {
+    const double gap_m = std::max(0.006 - 0.0003 * n, 0.002);
+    PointCloud walls = sheet(-0.5 * gap_m, 1);
+    const PointCloud above = sheet(0.5 * gap_m, -1);
+    for (std::size_t i = 0; i < above.size(); ++i) walls.append(above.point(i), above.normal(i));
+    EXPECT_LT(std::abs(ride.frame(walls, -0.002)), 0.5 * gap_m + 1e-3) << n;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::continuous_motion_test
