@@ -6,9 +6,9 @@ namespace remote_touch {
 
 ContinuousMotion::ContinuousMotion(const ToolParameters& parameters, const VoxelTool& tool)
     : near_(parameters, tool),
+      step_m_(0.99 * near_.max_motion_m()),  // so that rounding does not shorten it
       // There and back, and then the motion itself.
-      frame_reach_m_(
-          std::min(parameters.frame_reach_m, near_.max_motion_m() * (parameters.detections_per_tick / 3))),
+      frame_reach_m_(std::min(parameters.frame_reach_m, step_m_ * (parameters.detections_per_tick / 3))),
       motion_(parameters, tool, tool.reach_m) {}
 
 // Some contact is where it was, and none is in the tool.
@@ -23,7 +23,7 @@ bool ContinuousMotion::is_still_held(const NearContacts& near, const ToolPose& p
 double ContinuousMotion::translate(ToolPose& pose, double way_m, int& detections) {
   double done_m = 0;
   while (done_m < std::abs(way_m)) {
-    const double step_m = std::min(near_.max_motion_m(), std::abs(way_m) - done_m);
+    const double step_m = std::min(step_m_, std::abs(way_m) - done_m);
     Vector6 a_g = Vector6::Zero();
     a_g.head<3>() = (way_m < 0 ? -step_m : step_m) * push_W_;
     near_.near(pose, 0);

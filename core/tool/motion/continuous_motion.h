@@ -25,7 +25,7 @@ class ContinuousMotion final : public ToolMotion {
   void come_from_outside(ToolPose& pose, ToolMotionReport& report);
 
   ContinuousContacts near_;
-  const double frame_reach_m_;
+  const double step_m_, frame_reach_m_;
   LookAheadMotion motion_;
   Vec3 push_W_ =
       Vec3::Zero();  // direction in which points held the tool at the end of the last tick, or zero

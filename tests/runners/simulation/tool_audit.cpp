@@ -16,10 +16,11 @@ struct ToolAuditor::Way {
   const ToolPose& from;
   const Vec3 shift_W, turn_W;
   const Vec3 p_W;
+  const Vec3 point_shift_W = Vec3::Zero();
 
   Vec3 at(double s) const {
     const Eigen::Quaterniond q_WT = rotation(s * turn_W) * from.q_WT;
-    return q_WT.conjugate() * (p_W - from.p_W - s * shift_W);
+    return q_WT.conjugate() * (p_W + s * point_shift_W - from.p_W - s * shift_W);
   }
 };
 
@@ -104,6 +105,24 @@ void ToolAuditor::tick(Group& group, const ToolPose& from, const Vec3& shift_W, 
       look(point, {from, shift_W, turn_W, point.p_W}, max_m);
   }
   group.was_far = is_far;
+}
+
+void ToolAuditor::tick_with_frame(const PointCloud& cloud, const ToolPose& from, const ToolPose& to) {
+  const Vec3 shift_W = to.p_W - from.p_W;
+  const Vec3 turn_W = rotation_vector(to.q_WT * from.q_WT.conjugate());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.point(i).allFinite()) continue;
+    Point& point = points_.at(next++);
+    const Vec3 point_shift_W = cloud.point(i) - point.p_W;
+    const double relative_m = (shift_W - point_shift_W).norm();
+    point.is_known = false;
+    ++audit_.point_ticks;
+    look(point, {from, shift_W, turn_W, point.p_W, point_shift_W},
+         relative_m + turn_W.norm() * ((point.p_W - from.p_W).norm() + relative_m));
+    point.p_W = cloud.point(i), point.clear_m = 0;
+  }
+  gather_groups();
 }
 
 void ToolAuditor::tick(const ToolPose& from, const ToolPose& to) {

@@ -31,6 +31,9 @@ class ToolAuditor {
 
   // The points from now on, with the tool at this pose; those that are not finite are left out.
   void on_frame(const PointCloud& cloud);
+  // The same points elsewhere, each on a line from where it was, while the tool goes from one pose to the
+  // other as in tick(). pre: as many points as before, in their order.
+  void tick_with_frame(const PointCloud& cloud, const ToolPose& from, const ToolPose& to);
   // The tool goes from one pose to the other: its origin along a line, its orientation about one axis, both
   // evenly. pre: `from` is the pose at which the tick before ended, if the points are the same.
   void tick(const ToolPose& from, const ToolPose& to);

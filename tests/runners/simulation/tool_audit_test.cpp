@@ -58,6 +58,25 @@ TEST(ToolAuditor, FindsAPointThatATurningEndSweepsOver) {
   EXPECT_EQ(of_bar(1.2 * on_its_way, from, to).entered, 0);  // beyond the end of the bar
 }
 
+// Points that move from frame to frame: with the tool, through it, and past it.
+TEST(ToolAuditor, FollowsPointsThroughAFrame) {
+  const ToolPose from{{0, 0.03, 0}, {1, 0, 0, 0}}, up{{0, 0.09, 0}, {1, 0, 0, 0}};
+  const auto entered = [&](const Vec3& before, const Vec3& after, const ToolPose& to) {
+    ToolAuditor auditor(box_mesh(kSides_m), kTolerance_m);
+    auditor.on_frame(one_point(before));
+    auditor.tick_with_frame(one_point(after), from, to);
+    auditor.tick(to, to);
+    EXPECT_EQ(auditor.audit().point_ticks, 2);
+    return auditor.audit().entered;
+  };
+  EXPECT_EQ(entered({0, 0, 0}, {0, 0.06, 0}, up), 0);
+  EXPECT_EQ(entered({0, 0, 0}, {0, 0.06, 0}, from), 1);
+  EXPECT_EQ(entered({0.05, 0, 0}, {0.05, 0.06, 0}, from), 0);
+  EXPECT_EQ(entered({0.05, 0.03, 0}, {-0.05, 0.03, 0}, from), 1);
+  EXPECT_EQ(entered({0, 0, 0}, {0, 0.019, 0}, from), 0) << "up to the tool";
+  EXPECT_EQ(entered({0, 0, 0}, {0, 0.021, 0}, from), 1) << "into it";
+}
+
 TEST(ToolAuditor, ATouchIsNoCrossing) {
   const ToolPose from{{-0.06, 0.01, 0}, {1, 0, 0, 0}}, to{{0.03, 0.01, 0}, {1, 0, 0, 0}};
   EXPECT_EQ(of_bar(Vec3::Zero(), from, to).entered, 0);                          // slides along it

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/parameters/input_error.h"
 #include "runners/figures/tool_picture.h"
@@ -29,21 +30,31 @@ ToolPose pose_at(const Trace& trace, std::size_t tick) {
   return {trace.proxy_position_m[tick], trace.tool_orientation[tick]};
 }
 
-ToolAudit audited(const Trace& trace, const std::map<int, PointCloud>& clouds, ToolAuditor auditor) {
+// Frames: what is done with the ticks in which one comes.
+enum class Frames { left_out, followed };
+
+ToolAudit audited(const Trace& trace, const std::map<int, PointCloud>& clouds, ToolAuditor auditor,
+                  Frames frames) {
   int shown = -1;
   for (std::size_t i = 1; i < trace.length(); ++i) {
     if (trace.frame_index[i] == shown) {
       auditor.tick(pose_at(trace, i - 1), pose_at(trace, i));
-    } else {
-      shown = trace.frame_index[i];
-      auditor.on_frame(clouds.at(shown));
+      continue;
     }
+    const bool is_first = shown < 0;
+    shown = trace.frame_index[i];
+    if (is_first || frames == Frames::left_out)
+      auditor.on_frame(clouds.at(shown));
+    else
+      auditor.tick_with_frame(clouds.at(shown), pose_at(trace, i - 1), pose_at(trace, i));
   }
   return auditor.audit();
 }
 
-ToolAudit audited(const std::string& name, const std::string& rule, double tolerance_m) {
-  const Experiment experiment = Experiment::load(name, {"renderer.contact_rule=" + rule});
+ToolAudit audited(const std::string& name, const std::string& rule, double tolerance_m,
+                  std::vector<std::string> overrides = {}, Frames frames = Frames::left_out) {
+  overrides.push_back("renderer.contact_rule=" + rule);
+  const Experiment experiment = Experiment::load(name, overrides);
   std::map<int, PointCloud> clouds;
   SimulationOptions options;
   options.on_frame = [&](const Frame& frame) {
@@ -51,7 +62,7 @@ ToolAudit audited(const std::string& name, const std::string& rule, double toler
     clouds[frame.index] = frame.points->every_point(scenes::kernels(), buffer);
   };
   const Trace trace = simulate(experiment, options);
-  const ToolAudit audit = audited(trace, clouds, {tool_of(experiment)->mesh, tolerance_m});
+  const ToolAudit audit = audited(trace, clouds, {tool_of(experiment)->mesh, tolerance_m}, frames);
   std::printf("%s, %s: of %lld point-ticks %lld entered the tool by more than %g mm\n", name.c_str(),
               rule.c_str(), static_cast<long long>(audit.point_ticks), static_cast<long long>(audit.entered),
               1e3 * tolerance_m);
@@ -93,6 +104,23 @@ TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
   EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);
   EXPECT_EQ(audited("tool-sheet", "continuous", kContinuous_m).entered, 0);
   EXPECT_GT(audited("tool-sheet", "voxels", kVoxels_m).entered, 0);
+}
+
+// Where it is known which point of a frame was where in the one before, points are followed through frames,
+// too: a surface that rises by more than the plate's thickness in every frame takes it along and does not
+// pass through.
+TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
+  for (const char* surface : {"scenario.shape=flat", "scenario.tilt_deg=30", "scenario.tilt_deg=-45"}) {
+    const auto entered = [&](const std::string& rule) {
+      return audited("tool-lift", rule, kLookAhead_m,
+                     {"renderer.tool_mesh=slab-5", "scenario.start_velocity_m_per_s=0.24",
+                      "scenario.rise_frames=4", "duration_s=0.65", surface},
+                     Frames::followed)
+          .entered;
+    };
+    EXPECT_EQ(entered("continuous"), 0) << surface;
+    EXPECT_GT(entered("look-ahead"), 10) << surface;
+  }
 }
 
 // Walls that close to less than the tool's thickness: no pose keeps their points out.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/rotation.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "core/tool/voxels/outer_field.h"
 #include "tests/support/box_tool.h"
@@ -63,6 +64,27 @@ TEST(ContinuousMotion, IsCarriedAsFarAsItsReach) {
       EXPECT_NEAR(ride.out.proxy_W.y(), kept ? height_m + kHalf_m.y() : 0.0, 1e-4) << reach_m << fraction;
       EXPECT_EQ(ride.out.force_N.norm() > 1, kept);
     }
+  }
+}
+
+// Any direction: lengths of steps are rounded differently.
+TEST(ContinuousMotion, IsCarriedInAnyDirection) {
+  for (const double angle : {0.0, 0.17, 0.5, 1.1, 2.0, 2.9}) {
+    const Eigen::Quaterniond turn = rotation(angle * Vec3(0.3, 0.2, 0.9).normalized());
+    const auto turned = [&](double height_m) {
+      PointCloud cloud;
+      const PointCloud level = sheet(height_m);
+      for (std::size_t i = 0; i < level.size(); ++i)
+        cloud.append(turn * level.point(i), turn * level.normal(i));
+      return cloud;
+    };
+    ToolRenderer renderer(Ride::with_rule({}), plate(), scenes::kernels());
+    RenderOutput out;
+    for (int frame = 0; frame < 12; ++frame) {
+      renderer.on_frame(scenes::frame(turned(0.0067 * frame), frame));
+      for (int tick = 0; tick < 10; ++tick) out = renderer.step({Vec3::Zero(), turn}, 0);
+    }
+    EXPECT_NEAR((turn.conjugate() * out.proxy_W).y(), 0.0067 * 11 + kHalf_m.y(), 1e-4) << angle;
   }
 }
 
