@@ -100,6 +100,8 @@ constexpr Row kMeasures[] = {
     {"packet_rate_20", "1/s", "packets per second of the force with a dead-band of 20 %, IEEE 1918.1.1", all,
      [](const Trace& trace) { return deadband_packets_per_s(trace, 0.2); }},
 
+    {"tool_popped_through", "1", "1 when the tool's centre of mass ended below the true surface", tool,
+     [](const Trace& trace) { return trace.has_tool() ? popped_through(trace) : kNoValue; }},
     {"max_torque", "N m", "maximum torque about the HIP", tool, max_torque_Nm},
     {"max_torque_jump", "N m", "maximum change of the torque at a frame update", tool, max_torque_jump_Nm},
     {"rms_torque_jump", "N m", "rms change of the torque at a frame update", tool, rms_torque_jump_Nm},

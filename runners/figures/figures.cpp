@@ -48,6 +48,9 @@ constexpr FigureEntry kFigures[] = {
      figure_7_5_recorded, 7},
     {"latency", "how far a forbidden region is violated when frames arrive late, irregularly or not at all",
      figure_latency, 18},
+    {"tool-lifts",
+     "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
+     figure_tool_lifts, 50},
     {"turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4},
 };
 

@@ -37,6 +37,7 @@ Parameters parameters(MovingShape::Settings& s) {
   add({
       {"sheets", &s.sheets, 1, 5, "number of parallel surfaces; the first is on top and is the true surface"},
       {"sheet_spacing_m", &s.sheet_spacing_m, 1e-4, 1, "from one sheet to the next, along y of the shape"},
+      {"normals", &s.normals, 0, 0, "the points have the normals of the true surface, as tools need them"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
       {"redraw_noise", &s.redraw_noise, 0, 1, "true: new noise in every frame; false: the same noise in all"},
       {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000, "first frame of those without points; -1: never"},
@@ -64,7 +65,8 @@ MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Ke
   const Grid& grid = settings_.grid;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
-      nodes_S_.push_back(shape_.point(grid.x(column), grid.z(row)));
+      nodes_S_.push_back(shape_.point(grid.x(column), grid.z(row))),
+          normals_S_.push_back(shape_.normal(grid.x(column), grid.z(row)));
 }
 
 int MovingShape::frame_count() const {
@@ -78,10 +80,13 @@ NoiseStream MovingShape::noise(int frame) const {
   return noise_stream(key_, NoiseUse::point_position, drawn);
 }
 
+bool MovingShape::is_a_level_grid() const {
+  return settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 && motion_.is_a_lift_alone() &&
+         !settings_.normals;
+}
+
 std::shared_ptr<const NeighbourSearch> MovingShape::points(int frame) const {
-  const bool is_a_level_grid =
-      settings_.shape.kind == Shape::Kind::flat && settings_.sheets == 1 && motion_.is_a_lift_alone();
-  if (is_a_level_grid && !is_empty(frame))
+  if (is_a_level_grid() && !is_empty(frame))
     return std::make_shared<NoisyGridSearch>(settings_.grid, motion_.of_frame(frame).y_m,
                                              settings_.noise_sigma_m, noise(frame));
   return make_search(cloud(frame), 2.5 * settings_.grid.spacing_m);
@@ -95,7 +100,13 @@ PointCloud MovingShape::cloud(int frame) const {
   cloud.x.reserve(size), cloud.y.reserve(size), cloud.z.reserve(size);
   for (int sheet = 0; sheet < settings_.sheets; ++sheet) {
     const Vec3 below(0, sheet * settings_.sheet_spacing_m, 0);
-    for (const Vec3& node_S : nodes_S_) cloud.append(pose.to_W(node_S - below));
+    for (std::size_t i = 0; i < nodes_S_.size(); ++i) {
+      const Vec3 p_W = pose.to_W(nodes_S_[i] - below);
+      if (settings_.normals)
+        cloud.append(p_W, pose.turned(normals_S_[i]));
+      else
+        cloud.append(p_W);
+    }
   }
   cloud.grid_columns = settings_.grid.columns;  // sheet after sheet, each whole rows
   add_noise(cloud, settings_.noise_sigma_m, noise(frame), kernels_);

@@ -13,8 +13,8 @@
 namespace remote_touch {
 
 // The points are the grid's nodes on the shape, row by row, sheet by sheet, moved by the motion; noise is
-// added in the world frame. A small grid is a patch, its border an edge to slide over. A flat lift has the
-// same bits as a moving-lift of the same settings.
+// added in the world frame, to the points and not to their normals. A small grid is a patch, its border an
+// edge to slide over. A flat lift has the same bits as a moving-lift of the same settings.
 class MovingShape final : public Scenario {
  public:
   enum class Truth { newest_frame, moving };
@@ -25,6 +25,7 @@ class MovingShape final : public Scenario {
     ShapeMotion::Settings motion;
     int sheets = 1;
     double sheet_spacing_m = 0.015;
+    bool normals = false;
     double noise_sigma_m = 0;
     bool redraw_noise = true;
     int vanish_at_frame = -1;
@@ -53,13 +54,14 @@ class MovingShape final : public Scenario {
   }
   bool is_empty(int frame) const { return has_vanished(frame) || frame == settings_.empty_frame; }
   NoiseStream noise(int frame) const;
+  bool is_a_level_grid() const;
 
   const Settings settings_;
   const NoiseKey key_;
   const Kernels& kernels_;
   const Shape shape_;
   const ShapeMotion motion_;
-  std::vector<Vec3> nodes_S_;  // of the first sheet
+  std::vector<Vec3> nodes_S_, normals_S_;  // of the first sheet
 };
 
 Parameters parameters(MovingShape::Settings& s);

@@ -16,9 +16,10 @@ constexpr double kFullRotation = 360 * kRadiansPerDegree;
 
 Parameters parameters(Shape::Settings& s) {
   return {
-      {"shape", choice(s.kind, {"flat", "ridge", "valley", "sphere", "ripple"}), 0, 0,
-       "flat; ridge or valley along z; sphere: upper half of a ball; ripple: sine along x"},
-      {"slope_deg", &s.slope_deg, 0, 80, "slope of the flanks of a ridge or valley"},
+      {"shape", choice(s.kind, {"flat", "ridge", "valley", "sphere", "ripple", "corner"}), 0, 0,
+       "flat; ridge or valley along z; sphere: upper half of a ball; ripple: sine along x; corner: top of a pyramid with three faces"},
+      {"slope_deg", &s.slope_deg, 0, 80,
+       "slope of the flanks of a ridge or valley, or of the faces of a corner"},
       {"radius_m", &s.radius_m, 0.001, 10, "radius of the sphere; its top is the origin"},
       {"amplitude_m", &s.amplitude_m, 0, 1, "amplitude of the ripple"},
       {"period_m", &s.period_m, 0.001, 10, "period of the ripple, along x"},
@@ -29,6 +30,7 @@ double steepest_deg(const Shape::Settings& s) {
   switch (s.kind) {
     case Shape::Kind::ridge:
     case Shape::Kind::valley:
+    case Shape::Kind::corner:
       return s.slope_deg;
     case Shape::Kind::ripple:
       return std::atan(kFullRotation * s.amplitude_m / s.period_m) / kRadiansPerDegree;
@@ -45,6 +47,10 @@ Shape::Shape(const Settings& settings, const Grid& grid)
       z1_(grid.z(grid.rows - 1)) {
   const auto [sine, cosine] = sin_cos(settings.slope_deg * kRadiansPerDegree);
   if (settings.kind == Kind::flat) add_flank(x0_, x1_, 0);
+  for (std::size_t k = 0; k < faces_.size(); ++k) {
+    const auto [up, across] = sin_cos((90 + 120 * static_cast<double>(k)) * kRadiansPerDegree);
+    faces_[k] = {sine * across, cosine, sine * up};
+  }
   if (settings.kind != Kind::ridge && settings.kind != Kind::valley) return;
   slope_ = (settings.kind == Kind::ridge ? -sine : sine) / cosine;
   if (x0_ < 0) add_flank(x0_, std::min(0.0, x1_), -slope_);
@@ -80,8 +86,31 @@ double Shape::height(double x, double z) const {
       return std::sqrt(std::max(0.0, r * r - x * x - z * z)) - r;
     case Kind::ripple:
       return wave(x).height_m;
+    case Kind::corner: {  // the lowest of its planes
+      double height_m = std::numeric_limits<double>::infinity();
+      for (const Vec3& n : faces_) height_m = std::min(height_m, -(n.x() * x + n.z() * z) / n.y());
+      return height_m;
+    }
     default:
       return 0;
+  }
+}
+
+Vec3 Shape::normal(double x, double z) const {
+  switch (settings_.kind) {
+    case Kind::ridge:
+    case Kind::valley:
+      return Vec3(x < 0 ? slope_ : -slope_, 1, 0).normalized();
+    case Kind::sphere:
+      return Vec3(x, height(x, z) + settings_.radius_m, z).normalized();
+    case Kind::ripple:
+      return Vec3(-wave(x).slope, 1, 0).normalized();
+    case Kind::corner:
+      return *std::max_element(faces_.begin(), faces_.end(), [&](const Vec3& a, const Vec3& b) {
+        return a.x() * x + a.z() * z < b.x() * x + b.z() * z;
+      });
+    default:
+      return Vec3::UnitY();
   }
 }
 
@@ -94,6 +123,7 @@ Vec3 Shape::point(double x, double z) const {
 double Shape::signed_distance(const Vec3& p_S) const {
   if (settings_.kind == Kind::sphere) return distance_to_dome(p_S);
   if (settings_.kind == Kind::ripple) return distance_to_wave(p_S);
+  if (settings_.kind == Kind::corner) return distance_to_corner(p_S);
   const bool over = p_S.x() >= x0_ && p_S.x() <= x1_ && p_S.z() >= z0_ && p_S.z() <= z1_;
   if (settings_.kind == Kind::flat && over) return p_S.y();  // to the last bit
   return remote_touch::signed_distance(flanks_, p_S);
@@ -105,6 +135,27 @@ double Shape::distance_to_dome(const Vec3& p_S) const {
   const double beside = std::sqrt(p_S.x() * p_S.x() + p_S.z() * p_S.z());
   if (y >= 0) return std::sqrt(beside * beside + y * y) - r;
   return -std::sqrt((beside - r) * (beside - r) + y * y);
+}
+
+// Its solid is where all three planes are above: inside the nearest plane is nearest; outside the foot on a
+// face, an edge or the top, whichever is on the surface and nearest.
+double Shape::distance_to_corner(const Vec3& p_S) const {
+  constexpr double kRounding_m = 1e-12;
+  const auto most_above = [&](const Vec3& p) {
+    return std::max({faces_[0].dot(p), faces_[1].dot(p), faces_[2].dot(p)});
+  };
+  const double above = most_above(p_S);
+  if (above <= 0) return above;
+  double nearest = p_S.norm();  // the top
+  for (std::size_t k = 0; k < faces_.size(); ++k) {
+    const Vec3 on_face = p_S - faces_[k].dot(p_S) * faces_[k];
+    Vec3 edge = faces_[k].cross(faces_[(k + 1) % 3]);
+    if (edge.y() > 0) edge = -edge;  // down from the top
+    const Vec3 on_edge = std::max(0.0, p_S.dot(edge) / edge.squaredNorm()) * edge;
+    for (const Vec3& foot : {on_face, on_edge})
+      if (most_above(foot) <= kRounding_m) nearest = std::min(nearest, (p_S - foot).norm());
+  }
+  return nearest;
 }
 
 // Crests, and places of the same height, come at least once in a period: the nearest place of the wave is no

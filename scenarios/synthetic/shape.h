@@ -1,6 +1,7 @@
 // A height field in its own frame S, with exact distances: the surface that a moving-shape scenario moves.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/parameters/parameter.h"
@@ -9,15 +10,17 @@
 
 namespace remote_touch {
 
-// y = height(x, z) in S, metres, y up; the top of a ridge or sphere, the bottom of a valley and a zero of the
-// ripple lie at the origin. Only the sphere varies along z. The surface reaches from the first to the last
-// point of a grid; that of the sphere is the upper half of a ball, however large the grid is.
+// y = height(x, z) in S, metres, y up; the top of a ridge, corner or sphere, the bottom of a valley and a
+// zero of the ripple lie at the origin. Only sphere and corner vary along z. The surface reaches from the
+// first to the last point of a grid; that of the sphere is the upper half of a ball, and the three faces of
+// the corner reach on without end, however large the grid is.
 class Shape {
  public:
-  enum class Kind { flat, ridge, valley, sphere, ripple };
+  enum class Kind { flat, ridge, valley, sphere, ripple, corner };
   struct Settings {
     Kind kind = Kind::flat;
-    double slope_deg = 30;       // of both flanks of a ridge or valley, which meet at x = 0
+    double slope_deg =
+        30;  // of the flanks of a ridge or valley, which meet at x = 0, and of the faces of a corner
     double radius_m = 0.04;      // of the sphere
     double amplitude_m = 0.003;  // of the ripple, amplitude sin(2 pi x / period)
     double period_m = 0.03;
@@ -29,6 +32,8 @@ class Shape {
   double height(double x, double z) const;
   // What a sensor above measures there; NaN in all three beside a sphere.
   Vec3 point(double x, double z) const;
+  // Unit, upwards; on a crease that of one of its sides.
+  Vec3 normal(double x, double z) const;
   // Distance to the surface, positive above. Beyond the border it is the distance to the border, with the
   // sign of the side of the plane that ends there (sphere: the plane through its centre; ripple: the height
   // at the border). Exact; for the ripple by a search along x, within 1e-6 m where its curvature is about
@@ -48,11 +53,13 @@ class Shape {
   double foot_on_wave(const Vec3& p_S, double low, double high) const;
   double distance_to_dome(const Vec3& p_S) const;
   double distance_to_wave(const Vec3& p_S) const;
+  double distance_to_corner(const Vec3& p_S) const;
 
   const Settings settings_;
   const double x0_, x1_, z0_, z1_;  // the border
   double slope_ = 0;                // rise of a flank along x, at x > 0
   std::vector<FlatPanel> flanks_;   // of flat, ridge and valley
+  std::array<Vec3, 3> faces_;       // of a corner: their normals
 };
 
 Parameters parameters(Shape::Settings& s);

@@ -20,6 +20,7 @@ double swing(double turns) {
 Parameters parameters(ShapeMotion::Settings& s) {
   return {
       {"tilt_deg", &s.tilt_deg, -80, 80, "rotation about z through the origin of the shape, from x to y"},
+      {"wait_frames", &s.wait_frames, 0, 100000, "updates at rest before the rise"},
       {"start_depth_m", &s.start_depth_m, -10, 10,
        "the first frame lies this far below y = 0; above it where negative"},
       {"start_velocity_m_per_s", &s.start_velocity_m_per_s, -10, 10,
@@ -41,6 +42,7 @@ Parameters parameters(ShapeMotion::Settings& s) {
 ShapeMotion::ShapeMotion(const Settings& settings, double frame_rate_hz)
     : settings_(settings), frame_rate_hz_(frame_rate_hz) {
   double velocity = settings.start_velocity_m_per_s;
+  height_m_.assign(static_cast<std::size_t>(settings.wait_frames), -settings.start_depth_m);
   for (int j = 0; j <= settings.rise_frames; ++j)
     height_m_.push_back(-settings.start_depth_m + j * (velocity / frame_rate_hz));
   for (int j = 0; j < settings.acceleration_frames; ++j) {

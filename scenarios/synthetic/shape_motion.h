@@ -17,6 +17,10 @@ struct ShapePose {
   Vec3 to_W(const Vec3& p_S) const {
     return {cosine * p_S.x() - sine * p_S.y() + x_m, sine * p_S.x() + cosine * p_S.y() + y_m, p_S.z()};
   }
+  Vec3 turned(const Vec3& direction_S) const {
+    return {cosine * direction_S.x() - sine * direction_S.y(),
+            sine * direction_S.x() + cosine * direction_S.y(), direction_S.z()};
+  }
   Vec3 to_S(const Vec3& p_W) const {
     const double x = p_W.x() - x_m, y = p_W.y() - y_m;
     return {cosine * x + sine * y, cosine * y - sine * x, p_W.z()};
@@ -38,6 +42,7 @@ class ShapeMotion {
     double shake_amplitude_m = 0, shake_hz = 5;
     double rock_deg = 0, rock_hz = 1;
     double motion_from_s = 0;
+    int wait_frames = 0;  // updates at rest before the rise
   };
 
   ShapeMotion(const Settings& settings, double frame_rate_hz);

@@ -90,6 +90,7 @@ bool carries_unit(const std::string& name) {
                                               "columns",
                                               "rows",
                                               "rise_frames",
+                                              "wait_frames",
                                               "first_frame",
                                               "acceleration_frames",
                                               "last_frame",

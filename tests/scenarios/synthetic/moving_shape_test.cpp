@@ -23,7 +23,7 @@ using Kind = Shape::Kind;
 
 const NoiseKey kKey{1, 2, 3};
 constexpr double kPi = 3.14159265358979323846;
-const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple};
+const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple, Kind::corner};
 
 MovingShape made(const MovingShape::Settings& settings, const NoiseKey& key = kKey) {
   return MovingShape(settings, key, scenes::kernels());
@@ -103,7 +103,44 @@ TEST(MovingShape, ReceedingAndStartingAboveZero) {
   EXPECT_EQ(shape.frame_count(), 4);
 }
 
+TEST(MovingShape, MayWaitBeforeItRises) {
+  MovingShape::Settings s;
+  s.motion.start_depth_m = 0.01, s.motion.start_velocity_m_per_s = 0.3, s.motion.rise_frames = 3;
+  const MovingShape at_once = made(s);
+  s.motion.wait_frames = 5;
+  const MovingShape later = made(s);
+  EXPECT_EQ(later.frame_count(), at_once.frame_count() + 5);
+  for (int frame = 0; frame < 12; ++frame)
+    EXPECT_EQ(later.cloud(frame).y[7], at_once.cloud(std::max(0, frame - 5)).y[7]) << frame;
+}
+
 // --- what comes on top of it ---
+
+// Upright on the true surface, in whatever pose: a step along the normal is as long as the distance it makes.
+TEST(MovingShape, NormalsAreThoseOfTheTrueSurface) {
+  for (const Kind kind : kKinds) {
+    MovingShape::Settings s = busy(kind);
+    EXPECT_FALSE(made(s).cloud(3).has_normals());
+    s.normals = true;
+    const MovingShape shape = made(s);
+    EXPECT_TRUE(same_bits(shape.cloud(5), made(busy(kind)).cloud(5)));
+    for (const int frame : {0, 9}) {
+      const PointCloud cloud = shape.cloud(frame);
+      int tried = 0;
+      for (std::size_t i = 0; i < cloud.size(); i += 13) {
+        if (!cloud.point(i).allFinite()) continue;
+        ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
+        // Beside a crease another side may be nearer.
+        const double step_m = 1e-5;
+        EXPECT_NEAR(shape.signed_distance(cloud.point(i) + step_m * cloud.normal(i), frame / 30.0), step_m,
+                    1e-7)
+            << static_cast<int>(kind) << " " << i;
+        ++tried;
+      }
+      EXPECT_GT(tried, 30);
+    }
+  }
+}
 
 TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
   MovingShape::Settings s;

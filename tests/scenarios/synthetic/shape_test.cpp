@@ -35,6 +35,13 @@ double expected_height(const Shape::Settings& s, double x, double z) {
       return flank;
     case Kind::sphere:
       return std::sqrt(s.radius_m * s.radius_m - x * x - z * z) - s.radius_m;
+    case Kind::corner: {
+      double lowest = 1;
+      for (const double deg : {90.0, 210.0, 330.0})
+        lowest = std::min(lowest, -std::tan(s.slope_deg * kPi / 180) *
+                                      (std::cos(deg * kPi / 180) * x + std::sin(deg * kPi / 180) * z));
+      return lowest;
+    }
     case Kind::ripple:
       return s.amplitude_m * std::sin(2 * kPi * x / s.period_m);
     default:
@@ -76,12 +83,13 @@ double nearest_sample_m(const Samples& samples, const Vec3& p) {
   return std::sqrt(squared);
 }
 
-const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple};
+const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple, Kind::corner};
 
 TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
   std::mt19937 random(1);
   const auto even = [&] { return random() / 2147483648.0 - 1; };
   for (const Kind kind : kKinds) {
+    if (kind == Kind::corner) continue;  // without a border: below
     SCOPED_TRACE(static_cast<int>(kind));
     const Shape::Settings s = settings_of(kind);
     const Shape shape(s, kGrid);
@@ -100,6 +108,48 @@ TEST(Shape, DistanceIsToTheNearestOfDenseSamples) {
     }
     EXPECT_GT(beyond, 20);
     EXPECT_GT(below, 20);
+  }
+}
+
+TEST(Shape, OfACornerToTheNearestOfDenseSamplesOfItsFaces) {
+  const Shape::Settings s = settings_of(Kind::corner);
+  const Shape corner(s, kGrid);
+  Samples samples{{}, 0};
+  constexpr double kStep_m = 2e-4;
+  for (int j = -400; j <= 400; ++j)
+    for (int i = -400; i <= 400; ++i)
+      samples.points.emplace_back(i * kStep_m, expected_height(s, i * kStep_m, j * kStep_m), j * kStep_m);
+  const double half_gap_m = kStep_m / std::sqrt(2.0) / std::cos(s.slope_deg * kPi / 180);
+  std::mt19937 random(4);
+  const auto even = [&] { return random() / 2147483648.0 - 1; };
+  int inside = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 p(0.02 * even(), 0.03 * even(), 0.02 * even());
+    const double brute = nearest_sample_m(samples, p), got = corner.signed_distance(p);
+    EXPECT_LE(std::abs(got), brute + 1e-12) << p.transpose();
+    EXPECT_GE(std::abs(got) + half_gap_m, brute) << p.transpose();
+    inside += got < 0;
+  }
+  EXPECT_GT(inside, 40);
+  EXPECT_DOUBLE_EQ(corner.signed_distance({0, 0.01, 0}), 0.01) << "from the top";
+}
+
+// Across two differences of the heights.
+TEST(Shape, NormalsAreUprightOnTheSurface) {
+  for (const Kind kind : kKinds) {
+    const Shape::Settings s = settings_of(kind);
+    const Shape shape(s, kGrid);
+    for (int k = 0; k < 100; ++k) {
+      const double x = 0.0093 * std::sin(1.7 * k) + 1e-4, z = 0.0091 * std::cos(2.3 * k) + 1e-4, step = 1e-7;
+      if (kind == Kind::sphere && std::hypot(x, z) > 0.9 * s.radius_m) continue;
+      const Vec3 n = shape.normal(x, z);
+      const Vec3 across(2 * step, expected_height(s, x + step, z) - expected_height(s, x - step, z), 0),
+          along(0, expected_height(s, x, z + step) - expected_height(s, x, z - step), 2 * step);
+      EXPECT_NEAR(n.norm(), 1, 1e-12);
+      EXPECT_GT(n.y(), 0);
+      EXPECT_NEAR(n.dot(across.normalized()), 0, 1e-6) << static_cast<int>(kind) << " " << x << " " << z;
+      EXPECT_NEAR(n.dot(along.normalized()), 0, 1e-6) << static_cast<int>(kind) << " " << x << " " << z;
+    }
   }
 }
 
