@@ -1,4 +1,4 @@
-// The contacts of a pose for the two contact rules, from the points of the collision list.
+// The contacts of a pose for the contact rules, from the points of the collision list.
 #pragma once
 
 #include <memory>

@@ -7,13 +7,14 @@ namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxStops = 64;
+constexpr double kSamePoint_m = 1e-9;
 constexpr double kMinSlope = 0.3;  // at ridges of the field, where a distance tells little
 
 }  // namespace
 
 ContinuousContacts::ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool)
     : tool_(tool),
-      reach_m_(tool.reach_m),
+      reach_m_(tool.reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
       way_(tool),
       max_motion_m_(way_.safe_motion_m(parameters.look_ahead_m)) {
   contacts_.reserve(MotionProgram::kMaxContacts + kMaxStops);
@@ -35,14 +36,21 @@ void ContinuousContacts::add_stops(const ToolPose& pose) {
   }
 }
 
+void ContinuousContacts::add_stop(const Vec3& p_W) {
+  const bool is_known = std::any_of(stops_W_.begin(), stops_W_.end(),
+                                    [&](const Vec3& stop_W) { return (stop_W - p_W).norm() < kSamePoint_m; });
+  if (!is_known && stops_W_.size() < kMaxStops) stops_W_.push_back(p_W);
+}
+
 NearContacts ContinuousContacts::near(const ToolPose& pose, double side) {
   NearContacts found = points_->near(pose, side);
   contacts_.clear();
-  add_stops(pose);  // first, for they are few, and the motion program ignores what is too many
   for (ToolContact contact : found.contacts) {
     contact.depth_m += kGap_m;
     contacts_.push_back(contact);
   }
+  thinning_.thin(contacts_, ContactThinning::kMaxCount - stops_W_.size());
+  add_stops(pose);
   return {contacts_, found.deepest_m + kGap_m};
 }
 
@@ -55,13 +63,14 @@ double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
   const NearDisks& points = points_->near_disks();
+  const double far_m = way_.far_m(motion, reach_m_);
   std::size_t first = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points.distance_m(i) > far_m) continue;
     const double fraction = way_.fraction(motion, points.p_T(i), points.distance_m(i));
     if (fraction < clear) clear = fraction, first = i;
   }
-  if (first < points.size() && stops_W_.size() < kMaxStops)
-    stops_W_.push_back(pose.p_W + pose.q_WT * points.p_T(first));
+  if (first < points.size()) add_stop(pose.p_W + pose.q_WT * points.p_T(first));
   return clear;
 }
 
@@ -69,10 +78,10 @@ double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
   const NearDisks& points = points_->near_disks();
+  const double far_m = way_.far_m(motion, reach_m_);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SurfaceDisk disk = points.disk(i);
-    const Vec3 out_T = disk.has_normal() ? Vec3(side * disk.n_T) : Vec3(-disk.at.gradient_T);
-    if (out_T.dot(motion.a_T) >= 0) continue;
+    if (!(side * disk.n_T.dot(motion.a_T) < 0) || disk.at.distance_m > far_m) continue;
     if (points.distance_m(i) < -ClearWay::kInside_m) return 0;
     clear = std::min(clear, way_.fraction(motion, points.p_T(i), points.distance_m(i)));
   }

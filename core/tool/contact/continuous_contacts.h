@@ -28,20 +28,22 @@ class ContinuousContacts final : public NearContactSource {
   NearContacts near(const ToolPose& pose, double side) override;
   // pre: pose is that of the last call of near().
   double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;
-  // The same for a motion away from a surface, when a frame has put points anywhere: only those stop the tool
-  // that face it from ahead, and they do at once if they are in it, as between walls that have closed. side:
-  // of the surface, as in near(). pre: as above; the motion is a translation.
+  // The same for a motion away from a surface, when a frame has put points anywhere: only those with a normal
+  // that faces the tool from ahead stop it, and they do at once if they are in it, as between walls that have
+  // closed. side: of the surface, as in near(). pre: as above; the motion is a translation.
   double fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const;
 
  private:
+  void add_stop(const Vec3& p_W);
   void add_stops(const ToolPose& pose);
   double known_fraction(const Vector6& a_g) const;
 
   const VoxelTool& tool_;
-  const double reach_m_;  // of the farthest place of the tool from its centre of mass
+  const double reach_m_;  // of the farthest point that is near, from the tool's centre of mass
   ClearWay way_;
   const double max_motion_m_;
   ContactList* points_ = nullptr;
+  ContactThinning thinning_;
   std::vector<ToolContact> contacts_;
   std::vector<Vec3> stops_W_;
 };

@@ -19,7 +19,7 @@ Parameters parameters(ToolParameters& p) {
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
        "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead and continuous"},
       {"frame_reach_m", &p.frame_reach_m, 0, 0.05,
-       "for contact_rule = continuous: a tool that points held, and that a frame puts into them or past them, comes from this far outside until a point stops it; 0: not"},
+       "for contact_rule = continuous: how far a surface that holds the tool may move in a frame; the tool is moved out by up to this, and back until a point stops it; a small detections_per_tick shortens it; 0: not moved out"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},
       {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000, "stiffness K of the virtual coupling (6.9)",
        kLive},
@@ -43,7 +43,7 @@ Parameters parameters(ToolParameters& p) {
       {"velocity_force", choice(p.velocity_force, {"minus", "plus", "none"}), 0, 0,
        "with velocity_estimate: sign of the velocity term of (4.15) in the force on a tool that is held; plus is printed"},
       {"slave_command", choice(p.slave_command, {"tool", "hip"}), 0, 0,
-       "pose that the slave robot follows, 5.2: tool: never inside the points; hip: the device's"},
+       "pose that the slave robot follows, 5.2: tool: the rendered one; hip: the device's"},
   };
 }
 

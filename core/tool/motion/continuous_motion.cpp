@@ -4,32 +4,63 @@
 
 namespace remote_touch {
 
+namespace {
+
+constexpr double kNowhere_m = -1;
+
+// Detections are left for the motion itself after the way out, a look the other way, and the way back.
+int max_steps(int detections_per_tick) {
+  return std::max(0, (detections_per_tick - 4) / 3);
+}
+
+bool is_clear(const NearContacts& near) {
+  return near.deepest_m <= ContinuousContacts::kGap_m;
+}
+
+Vector6 translation(const Vec3& by_W) {
+  Vector6 a_g = Vector6::Zero();
+  a_g.head<3>() = by_W;
+  return a_g;
+}
+
+}  // namespace
+
 ContinuousMotion::ContinuousMotion(const ToolParameters& parameters, const VoxelTool& tool)
     : near_(parameters, tool),
       step_m_(0.99 * near_.max_motion_m()),  // so that rounding does not shorten it
-      // There and back, and then the motion itself.
-      frame_reach_m_(std::min(parameters.frame_reach_m, step_m_ * (parameters.detections_per_tick / 3))),
+      frame_reach_m_(std::min(parameters.frame_reach_m, step_m_ * max_steps(parameters.detections_per_tick))),
       motion_(parameters, tool, tool.reach_m) {}
 
-// Some contact is where it was, and none is in the tool.
-bool ContinuousMotion::is_still_held(const NearContacts& near, const ToolPose& pose) const {
-  if (near.deepest_m > ContinuousContacts::kGap_m) return false;
+// A surface is close on the side that held the tool, and none is in it.
+bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& pose) const {
   const Vec3 push_T = pose.q_WT.conjugate() * push_W_;
-  return std::any_of(near.contacts.begin(), near.contacts.end(), [&](const ToolContact& contact) {
-    return contact.depth_m > -ContinuousContacts::kGap_m && contact.n_T.dot(push_T) > 0.5;
-  });
+  return is_clear(near) && std::any_of(near.contacts.begin(), near.contacts.end(),
+                                       [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
 }
 
-double ContinuousMotion::translate(ToolPose& pose, double way_m, int& detections) {
+// Out to the first place that is supported. Returns how far, or kNowhere_m.
+double ContinuousMotion::leave(ToolPose& pose, int& detections) {
+  for (double done_m = 0;;) {
+    const NearContacts near = near_.near(pose, 0);
+    ++detections;
+    if (is_supported(near, pose)) return done_m;
+    const double step_m = std::min(step_m_, frame_reach_m_ - done_m);
+    const Vector6 a_g = translation(step_m * push_W_);
+    if (!(step_m > 0) || near_.fraction_ahead(pose, a_g, motion_.side()) < 1) return kNowhere_m;
+    pose = moved(pose, a_g);
+    done_m += step_m;
+  }
+}
+
+// Towards the points that held the tool, until one stops it. Returns how far.
+double ContinuousMotion::approach(ToolPose& pose, double way_m, int& detections) {
   double done_m = 0;
-  while (done_m < std::abs(way_m)) {
-    const double step_m = std::min(step_m_, std::abs(way_m) - done_m);
-    Vector6 a_g = Vector6::Zero();
-    a_g.head<3>() = (way_m < 0 ? -step_m : step_m) * push_W_;
+  while (done_m < way_m) {
+    const double step_m = std::min(step_m_, way_m - done_m);
+    const Vector6 a_g = translation(-step_m * push_W_);
     near_.near(pose, 0);
     ++detections;
-    const double clear =
-        way_m > 0 ? near_.fraction_ahead(pose, a_g, motion_.side()) : near_.clear_fraction(pose, a_g);
+    const double clear = near_.clear_fraction(pose, a_g);
     pose = moved(pose, clear * a_g);
     done_m += clear * step_m;
     if (clear < 1) break;
@@ -38,13 +69,17 @@ double ContinuousMotion::translate(ToolPose& pose, double way_m, int& detections
 }
 
 void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& report) {
-  const Vec3 start_W = pose.p_W;
-  ++report.detections;
-  if (is_still_held(near_.near(pose, 0), pose)) return;
-  const double out_m = translate(pose, frame_reach_m_, report.detections);
-  const double back_m = translate(pose, -out_m, report.detections);
-  if (back_m >= out_m) pose.p_W = start_W;  // to the last bit
-  report.first_step_m = pose.p_W - start_W;
+  ToolPose outside = pose;
+  const bool was_clear = is_clear(near_.near(pose, 0));
+  const double out_m = leave(outside, report.detections);
+  if (out_m <= 0) return;
+  if (was_clear) {  // the surface is gone, and may as well have gone the other way
+    ToolPose ahead = pose;
+    if (approach(ahead, out_m, report.detections) < out_m) return;
+  }
+  approach(outside, out_m, report.detections);
+  report.first_step_m = outside.p_W - pose.p_W;
+  pose = outside;
 }
 
 ToolMotionReport ContinuousMotion::move(ToolPose& pose, const ToolPose& device, ContactList& contacts,

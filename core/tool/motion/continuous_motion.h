@@ -1,10 +1,13 @@
 // The continuous rule: the look-ahead rule, with no step longer than until the first point would get into the
-// tool. Between two frames no point gets into it (clear_way.h).
+// tool. So between two frames no point that is outside gets into a closed tool (clear_way.h).
 //
-// A frame puts its points anywhere, also into the tool or past it. So a tool that points held goes back
-// first, along the direction in which they pushed it, and comes to where it was until the first point stops
-// it: it ends on the side on which it was held, however thin it is, if the points moved no farther than
-// frame_reach_m. Between walls that close on it, it stays. Not in the dissertation.
+// A frame can put its points anywhere, also into the tool or past it. A tool that points held is then moved
+// out, along the direction in which they pushed it, to the first place where no point is in it and a surface
+// is close on the side that held it; and from there back until the first point stops it. So it stays on its
+// side of the surface, however thin it is, if the surface moved by less than frame_reach_m. Where a surface
+// on the other side is nearer, or one that faces the tool is in the way, it stays where it is. What is still
+// in the tool then is left as the look-ahead rule does it, without certainty for the points that are passed
+// in that tick. Not in the dissertation.
 #pragma once
 
 #include "core/tool/contact/continuous_contacts.h"
@@ -18,10 +21,13 @@ class ContinuousMotion final : public ToolMotion {
   ContinuousMotion(const ToolParameters& parameters, const VoxelTool& tool);
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
+  // How far a held tool is moved out at most: frame_reach_m, or less where the budget of detections is small.
+  double frame_reach_m() const { return frame_reach_m_; }
+
  private:
-  bool is_still_held(const NearContacts& near, const ToolPose& pose) const;
-  // Along the direction of contact, positive away from the points; until a point stops it. Returns how far.
-  double translate(ToolPose& pose, double way_m, int& detections);
+  bool is_supported(const NearContacts& near, const ToolPose& pose) const;
+  double leave(ToolPose& pose, int& detections);
+  double approach(ToolPose& pose, double way_m, int& detections);
   void come_from_outside(ToolPose& pose, ToolMotionReport& report);
 
   ContinuousContacts near_;

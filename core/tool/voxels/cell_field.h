@@ -1,9 +1,11 @@
-// The trilinear field in one cell of a tool's grid, with the cell's first node as origin and its edge as
-// unit.
+// // The trilinear field in one cell of a tool's grid, m, with the cell's first node as origin and its edge
+// as unit of length.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/geometry/vector.h"
 #include "core/tool/voxels/voxel_tool.h"
@@ -28,7 +30,8 @@ class CellField {
     const double at_z0 = c_ + p.x() * x_ + p.y() * (y_ + p.x() * xy_);
     return at_z0 + p.z() * (z_ + p.x() * xz_ + p.y() * (yz_ + p.x() * xyz_));
   }
-  // No second derivative in any direction, anywhere in the cell, is larger: the mixed ones are bilinear.
+  // No second derivative in any direction, anywhere in the cell, is larger, m per squared edge: the mixed
+  // ones are bilinear.
   double max_bend() const {
     const auto largest = [&](double at_0) { return std::max(std::abs(at_0), std::abs(at_0 + xyz_)); };
     return std::sqrt(2.0) * Vec3(largest(xy_), largest(xz_), largest(yz_)).norm();

@@ -16,11 +16,12 @@
 namespace remote_touch {
 
 // distance_m: of every node, with its sign. The result is nowhere above it, and its trilinear field nowhere
-// above 0 in or on a closed mesh. pre: the grid encloses the mesh.
+// above 0, but for a nanometre of rounding, in or on a closed mesh. pre: the grid encloses the mesh.
 std::vector<float> outer_field(const TriangleMesh& mesh, const VoxelGrid& grid,
                                const std::vector<float>& distance_m);
 
-// Upper bound of the length of the gradient of the trilinear field within kExactField_m of the surface.
+// Upper bound of the length of the gradient of the trilinear field within kExactField_m of the surface, and
+// inside.
 double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m);
 
 }  // namespace remote_touch

@@ -57,7 +57,8 @@ struct VoxelToolSettings {
   double voxel_m = 5e-4;
   double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
   bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
-  // distance_m is lowered as outer_field.h says: no place in the tool is outside. The voxels stay the same.
+  // distance_m is lowered as outer_field.h says: no place in a closed tool is outside. The voxels stay the
+  // same.
   bool outer_field = false;
 };
 

@@ -81,6 +81,19 @@ TEST_F(OfABox, AfterASafeMotionNothingElseIsIn) {
   EXPECT_GT(safe_m, 1e-3);
   EXPECT_LE(safe_m, 2e-3);
   EXPECT_LE(way_.safe_motion_m(0.005), 3e-3);
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vector = [&] { return Vec3(any(random), any(random), any(random)); };
+  int tried = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p_T = vector().cwiseProduct(Vec3(0.019, 0.014, 0.009));
+    if (field(tool_, p_T) < 2e-3 || field(tool_, p_T) > 2.5e-3) continue;
+    const Vec3 by = safe_m * vector().normalized();
+    EXPECT_GT(field(tool_, p_T - by), 0);
+    EXPECT_EQ(fraction(p_T, shift(by)), 1);
+    ++tried;
+  }
+  EXPECT_GT(tried, 500);
 }
 
 // Against dense samples of the true motion, through moved(): never too late, and mostly hardly too early.

@@ -107,7 +107,6 @@ TEST(OuterField, IsTheFieldOnFlatFaces) {
   const TriangleMesh mesh = meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), Vec3::Zero());
   const VoxelTool plain = made(mesh, false), outer = made(mesh, true);
   const Vec3 half_m(0.015, 0.01, 0.005);
-  int faces = 0;
   for (int n = 0; n < 20000; ++n) {
     std::mt19937 random(static_cast<unsigned>(n));
     std::uniform_real_distribution<double> place(-1, 1);
@@ -115,9 +114,7 @@ TEST(OuterField, IsTheFieldOnFlatFaces) {
     p[n % 3] = std::copysign(half_m[n % 3] + 3e-4 * place(random), p[n % 3]);
     const Vec3 p_T = meshes::rotated() * p;
     EXPECT_NEAR(sample_field(outer, p_T).distance_m, sample_field(plain, p_T).distance_m, 1e-7);
-    ++faces;
   }
-  EXPECT_EQ(faces, 20000);
 }
 
 TEST(OuterField, MaxSlopeIsThatOfDifferences) {
