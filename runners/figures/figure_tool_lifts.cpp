@@ -1,19 +1,19 @@
 // Chapter 4's question for tools: up to which speed does a surface carry a plate that is pressed onto it, and
 // what do thickness, tilt, rotation and noise do to that? Simulated; not in the dissertation.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/geometry/rotation.h"
+#include "core/tool/dynamics/tool_parameters.h"
 #include "runners/figures/figures.h"
+#include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
 namespace {
 
 const std::string kLiftFigure = "tool-lifts";
-constexpr double kLiftFrames_hz = 30, kLiftVoxel_m = 5e-4, kFrameReach_m = 0.02, kThinPlate_m = 0.005;
-constexpr double kPlateLength_m = 0.04;
+constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
 
 enum class Carrier { voxels, look_ahead, continuous };
 struct CarrierName {
@@ -25,15 +25,15 @@ constexpr CarrierName kCarriers[] = {{Carrier::voxels, "voxels", "as printed"},
                                      {Carrier::continuous, "continuous", "continuous"}};
 
 // What one frame may move a surface by against a plate: 6.2.4, with the shell on either side; all of the
-// plate, where the side of the last contact is known; the way that a held tool goes back.
+// plate, where the side of the last contact is known; how far a held tool is moved out.
 double max_jump_m(Carrier rule, double thickness_m) {
   switch (rule) {
     case Carrier::voxels:
-      return thickness_m - 2 * kLiftVoxel_m;
+      return thickness_m - 2 * ToolSettings{}.voxel_m;
     case Carrier::look_ahead:
       return thickness_m;
     default:
-      return std::max(thickness_m, kFrameReach_m);
+      return std::max(thickness_m, ToolParameters{}.frame_reach_m);
   }
 }
 
@@ -72,7 +72,7 @@ class CarrySweep {
   SweepResult result_;
 };
 
-// Limits over a setting and, if bound() gives one, what is derived; each rule in columns of its own.
+// Limits over a setting, and bound(), what is derived for it; each rule in columns of its own.
 template <class Bound>
 Table limit_table(const std::string& name, const std::string& title, const CarrySweep& sweep, Column setting,
                   const std::string& units, Bound&& bound) {
@@ -92,12 +92,13 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
   return table;
 }
 
-Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label, bool bounds,
+Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
                   std::pair<double, double> place) {
   Panel panel{table.title, x_label, y_label};
   for (const CarrierName& carrier : kCarriers) {
     const std::string column = carrier.column, x = table.columns[0].name;
-    if (bounds) panel.curves.push_back({table.name, x, column + "_bound", CurveStyle::dashed});
+    panel.curves.push_back(
+        {table.name, x, column + "_bound", CurveStyle::dashed, std::string(carrier.label) + ", derived"});
     panel.curves.push_back({table.name, x, column + "_carried", CurveStyle::dots, carrier.label});
   }
   panel.place = place;
@@ -202,11 +203,10 @@ Figure figure_tool_lifts(const FigureContext& context) {
       "derived, one frame moves the surface through the plate (printed rule: through what is not shell; "
       "continuous rule: by more than frame_reach_m, 20 mm)."};
   figure.tables = {lift_limits(context), tilt_limits(context), turn_limits(context), noise_limits(context)};
-  figure.panels = {
-      limit_panel(figure.tables[0], "thickness h (m)", "speed (m/s)", true, {0, 0}),
-      limit_panel(figure.tables[1], "tilt (deg)", "speed (m/s)", true, {0, 1}),
-      limit_panel(figure.tables[2], "distance from the axis (m)", "amplitude (deg)", true, {1, 0}),
-      limit_panel(figure.tables[3], "noise (m)", "acceleration (m/s^2)", true, {1, 1})};
+  figure.panels = {limit_panel(figure.tables[0], "thickness h (m)", "speed (m/s)", {0, 0}),
+                   limit_panel(figure.tables[1], "tilt (deg)", "speed (m/s)", {0, 1}),
+                   limit_panel(figure.tables[2], "distance from the axis (m)", "amplitude (deg)", {1, 0}),
+                   limit_panel(figure.tables[3], "noise (m)", "acceleration (m/s^2)", {1, 1})};
   figure.claims = lift_claims(figure.tables[0], figure.tables[1], figure.tables[2], figure.tables[3]);
   return figure;
 }

@@ -80,8 +80,7 @@ double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a
   const NearDisks& points = points_->near_disks();
   const double far_m = way_.far_m(motion, reach_m_);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const SurfaceDisk disk = points.disk(i);
-    if (!(side * disk.n_T.dot(motion.a_T) < 0) || disk.at.distance_m > far_m) continue;
+    if (points.distance_m(i) > far_m || !(side * points.disk(i).n_T.dot(motion.a_T) < 0)) continue;
     if (points.distance_m(i) < -ClearWay::kInside_m) return 0;
     clear = std::min(clear, way_.fraction(motion, points.p_T(i), points.distance_m(i)));
   }

@@ -20,7 +20,8 @@ class ContinuousContacts final : public NearContactSource {
   // No motion is longer, because points that are not near could stop it.
   double max_motion_m() const { return max_motion_m_; }
 
-  // The points until the next call, and none that have stopped the tool yet. points has to outlive its use.
+  // Begins a tick with these points, and forgets which of them stopped the tool before. They have to outlive
+  // it.
   void begin(ContactList& points);
 
   // With the gap. Points that have stopped the tool since begin() are contacts of their own: a step that runs

@@ -53,10 +53,10 @@ double ContinuousMotion::leave(ToolPose& pose, int& detections) {
 }
 
 // Towards the points that held the tool, until one stops it. Returns how far.
-double ContinuousMotion::approach(ToolPose& pose, double way_m, int& detections) {
+double ContinuousMotion::approach(ToolPose& pose, double distance_m, int& detections) {
   double done_m = 0;
-  while (done_m < way_m) {
-    const double step_m = std::min(step_m_, way_m - done_m);
+  while (done_m < distance_m) {
+    const double step_m = std::min(step_m_, distance_m - done_m);
     const Vector6 a_g = translation(-step_m * push_W_);
     near_.near(pose, 0);
     ++detections;
@@ -70,10 +70,10 @@ double ContinuousMotion::approach(ToolPose& pose, double way_m, int& detections)
 
 void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& report) {
   ToolPose outside = pose;
-  const bool was_clear = is_clear(near_.near(pose, 0));
   const double out_m = leave(outside, report.detections);
   if (out_m <= 0) return;
-  if (was_clear) {  // the surface is gone, and may as well have gone the other way
+  // Where no point is in the tool the surface is gone, and may as well have gone the other way.
+  if (is_clear(near_.near(pose, 0))) {
     ToolPose ahead = pose;
     if (approach(ahead, out_m, report.detections) < out_m) return;
   }

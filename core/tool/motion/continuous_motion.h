@@ -27,7 +27,7 @@ class ContinuousMotion final : public ToolMotion {
  private:
   bool is_supported(const NearContacts& near, const ToolPose& pose) const;
   double leave(ToolPose& pose, int& detections);
-  double approach(ToolPose& pose, double way_m, int& detections);
+  double approach(ToolPose& pose, double distance_m, int& detections);
   void come_from_outside(ToolPose& pose, ToolMotionReport& report);
 
   ContinuousContacts near_;

@@ -112,7 +112,7 @@ TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
 TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
   for (const char* surface : {"scenario.shape=flat", "scenario.tilt_deg=30", "scenario.tilt_deg=-45"}) {
     const auto entered = [&](const std::string& rule) {
-      return audited("tool-lift", rule, kLookAhead_m,
+      return audited("tool-lift", rule, kContinuous_m,
                      {"renderer.tool_mesh=slab-5", "scenario.start_velocity_m_per_s=0.24",
                       "scenario.rise_frames=4", "duration_s=0.65", surface},
                      Frames::followed)
