@@ -94,7 +94,7 @@ endif()
 
 # How punctual the live loop is: nothing in it passes or fails.
 add_executable(live_benchmark benchmarks/live_benchmark.cpp)
-target_link_libraries(live_benchmark PRIVATE test_support)
+target_link_libraries(live_benchmark PRIVATE runners test_support)
 vendor_devices(live_benchmark)
 if(TARGET haply_service)
   target_link_libraries(live_benchmark PRIVATE haply_service)
