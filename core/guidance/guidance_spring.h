@@ -20,6 +20,7 @@ struct GuidanceSettings {
   double standoff_m = 0.1;
   Vec3 offset_m{0, 0, 0};
   int min_points = 20;
+  double hold_s = 0, fade_s = 0;  // of GuidancePresence; not in the dissertation
   double stiffness_N_per_m = 200;
   double gyration_radius_m = 0.03;
   double max_force_N = 4;

@@ -96,12 +96,12 @@ void GuidedRenderer::begin_with(const std::vector<FixtureValues>& fixtures) {
     const FixtureValues& fixture = fixtures[i];
     labels_.push_back(fixture.label);
     if (fixture.role == FixtureRole::guidance)
-      guides_.push_back({i,
-                         fixture.stiffness_N_per_m,
-                         fixture.radius_m,
-                         !first_is(fixture, FixtureAction::activate),
-                         Vec3::Zero(),
-                         {}});
+      guides_.push_back(
+          {i,
+           fixture.stiffness_N_per_m,
+           fixture.radius_m,
+           !first_is(fixture, FixtureAction::activate),
+           {static_cast<std::size_t>(settings_.min_points), settings_.hold_s, settings_.fade_s}});
     else if (i < FixtureSwitches::kMaxCount)
       switches_->set(i, !first_is(fixture, FixtureAction::lock));
   }
@@ -111,7 +111,8 @@ void GuidedRenderer::on_frame(const Frame& frame) {
   inner_->on_frame(frame);
   if (!order_.take(frame)) return;
   for (std::size_t i = 0; i < guides_.size(); ++i)
-    guides_[i].target = i < frame.guidance.size() ? frame.guidance[i] : GuidanceTarget{};
+    guides_[i].presence.on_frame(i < frame.guidance.size() ? frame.guidance[i] : GuidanceTarget{},
+                                 frame.arrives_s);
 }
 
 // pre: there is one of that label.
@@ -149,10 +150,16 @@ const GuidedRenderer::Guide* GuidedRenderer::goal_of(const SequenceStep& step) c
   return found == guides_.end() ? nullptr : &*found;
 }
 
+std::optional<ToolPose> GuidedRenderer::goal(const Guide& guide, double time_s) const {
+  const GuidanceTarget* const target = guide.presence.target(time_s);
+  return target ? guidance_goal(settings_, *target, guide.offset_m) : std::nullopt;
+}
+
 // From the tool, not from the device: it is the tool that the robot follows. A proxy has no orientation.
 std::optional<GuidedRenderer::Remaining> GuidedRenderer::remaining(const Guide& guide,
-                                                                   const RenderOutput& out) const {
-  const std::optional<ToolPose> there = goal(guide);
+                                                                   const RenderOutput& out,
+                                                                   double time_s) const {
+  const std::optional<ToolPose> there = goal(guide, time_s);
   if (!there || !out.proxy_W.allFinite()) return {};
   double turn = 0;
   if (out.tool) turn = rotation_vector(out.tool->orientation_W * there->q_WT.conjugate()).norm();
@@ -165,7 +172,7 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
     if (sequence_.is_over()) return;
     const Guide* const guide = goal_of(sequence_.step());
     std::optional<Remaining> remaining_goal;
-    if (guide) remaining_goal = remaining(*guide, out);
+    if (guide) remaining_goal = remaining(*guide, out, time_s);
     const bool reached = remaining_goal && remaining_goal->m <= guide->reached_m &&
                          remaining_goal->rad <= settings_.reached_deg * kRadiansPerDegree;
     if (!sequence_.ends(time_s, reached)) return;
@@ -175,15 +182,18 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
   }
 }
 
-void GuidedRenderer::pull(const ToolPose& device, RenderOutput& out) const {
-  for (const Guide& guide : guides_) {
-    const std::optional<ToolPose> there = guide.active ? goal(guide) : std::nullopt;
-    if (!there) continue;
-    const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, *there, device);
+// Without a device nothing pulls, and the force rises anew when it is back.
+void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
+  for (Guide& guide : guides_) {
+    const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;
+    if (there) guide.goal = *there, guide.strength = guide.presence.target(time_s)->strength;
+    const double level = guide.presence.advance(there.has_value(), time_s);
+    if (level == 0 || !device) continue;
+    const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, guide.goal, *device);
     out.guidance->active = true;
-    out.guidance->goal_W = there->p_W, out.guidance->goal_orientation_W = there->q_WT;
-    out.guidance->force_N += guide.target.strength * wrench.force_N;
-    if (out.tool) out.guidance->torque_Nm += guide.target.strength * wrench.torque_Nm;
+    out.guidance->goal_W = guide.goal.p_W, out.guidance->goal_orientation_W = guide.goal.q_WT;
+    out.guidance->force_N += level * guide.strength * wrench.force_N;
+    if (out.tool) out.guidance->torque_Nm += level * guide.strength * wrench.torque_Nm;
   }
   out.force_N += out.guidance->force_N;
   if (out.tool) out.tool->torque_Nm += out.guidance->torque_Nm;
@@ -194,7 +204,7 @@ RenderOutput GuidedRenderer::step(const DeviceState& device, double time_s) {
   out.guidance.emplace();
   sequence_.set_buttons(device.buttons);
   advance(time_s, out);
-  if (const std::optional<ToolPose> target = device_pose(device)) pull(*target, out);
+  pull(device_pose(device), time_s, out);
   out.guidance->sequence_step = sequence_.current();
   out.guidance->sequence_running = sequence_.is_running();
   out.guidance->sequence_missed = sequence_.missed();

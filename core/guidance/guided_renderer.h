@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/guidance/fixture_sequence.h"
+#include "core/guidance/guidance_presence.h"
 #include "core/guidance/guidance_spring.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
@@ -42,23 +43,24 @@ class GuidedRenderer final : public Renderer {
     double stiffness_N_per_m;  // -1: that of the settings
     double reached_m;
     bool active;
+    GuidancePresence presence;
     Vec3 offset_m = Vec3::Zero();  // of the step that activated it
-    GuidanceTarget target;         // in the newest frame
+    // What the force pulls to, still while it falls: the goal and the strength of its rule.
+    ToolPose goal = {};
+    double strength = 0;
   };
   void begin_with(const std::vector<FixtureValues>& fixtures);
   void act(const SequenceStep& step);
   struct Remaining {
     double m, rad;
   };
-  std::optional<Remaining> remaining(const Guide& guide, const RenderOutput& out) const;
+  std::optional<Remaining> remaining(const Guide& guide, const RenderOutput& out, double time_s) const;
   const Guide* goal_of(const SequenceStep& step) const;
   void advance(double time_s, RenderOutput& out);
-  void pull(const ToolPose& device, RenderOutput& out) const;
+  void pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out);
   std::size_t number_of(const std::string& label) const;
   Guide* guide_of(std::size_t fixture);
-  std::optional<ToolPose> goal(const Guide& guide) const {
-    return guidance_goal(settings_, guide.target, guide.offset_m);
-  }
+  std::optional<ToolPose> goal(const Guide& guide, double time_s) const;
 
   const std::unique_ptr<Renderer> inner_;
   const GuidanceSettings settings_;

@@ -39,7 +39,7 @@ struct ToolOutput {
 
 // What guidance adds, 7.3.2 and 7.4. Its wrench is part of RenderOutput::force_N and ToolOutput::torque_Nm.
 struct GuidanceOutput {
-  bool active = false;  // a guidance fixture is active and the newest frame shows its target
+  bool active = false;  // a guidance fixture pulls to a goal
   Vec3 force_N = Vec3::Zero(), torque_Nm = Vec3::Zero();
   // The goal pose, world frame; NaN while not active.
   Vec3 goal_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

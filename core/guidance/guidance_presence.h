@@ -1,0 +1,36 @@
+// Whether a guidance fixture pulls, and how strongly: a target that a frame does not show is remembered for a
+// while, and the force rises and falls gradually. Neither is in the dissertation.
+#pragma once
+
+#include <optional>
+
+#include "core/virtual_fixtures/guidance_target.h"
+
+namespace remote_touch {
+
+class GuidancePresence {
+ public:
+  // hold_s: how long the last target is used after the arrival of the first frame with fewer than min_points
+  // of its points. fade_s: time in which the force rises from nothing to all of it, and falls again; 0: in
+  // one tick.
+  GuidancePresence(std::size_t min_points, double hold_s, double fade_s)
+      : min_points_(min_points), hold_s_(hold_s), fade_s_(fade_s) {}
+
+  // What the newest frame shows of the target.
+  void on_frame(const GuidanceTarget& target, double arrives_s);
+  // The newest target that was seen, if it is seen still or hold_s has not passed; else null.
+  const GuidanceTarget* target(double time_s) const;
+  // Once a tick: the factor of the force, 0 to 1. wanted: whether the fixture is active and has a target.
+  double advance(bool wanted, double time_s);
+
+ private:
+  std::size_t min_points_;
+  double hold_s_, fade_s_;
+  GuidanceTarget seen_;
+  bool is_seen_ = false;
+  double lost_s_ = 0;  // arrival of the first frame without it
+  double level_ = 0;
+  std::optional<double> level_at_s_;  // the tick before
+};
+
+}  // namespace remote_touch
