@@ -111,6 +111,15 @@ class Projection {
 
 }  // namespace
 
+bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_W, double r2, double cosine) {
+  for (std::size_t i = 0; i < points.padded_count; ++i) {
+    const Vec3 from = p_W - Vec3(points.x[i], points.y[i], points.z[i]);
+    const double distance = from.norm(), reach = points.radius ? r2 + points.radius[i] : r2;
+    if (distance <= reach && from.dot(normal_W) < cosine * distance) return true;
+  }
+  return false;
+}
+
 // The dual method: the region most in the way joins those that hold the motion, until none is.
 Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2) {
   const double slack = kRounding * u.norm();

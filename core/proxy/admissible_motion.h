@@ -12,4 +12,9 @@ namespace remote_touch {
 // zero in a corner that holds p from all sides. A point at p itself is skipped.
 Vec3 admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2);
 
+// Whether the mean normal says little of what p touches: the direction away from a region within r2 of p is
+// off the unit vector normal_W by an angle of more than this cosine, as in a crease. Between the points of a
+// flat surface it is so, too, where they are far apart.
+bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_W, double r2, double cosine);
+
 }  // namespace remote_touch

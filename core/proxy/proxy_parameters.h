@@ -9,7 +9,8 @@ namespace remote_touch {
 
 enum class StepRule { variable, fixed };            // 4.2.4, or the small fixed steps of the predecessor [1]
 enum class FreeRoot { ahead, smallest_magnitude };  // of (4.9); the second is the printed text
-enum class ContactRule { tangent_plane, regions };  // (4.6), (5.16), or every touching region by itself
+// (4.6), (5.16); every touching region by itself; or the second in creases and the first elsewhere.
+enum class ContactRule { tangent_plane, regions, creases };
 enum class ExitRule { towards_hip, out_of_contact };  // in contact with the HIP outside: (4.7) or (5.17)
 enum class VelocityForce { minus, plus, none };       // sign of the velocity term of (4.15); plus is printed
 enum class DampingSign { plus, minus };  // of the k_d term inside the bracket of (4.16); minus is printed
@@ -29,6 +30,7 @@ struct ProxyParameters {
   int max_exit_steps = 10;
   bool velocity_estimate = true;
   double max_prediction_s = 0.1;
+  bool growth_is_motion = true;
   StepRule step_rule = StepRule::variable;
   double fixed_step_m = 1e-4;
   FreeRoot free_root = FreeRoot::ahead;

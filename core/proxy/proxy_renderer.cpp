@@ -6,6 +6,7 @@
 
 #include "core/proxy/admissible_motion.h"
 #include "core/proxy/proxy_step.h"
+#include "core/proxy/region_exit.h"
 
 namespace remote_touch {
 
@@ -35,9 +36,19 @@ void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points
   is_clear_ = false;
 }
 
+// r_f of the region that the proxy touches, if growth is to be told from motion.
+std::optional<double> ProxyRenderer::felt_radius_m() {
+  if (p_.growth_is_motion || !in_contact_) return {};
+  return nearest_region_radius_m(near_.around(proxy_W_).view(), proxy_W_);
+}
+
 void ProxyRenderer::on_frame(const Frame& frame) {
+  const bool takes_it = is_newer(frame) && p_.velocity_estimate;
+  const std::optional<double> before_m = takes_it ? felt_radius_m() : std::nullopt;
   if (!take(frame) || !p_.velocity_estimate) return;
+  const std::optional<double> now_m = before_m ? felt_radius_m() : std::nullopt;
   displace(velocity_.on_frame(frame.captured_s, normal_W_));  // (4.3)
+  if (now_m) velocity_.on_growth(*now_m - *before_m);
 }
 
 void ProxyRenderer::on_frame(const Frame& frame, const SurfaceMotion& motion) {
@@ -155,7 +166,8 @@ int ProxyRenderer::move(const Vec3& hip_W) {
 
 // Beyond the dissertation: where regions overlap the way out of one may end in another, and the budget of
 // steps there. A tick then goes on with (5.11) alone; when that leads out of none either, the proxy goes
-// back. Returns the number of steps.
+// back to where it was outside; after a frame that leaves no such place it goes out along a straight line.
+// Returns the number of steps.
 int ProxyRenderer::close(const Vec3& hip_W) {
   if (p_.max_exit_steps == 0) return 0;
   int steps = 0;
@@ -163,8 +175,23 @@ int ProxyRenderer::close(const Vec3& hip_W) {
     normal_W_ = unit_normal(local_query_.query, normal_W_);
     proxy_W_ += next_step(local_query_, hip_W - proxy_W_);
   }
-  if (is_clear_ && local_query().state == ContactState::entrenched) proxy_W_ = clear_W_;
+  if (local_query().state != ContactState::entrenched) return steps;
+  if (is_clear_)
+    proxy_W_ = clear_W_;
+  else if (const auto exit_W = straight_exit(near_, kernels_, proxy_W_, normal_W_, hip_W - proxy_W_, p_))
+    proxy_W_ = *exit_W;
+  has_local_query_ = false;  // the search may have replaced the list that it is from
   return steps;
+}
+
+// Whether touching regions hold the proxy each by itself, where it is. It takes a clearer sight of one
+// surface alone to leave a crease than to meet one, or the rules would take turns.
+bool ProxyRenderer::takes_regions(const LocalQuery& here) {
+  if (p_.contact_rule != ContactRule::creases) return p_.contact_rule == ContactRule::regions;
+  constexpr double kMeets = 0.95630475596303544, kLeaves = 0.97437006478523525;  // cosines of 17, 13 degrees
+  in_crease_ = is_in_crease(here.points, proxy_W_, unit_normal(here.query, normal_W_), p_.r2_m,
+                            in_crease_ ? kLeaves : kMeets);
+  return in_crease_;
 }
 
 Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
@@ -176,7 +203,7 @@ Vec3 ProxyRenderer::next_step(const LocalQuery& here, const Vec3& u) {
     case ContactState::contact:
       break;
   }
-  if (p_.contact_rule == ContactRule::tangent_plane) return contact_step(normal_W_, u, p_);
+  if (!takes_regions(here)) return contact_step(normal_W_, u, p_);
   const Vec3 goal = admissible_motion(here.points, proxy_W_, u, p_.r2_m);
   return region_step(near_, proxy_W_, goal, u, p_);
 }
@@ -194,7 +221,7 @@ void ProxyRenderer::report(const Vec3& hip_W, RenderOutput& out) {
       here.query.nearest <= p_.r3_m ? here.query.nearest : std::numeric_limits<double>::infinity();
   out.contact_count = static_cast<int>(here.query.touching);
   const Vec3 u = hip_W - proxy_W_;
-  if (p_.contact_rule == ContactRule::regions && here.state == ContactState::contact)
+  if (here.state == ContactState::contact && takes_regions(here))
     out.converged = has_converged(admissible_motion(here.points, proxy_W_, u, p_.r2_m), u, p_);
   else
     out.converged = has_converged(here.state, out.normal_W, u, p_);

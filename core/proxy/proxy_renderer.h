@@ -2,6 +2,8 @@
 // cloud chapter 5. The predecessor [1] is this renderer with step_rule = fixed and velocity_estimate = false.
 #pragma once
 
+#include <optional>
+
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/proxy/proxy_parameters.h"
@@ -47,6 +49,7 @@ class ProxyRenderer final : public Renderer {
 
  private:
   bool take(const Frame& frame);
+  std::optional<double> felt_radius_m();
   struct LocalQuery {  // what the proxy sees from where it is
     ContactQuery query;
     ContactState state;
@@ -55,6 +58,7 @@ class ProxyRenderer final : public Renderer {
   const LocalQuery& local_query();
   int move(const Vec3& hip_W);
   int close(const Vec3& hip_W);
+  bool takes_regions(const LocalQuery& here);
   Vec3 next_step(const LocalQuery& here, const Vec3& u);
   Vec3 render_force(const Vec3& hip_W, double time_s, const RenderOutput& out);
   void report(const Vec3& hip_W, RenderOutput& out);
@@ -79,6 +83,7 @@ class ProxyRenderer final : public Renderer {
   Vec3 slave_W_ = RenderOutput{}.slave_W;  // the newest command
   bool placed_ = false;                    // the proxy starts at the first HIP
   bool in_contact_ = false;                // until the proxy is free and nothing holds it back
+  bool in_crease_ = false;                 // as takes_regions() saw it last
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
   double contact_stiffness_N_per_m_ = 0;
   double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // before the newest change

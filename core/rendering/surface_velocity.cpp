@@ -1,6 +1,7 @@
 #include "core/rendering/surface_velocity.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace remote_touch {
 
@@ -21,7 +22,8 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
 void SurfaceVelocity::on_step(const Vec3& step) {
   if (!awaits_step_) return;
   awaits_step_ = false;
-  velocity_m_per_s_ = std::max(0.0, (frame_correction_m_ + normal_.dot(step)) / interval_s_);
+  const double moved_m = frame_correction_m_ + normal_.dot(step) - std::exchange(growth_m_, 0);
+  velocity_m_per_s_ = std::max(0.0, moved_m / interval_s_);
 }
 
 double SurfaceVelocity::horizon_s() const {
