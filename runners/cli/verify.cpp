@@ -67,14 +67,13 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
   for (const std::string& name : request.renderers)
     chosen.push_back(&find_entry(renderers(), name, "renderer"));
   if (chosen.empty())
-    for (const RendererEntry& entry : renderers())
-      if (entry.degrees_of_freedom == DegreesOfFreedom::three) chosen.push_back(&entry);
+    for (const RendererEntry& entry : renderers()) chosen.push_back(&entry);
   std::vector<ReportSuite> suites;
   bool all_pass = true;
   for (const RendererEntry* entry : chosen) {
     const auto results = verify_renderer(*entry, request.overrides, *line.kernels, line.stop);
     std::printf("%s: %zu checks\n", entry->name.c_str(), results.size());
-    for (const CheckName& check : check_names()) print_check(check, results);
+    for (const CheckName& check : check_names(entry->degrees_of_freedom)) print_check(check, results);
     for (const CheckResult& result : results) all_pass &= result.passed();
     suites.push_back(suite_of(entry->name, results));
   }

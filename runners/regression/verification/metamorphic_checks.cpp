@@ -6,6 +6,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/regression/verification/metamorphic_relation.h"
+#include "runners/regression/verification/tool_scenes.h"
 #include "runners/regression/verification/verification_scenes.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/simulation/simulation.h"
@@ -35,6 +36,8 @@ class Subject {
 
   std::unique_ptr<RendererFactory> factory() const {
     Json configuration = Json::object();
+    if (is_tool())
+      for (const char* assignment : kVerifiedTool) apply_override(configuration, assignment);
     for (const std::string& assignment : assignments_) apply_override(configuration, assignment);
     auto factory = entry_.make();
     read_parameters(configuration, factory->settings(), "");
@@ -53,6 +56,13 @@ class Subject {
     const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
     return remote_touch::play(run.scene, *renderer);
   }
+  // A renderer of tools that knows regions alone needs a scene with some.
+  bool can_touch(const MetamorphicScene& scene) const {
+    return !is_tool() || entry_.contact_model != ContactModel::regions ||
+           !scene.views.front().cloud.fixture_radius_m.empty();
+  }
+  DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
+  bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
   double min_touch_fraction() const { return min_touch(entry_.contact_model); }
   Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
     const auto settings_of = factory();
@@ -62,6 +72,7 @@ class Subject {
     run.view_matters = entry_.contact_model == ContactModel::oriented;
     run.fits_a_sheet = entry_.contact_model == ContactModel::sheet || run.view_matters;
     run.order_matters = entry_.contact_model == ContactModel::mesh;
+    run.has_spheres = is_tool() && entry_.contact_model == ContactModel::regions;
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }
@@ -106,11 +117,15 @@ std::string remark_on(const CheckResult& failed, const Subject& subject, const M
          " on";
 }
 
+std::span<const MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_freedom) {
+  return degrees_of_freedom == DegreesOfFreedom::six ? tool_relations() : metamorphic_relations();
+}
+
 std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
   const Outputs outputs = subject.play(scene);
   const Variation unvaried = subject.unvaried(scene, outputs);
   std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction())};
-  for (const MetamorphicRelation& relation : metamorphic_relations()) {
+  for (const MetamorphicRelation& relation : relations_of(subject.degrees_of_freedom())) {
     Variation run = unvaried;
     if (!relation.vary(run)) continue;
     CheckResult result{relation.name, relation.meaning, scene.name, relation.reason, {}, {}};
@@ -127,29 +142,28 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop) {
-  return verify_renderer(entry, assignments, kernels, verification_scenes(kernels), stop);
+  const bool is_tool = entry.degrees_of_freedom == DegreesOfFreedom::six;
+  return verify_renderer(entry, assignments, kernels,
+                         is_tool ? tool_scenes(kernels) : verification_scenes(kernels), stop);
 }
 
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::vector<MetamorphicScene>& scenes,
                                          const std::atomic<bool>* stop) {
-  if (entry.degrees_of_freedom == DegreesOfFreedom::six)
-    throw InputError(
-        entry.name,
-        "renders six degrees of freedom, and the scenes are for a proxy: expected a 3-DOF renderer");
   const Subject subject(entry, assignments, kernels);
   std::vector<CheckResult> results;
   for (const MetamorphicScene& scene : scenes) {
     if (stop && *stop) throw Interrupted{};
+    if (!subject.can_touch(scene)) continue;
     for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
   }
   return results;
 }
 
-std::vector<CheckName> check_names() {
+std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
   std::vector<CheckName> names{kTouch};
-  for (const MetamorphicRelation& relation : metamorphic_relations())
+  for (const MetamorphicRelation& relation : relations_of(degrees_of_freedom))
     names.push_back({relation.name, relation.meaning});
   return names;
 }

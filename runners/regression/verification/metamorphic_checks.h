@@ -28,10 +28,10 @@ struct CheckResult {
 
 // All results, scene by scene. The first of each scene, "touch", checks that the renderer exerts a force in
 // most ticks, or in some if its contact model can lose contact (mesh or nothing): without it the other checks
-// would mean little. assignments: "r1_m=0.004". Throws InputError for a renderer of six degrees of freedom,
-// for an assignment that the renderer refuses, and for a parameter whose units cannot be changed (see
-// dimension.h). stop: when set, ends between two scenes with Interrupted. Without scenes:
-// verification_scenes().
+// would mean little. assignments: "r1_m=0.004"; a renderer of a tool has kVerifiedTool unless they name
+// another. Throws InputError for an assignment that the renderer refuses, and for a parameter whose units
+// cannot be changed (see dimension.h). stop: when set, ends between two scenes with Interrupted. Without
+// scenes: verification_scenes(), or tool_scenes() for a renderer of six degrees of freedom.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,
                                          const std::atomic<bool>* stop = nullptr);
@@ -45,6 +45,6 @@ struct CheckName {
   const char* meaning;
 };
 // In the order of the results.
-std::vector<CheckName> check_names();
+std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three);
 
 }  // namespace remote_touch

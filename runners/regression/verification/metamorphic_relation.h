@@ -18,5 +18,7 @@ struct MetamorphicRelation {
 };
 
 std::span<const MetamorphicRelation> metamorphic_relations();
+// Those of a renderer of a tool, with tolerances of their own.
+std::span<const MetamorphicRelation> tool_relations();
 
 }  // namespace remote_touch

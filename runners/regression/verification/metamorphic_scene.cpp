@@ -25,7 +25,7 @@ std::vector<RenderOutput> play(const MetamorphicScene& scene, Renderer& renderer
     for (; view != scene.views.end() && view->arrives_s <= time_s; ++view)
       renderer.on_frame(
           {view->index, view->captured_s, view->arrives_s, search_of(view->cloud, scene.cell_m)});
-    outputs.push_back(renderer.step({scene.hip_W[tick]}, time_s));
+    outputs.push_back(renderer.step({scene.hip_W[tick], scene.device_WH[tick]}, time_s));
   }
   return outputs;
 }

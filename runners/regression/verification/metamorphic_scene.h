@@ -27,8 +27,10 @@ struct MetamorphicScene {
   double start_s = 0;            // time of the first tick
   std::vector<CloudView> views;  // in the order in which they arrive
   std::vector<Vec3> hip_W;       // of each tick
-  bool cloud_rests = false;      // every view shows the same points
-  bool hip_rests = false;        // the HIP is at rest before the second view arrives, and stays there
+  // Orientation of the device, of each tick: takes the axes of its handle to the world.
+  std::vector<Eigen::Quaterniond> device_WH;
+  bool cloud_rests = false;  // every view shows the same points
+  bool hip_rests = false;    // the HIP is at rest before the second view arrives, and stays there
   // How points are searched: an organised cloud by its image, others by a grid with cells of this size; 0:
   // brute force.
   double cell_m = 0.004;

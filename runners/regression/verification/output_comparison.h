@@ -13,13 +13,19 @@ struct OutputTolerance {
   double force_fraction = 0;  // of the largest force in the run
   double velocity_m_per_s = 0;
   double normal = 0;
-  bool rounded = false;  // true: steps are not compared, and normals only where a point is touched
+  bool rounded = false;        // true: steps are not compared, and normals only where a point is touched
+  double rotation_rad = 0;     // of a tool
+  double torque_fraction = 0;  // of the largest torque in the run
+  // true: of a tool only pose, force, torque and penetration are compared.
+  bool pose_only = false;
 };
 
 // The largest difference of one kind.
 struct Deviation {
-  const char* quantity;  // "position" (proxy, slave, frame correction), "nearest", "force", "velocity",
-                         // "normal", or "other": 1 where state, steps, counts, frame or status differ
+  // "position" (proxy, slave, frame correction), "nearest" (and how deep the deepest point is in a tool),
+  // "force", "velocity", "normal", "rotation" and "torque" of a tool, or "other": 1 where state, steps,
+  // counts, frame or status differ
+  const char* quantity;
   const char* unit;
   double tolerance = 0;
   double max = 0;  // infinite if only one of the two is a finite number

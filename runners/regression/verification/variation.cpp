@@ -16,6 +16,15 @@ void change_points(PointCloud& cloud, Change change) {
   }
 }
 
+template <class Change>
+void change_normals(PointCloud& cloud, Change change) {
+  if (!cloud.has_normals()) return;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 n = change(cloud.normal(i));
+    cloud.nx[i] = n.x(), cloud.ny[i] = n.y(), cloud.nz[i] = n.z();
+  }
+}
+
 void multiply(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
@@ -34,6 +43,9 @@ void change_units(RenderOutput& out, const UnitChange& change) {
   out.slave_W *= change.length;
   out.force_N *= change.force;
   out.surface_velocity_m_per_s *= change.factor({1, -1, 0});
+  if (!out.tool) return;
+  out.tool->torque_Nm *= change.factor({1, 0, 1});
+  out.tool->tool_penetration_m *= change.length;
 }
 
 template <class Value>
@@ -56,25 +68,54 @@ void change_units(Variation& variation, const UnitChange& change) {
 }
 
 void move_rigidly(Variation& variation, const RigidTransform& motion) {
+  const Eigen::Quaterniond rotation(motion.linear());
   for (Vec3& hip : variation.scene.hip_W) hip = motion * hip;
+  for (Eigen::Quaterniond& device : variation.scene.device_WH) device = rotation * device;
   for (CloudView& view : variation.scene.views) {
     change_points(view.cloud, [&](const Vec3& p) { return Vec3(motion * p); });
+    change_normals(view.cloud, [&](const Vec3& n) { return Vec3(motion.linear() * n); });
     if (view.cloud.image) view.cloud.image->X_WC = motion * view.cloud.image->X_WC;
   }
   const auto turn = [&](Vec3& direction) { direction = motion.linear() * direction; };
   for (RenderOutput& out : variation.expected) {
     out.proxy_W = motion * out.proxy_W, out.slave_W = motion * out.slave_W;
     turn(out.force_N), turn(out.normal_W), turn(out.frame_correction_m);
+    if (out.tool) turn(out.tool->torque_Nm), out.tool->orientation_W = rotation * out.tool->orientation_W;
   }
 }
+
+namespace {
+
+// Rotations and torques are about axes: what lies along the mirror's axis stays.
+Vec3 mirrored_axial(Vec3 v, int axis) {
+  v = -v;
+  v[axis] = -v[axis];
+  return v;
+}
+
+Eigen::Quaterniond mirrored(const Eigen::Quaterniond& q, int axis) {
+  Eigen::Quaterniond other = q;
+  other.vec() = mirrored_axial(q.vec(), axis);
+  return other;
+}
+
+}  // namespace
 
 void mirror(Variation& variation, int axis) {
   const auto flip = [axis](Vec3& v) { v[axis] = -v[axis]; };
   search_by_grid(variation, variation.scene.cell_m);
   for (Vec3& hip : variation.scene.hip_W) flip(hip);
-  for (CloudView& view : variation.scene.views) change_points(view.cloud, [&](Vec3 p) { return flip(p), p; });
-  for (RenderOutput& out : variation.expected)
+  for (Eigen::Quaterniond& device : variation.scene.device_WH) device = mirrored(device, axis);
+  for (CloudView& view : variation.scene.views) {
+    change_points(view.cloud, [&](Vec3 p) { return flip(p), p; });
+    change_normals(view.cloud, [&](Vec3 n) { return flip(n), n; });
+  }
+  for (RenderOutput& out : variation.expected) {
     flip(out.proxy_W), flip(out.force_N), flip(out.normal_W), flip(out.frame_correction_m), flip(out.slave_W);
+    if (!out.tool) continue;
+    out.tool->torque_Nm = mirrored_axial(out.tool->torque_Nm, axis);
+    out.tool->orientation_W = mirrored(out.tool->orientation_W, axis);
+  }
 }
 
 void search_by_grid(Variation& variation, double cell_m) {
@@ -93,6 +134,8 @@ void reorder(Variation& variation, const std::function<std::vector<int>(int size
     cloud.grid_columns = 0;
     cloud.x = picked(cloud.x, from, kMissing), cloud.y = picked(cloud.y, from, kMissing);
     cloud.z = picked(cloud.z, from, kMissing);
+    cloud.nx = picked(cloud.nx, from, kMissing), cloud.ny = picked(cloud.ny, from, kMissing);
+    cloud.nz = picked(cloud.nz, from, kMissing);
     cloud.fixture_radius_m = picked(cloud.fixture_radius_m, from, 0.0);
     cloud.stiffness_N_per_m = picked(cloud.stiffness_N_per_m, from, 0.0);
     cloud.colour = picked(cloud.colour, from, 0u);
@@ -103,7 +146,10 @@ void add_points(Variation& variation, const std::vector<Vec3>& points_W) {
   for (CloudView& view : variation.scene.views) {
     PointCloud& cloud = view.cloud;
     for (const Vec3& p : points_W) {
-      cloud.append(p);
+      if (cloud.has_normals())
+        cloud.append(p, Vec3::UnitY());
+      else
+        cloud.append(p);
       if (!cloud.fixture_radius_m.empty()) cloud.fixture_radius_m.push_back(0);
       if (!cloud.stiffness_N_per_m.empty())
         cloud.stiffness_N_per_m.push_back(cloud.stiffness_N_per_m.front());

@@ -22,8 +22,9 @@ struct Variation {
   // The renderer fits a sheet (ContactModel::sheet): the world's axes matter, for its cells, and the number
   // of frames, for its estimate of noise.
   bool fits_a_sheet = false;
-  bool view_matters = false;                           // so does the layout of an image, for its camera
-  bool order_matters = false;                          // the renderer depends on the points' rows and columns
+  bool view_matters = false;   // so does the layout of an image, for its camera
+  bool order_matters = false;  // the renderer depends on the points' rows and columns
+  bool has_spheres = false;    // the renderer's tool is made of spheres, which no mirror maps onto themselves
   std::optional<double> stiffness_N_per_m = {};        // of the renderer, if it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run
 };
@@ -34,7 +35,8 @@ void change_units(Variation& variation, const UnitChange& change);
 // Cloud, camera and path move as one rigid body.
 void move_rigidly(Variation& variation, const RigidTransform& motion);
 
-// One coordinate changes its sign. An image layout cannot be mirrored: the cloud is then searched by a grid.
+// One coordinate changes its sign; a tool has to be its own mirror image. An image layout cannot be mirrored:
+// the cloud is then searched by a grid.
 void mirror(Variation& variation, int axis);
 
 // Another search; of the layout of an organised cloud only the number of columns is kept. cell_m = 0: brute
