@@ -7,11 +7,13 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 Kernel<&ToolKernels::near_spheres> near_spheres;
 Kernel<&ToolKernels::points_in_cells> points_in_cells;
 Kernel<&ToolKernels::disks_in_field> disks_in_field;
+Kernel<&ToolKernels::disk_contacts> disk_contacts;
 
 const ToolKernels kToolKernels = {
     .near_spheres = near_spheres,
     .points_in_cells = points_in_cells,
     .disks_in_field = disks_in_field,
+    .disk_contacts = disk_contacts,
 };
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -75,6 +75,14 @@ struct DiskColumns {
   std::uint64_t* cell;  // cell_and_octant() of p_T and the direction against the gradient
 };
 
+// Constraints (6.3), as ToolContact has them; m.
+struct ContactColumns {
+  double* r_T[3];
+  double* n_T[3];
+  double* depth;
+  double* side;
+};
+
 struct ToolKernels {
   // Of the spheres of the groups: numbers of those that contain places within reach of the tool, in order,
   // and of some others that are near. Returns how many; found has the capacity for all.
@@ -87,10 +95,14 @@ struct ToolKernels {
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
                                  const CellTable&, int min, std::uint32_t* found);
-  // The disks around the points index[0..count), of radius fraction x spacing: bit for bit what
-  // sample_field() and lower_bound_m() give, but for places outside the grid, whose lower is NaN.
-  void (*disks_in_field)(const PointColumns&, const std::uint32_t* index, std::size_t count, double fraction,
-                         double cells_per_m, const PosedField&, const DiskColumns&);
+  // The disks around the first count points, of radius fraction x spacing: bit for bit what sample_field()
+  // and lower_bound_m() give, but for places outside the grid, whose lower is NaN. The columns are padded.
+  void (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
+                         const PosedField&, const DiskColumns&);
+  // The contacts of the disks number[0..count): bit for bit those of far_contact() if lower is more than
+  // search, else those of near_contact() at nearest_place(); depth is NaN if that leaves the grid.
+  void (*disk_contacts)(const DiskColumns&, const std::uint32_t* number, std::size_t count, const PosedField&,
+                        double search, double known_side, const ContactColumns&);
 };
 
 }  // namespace remote_touch

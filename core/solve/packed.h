@@ -2,6 +2,8 @@
 // x86-64 machine, at about twice the speed of one number after the other.
 #pragma once
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,6 +15,13 @@ inline Pair pair_at(const double* p) {
   Pair pair;
   std::memcpy(&pair, p, sizeof pair);
   return pair;
+}
+// Both numbers, or the first alone.
+inline void put(Pair pair, bool two, double* p) {
+  std::memcpy(p, &pair, two ? sizeof pair : sizeof(double));
+}
+inline Pair root(Pair pair) {
+  return _mm_sqrt_pd(pair);
 }
 inline Pair both(double value) {
   return Pair{value, value};

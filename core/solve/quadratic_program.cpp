@@ -58,6 +58,51 @@ bool QuadraticProgram<N>::add(const Vector& row, double bound) {
   return true;
 }
 
+namespace {
+
+// In the order in which Eigen adds them.
+template <int kFirst, int kCount>
+Pair sum_of_squares(const Pair* terms) {
+  if constexpr (kCount == 1)
+    return terms[kFirst] * terms[kFirst];
+  else
+    return sum_of_squares<kFirst, kCount / 2>(terms) +
+           sum_of_squares<kFirst + kCount / 2, kCount - kCount / 2>(terms);
+}
+
+}  // namespace
+
+// Pairs of rows.
+template <int N>
+bool QuadraticProgram<N>::add_all(const double* const (&column)[N], const double* bounds, int count) {
+  if (count > capacity_ - count_ || count_ % 2 != 0) return false;
+  const auto is_usual = [](Pair a, Pair min, Pair max) { return (a > min) & (a < max); };
+  auto usual = both(0) == both(0);
+  for (int i = 0; i < count; i += 2) {
+    Pair row[N], max = both(0);
+    for (int k = 0; k < N; ++k) {
+      row[k] = pair_at(column[k] + i);
+      max = row[k] > max ? row[k] : max;
+      max = -row[k] > max ? -row[k] : max;
+    }
+    const Pair squared = sum_of_squares<0, N>(row), length = root(squared), bound = pair_at(bounds + i);
+    auto fine = is_usual(max, both(1e-150), both(kMax)) & (squared < both(kInfinite)) &
+                is_usual(bound, both(-kInfinite), both(kInfinite));
+    if (i + 1 == count) fine[1] = -1;
+    usual &= fine;
+    double* place = rows_.data() + count_ + i;
+    for (int k = 0; k < N; ++k) put(row[k] / length, i + 1 < count, place + k * stride_);
+    put(bound / length, i + 1 < count, bounds_.data() + count_ + i);
+    put(length, i + 1 < count, lengths_.data() + count_ + i);
+  }
+  if (usual[0] == 0 || usual[1] == 0) {
+    std::fill_n(bounds_.begin() + count_, count, -kInfinite);
+    return false;
+  }
+  count_ += count;
+  return true;
+}
+
 // Padding is never violated.
 template <int N>
 typename QuadraticProgram<N>::Violation QuadraticProgram<N>::max_violation(const double* y) const {

@@ -45,6 +45,10 @@ class QuadraticProgram {
   // zeros is kept: it has no effect if its bound is 0 or less, and makes the program infeasible if it is
   // above.
   bool add(const Vector& row, double bound);
+  // The same for `count` rows at once, with the same bits: coordinate k of row i is column[k][i]. Returns
+  // false and adds none where one of them is zero or not finite, too large or small, or capacity() is not
+  // enough. pre: the columns and bounds are padded to pairs.
+  bool add_all(const double* const (&column)[N], const double* bounds, int count);
   // A target that is not finite, or beyond 1e150, gives stalled and y = 0. On infeasible, y is where the
   // method found the contradiction, and the rows that held it there are the active ones.
   ProgramResult<N> nearest(const Vector& target) const;

@@ -33,8 +33,9 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
 
 void ContactList::reserve(std::size_t padded_size) {
   finder_.reserve(padded_size), disks_.reserve(padded_size);
-  contacts_.reserve(padded_size), collisions_.reserve(padded_size);
-  near_.reserve(padded_size), nearest_.reserve(padded_size);
+  contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
+  near_.reserve(padded_size), nearest_.reserve(padded_size), others_.reserve(padded_size);
+  chosen_.reserve(padded_size);
   clusters_.reserve(padded_size);
 }
 
@@ -47,33 +48,38 @@ bool ContactList::is_worth_a_search(std::size_t disk) const {
   return disks_.lower_m(disk) <= kSearch_m;
 }
 
-ToolContact ContactList::contact(std::size_t i, double side) const {
-  const SurfaceDisk disk = disks_.disk(i);
-  if (!is_worth_a_search(i)) return far_contact(disk, disks_.lower_m(i));
-  const VoxelTool& tool = finder_.tool();
-  const DiskPlace nearest = disks_.is_flat(i) ? DiskPlace{disk.p_T, disk.at} : nearest_place(tool, disk);
-  return near_contact(tool, disk, nearest, side);
-}
-
 // No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
 double ContactList::bound_m(std::size_t disk) const {
   const bool exact = is_worth_a_search(disk) && disks_.is_flat(disk);
   return exact ? disks_.distance_m(disk) : disks_.lower_m(disk);
 }
 
-void ContactList::gather_near() {
-  near_.clear();
-  for (std::size_t i = 0; i < disks_.size(); ++i)
-    if (disks_.lower_m(i) <= p_.look_ahead_m) near_.push_back({bound_m(i), static_cast<std::uint32_t>(i), 0});
+void ContactList::gather_near(double reach_m) {
+  near_.resize(disks_.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < disks_.size(); ++i) {  // without a branch: which are near is hard to foresee
+    near_[count] = {bound_m(i), static_cast<std::uint32_t>(i), 0};
+    const bool is_near = (disks_.lower_m(i) <= p_.look_ahead_m) & (disks_.distance_m(i) <= reach_m);
+    count += is_near ? 1 : 0;
+  }
+  near_.resize(count);
 }
 
-// Of every cell of the tool the deepest contact, with as few searches as their bounds allow: there can be
-// thousands of disks, and only the deepest of a cell is made into a contact.
-void ContactList::gather_deepest(double side) {
+void ContactList::append_contacts(double side) {
+  disks_.append_contacts(chosen_, finder_, kernels_, kSearch_m, side, contacts_);
+}
+
+// The nearest disk of every cell of the tool, by their bounds.
+void ContactList::gather_cells() {
   thinning_.begin();
   nearest_.clear();
+  std::uint64_t last_key = 0;
+  std::size_t last_cell = ContactThinning::kNoCell;
   for (NearDisk& near : near_) {
-    const std::size_t cell = thinning_.cell(disks_.cell(near.disk));
+    const std::uint64_t key = disks_.cell(near.disk);
+    const std::size_t cell =
+        key == last_key && last_cell != ContactThinning::kNoCell ? last_cell : thinning_.cell(key);
+    last_key = key, last_cell = cell;
     near.cell = static_cast<std::uint32_t>(cell);
     if (cell == ContactThinning::kNoCell) continue;
     if (cell == nearest_.size())
@@ -81,14 +87,28 @@ void ContactList::gather_deepest(double side) {
     else if (near.bound_m < nearest_[cell].bound_m)
       nearest_[cell] = near;
   }
-  for (const NearDisk& near : nearest_) contacts_.push_back(contact(near.disk, side));
+}
+
+// Of every cell the deepest contact, with as few searches as their bounds allow: there can be thousands of
+// disks, and only the deepest of a cell is made into a contact.
+void ContactList::gather_deepest(double side) {
+  gather_cells();
+  chosen_.clear();
+  for (const NearDisk& near : nearest_) chosen_.push_back(near.disk);
+  append_contacts(side);
+  chosen_.clear(), others_.clear();
   for (const NearDisk& near : near_) {
-    if (near.cell >= nearest_.size() || near.disk == nearest_[near.cell].disk) continue;
-    ToolContact& deepest = contacts_[near.cell];
-    if (!(-near.bound_m > deepest.depth_m)) continue;
-    const ToolContact other = contact(near.disk, side);
-    if (other.depth_m > deepest.depth_m) deepest = other;
+    const bool can_be_deeper = near.cell < nearest_.size() && near.disk != nearest_[near.cell].disk &&
+                               -near.bound_m > contacts_[near.cell].depth_m;
+    if (can_be_deeper) chosen_.push_back(near.disk), others_.push_back(near);
   }
+  append_contacts(side);
+  for (std::size_t k = 0; k < others_.size(); ++k) {
+    const ToolContact& other = contacts_[nearest_.size() + k];
+    ToolContact& deepest = contacts_[others_[k].cell];
+    if (-others_[k].bound_m > deepest.depth_m && other.depth_m > deepest.depth_m) deepest = other;
+  }
+  contacts_.resize(nearest_.size());
 }
 
 NearContacts ContactList::near(const ToolPose& pose, double side) {
@@ -96,11 +116,14 @@ NearContacts ContactList::near(const ToolPose& pose, double side) {
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   contacts_.clear();
   disks_.query(finder_, kernels_, pose, reach_m);
-  gather_near();
-  if (near_.size() > ContactThinning::kMaxCount)
+  gather_near(reach_m);
+  if (near_.size() > ContactThinning::kMaxCount) {
     gather_deepest(side);
-  else
-    for (const NearDisk& near : near_) contacts_.push_back(contact(near.disk, side));
+  } else {
+    chosen_.clear();
+    for (const NearDisk& near : near_) chosen_.push_back(near.disk);
+    append_contacts(side);
+  }
   for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
   found.contacts = thinned(contacts_);
   return found;

@@ -54,8 +54,9 @@ class ContactList final : public NearContactSource {
  private:
   bool is_worth_a_search(std::size_t disk) const;
   double bound_m(std::size_t disk) const;
-  void gather_near();
-  ToolContact contact(std::size_t disk, double side) const;
+  void gather_near(double reach_m);
+  void append_contacts(double side);
+  void gather_cells();
   void gather_deepest(double side);
   std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
 
@@ -72,6 +73,8 @@ class ContactList final : public NearContactSource {
   };
   std::vector<NearDisk> near_;     // within the look-ahead
   std::vector<NearDisk> nearest_;  // of each cell, by their bounds
+  std::vector<NearDisk> others_;   // that can be deeper than the contact of the nearest
+  std::vector<std::uint32_t> chosen_;
   std::vector<std::uint64_t> clusters_;
 };
 

@@ -7,11 +7,12 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kLines = 2;               // one for an edge of the tool, two for a corner
-constexpr int kCuts = 4;                // of a line
-constexpr double kGrazing = 0.2;        // a disk at a smaller angle to the gradient is met at its edge
-constexpr double kStep_m = 2e-4;        // lower edges are climbed, not run into
-constexpr double kBlindGradient = 0.5;  // shorter, and the field is at a ridge: it has no direction
+using disk_search::kBlindGradient;
+using disk_search::kCuts;
+using disk_search::kFlatSlope;
+using disk_search::kGrazing;
+using disk_search::kLines;
+using disk_search::kStep_m;
 
 Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
   return at.gradient_T - at.gradient_T.dot(disk.n_T) * disk.n_T;

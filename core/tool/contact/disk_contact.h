@@ -2,6 +2,7 @@
 // corners of the tool do not sink between the points of a surface. Not in the dissertation.
 #pragma once
 
+#include "core/kernels/disk_search.h"
 #include "core/tool/dynamics/motion_program.h"
 #include "core/tool/voxels/voxel_tool.h"
 
@@ -18,9 +19,6 @@ struct SurfaceDisk {
 
 // Lower bound of the distance from the disk to the tool, if the field is nowhere steeper than at the centre.
 double lower_bound_m(const SurfaceDisk& disk);
-
-// Largest slope of the field at which a disk counts as flat in it.
-inline constexpr double kFlatSlope = 0.05;
 
 struct DiskPlace {
   Vec3 p_T;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/tool/voxels/outer_field.h"
+
 namespace remote_touch {
 
 namespace {
@@ -40,10 +42,19 @@ std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
   return table;
 }
 
+double farthest_corner_m(const VoxelGrid& grid) {
+  const Vec3 last_T = grid.origin_T + grid.size_m * Vec3(grid.cells[0], grid.cells[1], grid.cells[2]);
+  return grid.origin_T.cwiseAbs().cwiseMax(last_T.cwiseAbs()).norm();
+}
+
 }  // namespace
 
 TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& kernels)
-    : tool_(std::move(tool)), kernels_(kernels), nearness_(nearness_of_cells(*tool_)) {
+    : tool_(std::move(tool)),
+      kernels_(kernels),
+      max_slope_(remote_touch::max_slope(tool_->grid, tool_->distance_m, kFieldMargin_m)),
+      grid_reach_m_(farthest_corner_m(tool_->grid)),
+      nearness_(nearness_of_cells(*tool_)) {
   voxels_.reserve(tool_->voxels.size() + 3);
   for (const Voxel v : tool_->voxels) voxels_.push_back(static_cast<std::int8_t>(v));
   voxels_.resize(tool_->voxels.size() + 3, 0);

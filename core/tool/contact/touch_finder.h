@@ -22,6 +22,10 @@ class TouchFinder {
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TiledCloud& cloud() const { return *cloud_; }
   const VoxelTool& tool() const { return *tool_; }
+  // Upper bound of the length of the field's gradient where the field is below kFieldMargin_m, and of the
+  // distance of any place in the grid from the tool's origin.
+  double max_slope() const { return max_slope_; }
+  double grid_reach_m() const { return grid_reach_m_; }
 
   // The points in shell or interior voxels.
   std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
@@ -37,6 +41,7 @@ class TouchFinder {
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
+  const double max_slope_, grid_reach_m_;
   std::vector<std::int8_t> voxels_, nearness_;  // of every cell, and three readable bytes more
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;

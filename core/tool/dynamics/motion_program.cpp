@@ -24,6 +24,35 @@ Vector6 MotionProgram::row_of(const ToolContact& contact) const {
   return row;
 }
 
+// All at once, with the operations of row_of() in its order, or those that are of use one by one.
+void MotionProgram::add_rows(std::span<const ToolContact> contacts) {
+  rigid_.clear();
+  const std::size_t count = contacts.size();
+  if (count <= static_cast<std::size_t>(kMaxContacts)) {
+    double inverse_root[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) inverse_root[i][k] = inverse_root_(i, k);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 &r = contacts[i].r_T, &n = contacts[i].n_T;
+      const double x = r.y() * n.z() - r.z() * n.y(), y = r.z() * n.x() - r.x() * n.z(),
+                   z = r.x() * n.y() - r.y() * n.x();
+      for (int k = 0; k < 3; ++k) {
+        column_[k][i] = n[k];
+        column_[3 + k][i] = inverse_root[k][0] * x + (inverse_root[k][1] * y + inverse_root[k][2] * z);
+      }
+      depth_m_[i] = contacts[i].depth_m;
+      number_[i] = static_cast<int>(i);
+    }
+    if (rigid_.add_all({column_[0], column_[1], column_[2], column_[3], column_[4], column_[5]}, depth_m_,
+                       static_cast<int>(count)))
+      return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const int row = rigid_.size();
+    if (rigid_.add(row_of(contacts[i]), contacts[i].depth_m)) number_[row] = static_cast<int>(i);
+  }
+}
+
 ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const int* active,
                                       const double* multiplier, std::span<const ToolContact> contacts) const {
   ConstrainedMotion motion;
@@ -41,11 +70,7 @@ ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const 
 ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const ToolContact> contacts) {
   Vector6 target;
   target << desired_T.head<3>(), root_ * desired_T.tail<3>();
-  rigid_.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const int row = rigid_.size();
-    if (rigid_.add(row_of(contacts[i]), contacts[i].depth_m)) number_[row] = static_cast<int>(i);
-  }
+  add_rows(contacts);
   const ProgramResult<6> result = rigid_.nearest(target);
   if (result.status == ProgramStatus::optimal)
     return read(result.y, result.active_count, result.active, result.multiplier, contacts);

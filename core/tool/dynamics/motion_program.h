@@ -39,6 +39,7 @@ class MotionProgram {
 
  private:
   using Row = Vector6;
+  void add_rows(std::span<const ToolContact> contacts);
   Row row_of(const ToolContact& contact) const;
   ConstrainedMotion read(const Vector6& y, int active_count, const int* active, const double* multiplier,
                          std::span<const ToolContact> contacts) const;
@@ -47,6 +48,7 @@ class MotionProgram {
   QuadraticProgram<6> rigid_;
   QuadraticProgram<7> elastic_;
   int number_[kMaxContacts] = {};  // of the contact behind each row
+  double column_[6][kMaxContacts] = {}, depth_m_[kMaxContacts] = {};
 };
 
 }  // namespace remote_touch

@@ -127,7 +127,7 @@ std::vector<float> outer_field(const TriangleMesh& mesh, const VoxelGrid& grid,
   return lowered;
 }
 
-double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m) {
+double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m, double within_m) {
   const std::size_t row = grid.cells[0] + std::size_t(1), layer = row * (grid.cells[1] + std::size_t(1));
   double max = 0;
 #pragma omp parallel for reduction(max : max)
@@ -135,8 +135,8 @@ double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m) {
     for (int j = 0; j < grid.cells[1]; ++j)
       for (int i = 0; i < grid.cells[0]; ++i) {
         const float* n = &distance_m[i + row * j + layer * k];
-        if (std::min({n[0], n[1], n[row], n[row + 1]}) > kExactField_m &&
-            std::min({n[layer], n[layer + 1], n[layer + row], n[layer + row + 1]}) > kExactField_m)
+        if (std::min({n[0], n[1], n[row], n[row + 1]}) > within_m &&
+            std::min({n[layer], n[layer + 1], n[layer + row], n[layer + row + 1]}) > within_m)
           continue;
         const auto steepest = [&](std::size_t along, std::size_t a, std::size_t b) {
           double most = 0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/tool/mesh/triangle_mesh.h"
+#include "core/tool/voxels/distance_field.h"
 #include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch {
@@ -20,8 +21,8 @@ namespace remote_touch {
 std::vector<float> outer_field(const TriangleMesh& mesh, const VoxelGrid& grid,
                                const std::vector<float>& distance_m);
 
-// Upper bound of the length of the gradient of the trilinear field within kExactField_m of the surface, and
-// inside.
-double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m);
+// Upper bound of the length of the gradient of the trilinear field where that is within_m or less.
+double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m,
+                 double within_m = kExactField_m);
 
 }  // namespace remote_touch

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
@@ -38,7 +39,7 @@ struct Found {
 };
 
 // Every disk within the look-ahead as a contact, one after the other.
-std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p) {
+std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p, double side = 0) {
   TouchFinder finder(kTool, scenes::kernels());
   finder.on_frame(formatted<TiledCloud>(cloud));
   std::vector<Found> all;
@@ -49,9 +50,9 @@ std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p
     const SurfaceDisk disk{p_T, R_TW * finder.cloud().normal(i),
                            p.disk_radius_ratio * finder.cloud().spacing_m(i), sample_field(*kTool, p_T)};
     const double lower_m = lower_bound_m(disk);
-    if (lower_m > p.look_ahead_m) continue;
+    if (lower_m > p.look_ahead_m || disk.at.distance_m > kFieldMargin_m - 2e-4) continue;
     all.push_back({cell_and_octant(p_T, -disk.at.gradient_T, kCellsPer_m),
-                   lower_m <= kTouched_m ? near_contact(*kTool, disk, nearest_place(*kTool, disk), 0)
+                   lower_m <= kTouched_m ? near_contact(*kTool, disk, nearest_place(*kTool, disk), side)
                                          : far_contact(disk, lower_m)});
   }
   return all;
@@ -59,6 +60,27 @@ std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p
 
 bool same(const ToolContact& a, const ToolContact& b) {
   return a.r_T == b.r_T && a.n_T == b.n_T && a.depth_m == b.depth_m && a.side == b.side;
+}
+
+// In vectors, whatever the instruction set: bit for bit the contacts of one disk after the other, on both
+// sides and with disks that reach out of the grid.
+TEST(ContactList, TheSameBitsOnEveryInstructionSet) {
+  for (const double ratio : {0.75, 2.0})
+    for (const double side : {0.0, 1.0, -1.0}) {
+      ToolParameters p;
+      p.disk_radius_ratio = ratio;
+      const PointCloud cloud = cloud_of(300);
+      const std::vector<Found> all = all_contacts(cloud, p, side);
+      ASSERT_GT(all.size(), 5u);
+      for (const Kernels* kernels : supported_kernels()) {
+        ContactList list(kTool, p, *kernels);
+        list.on_frame(formatted<TiledCloud>(cloud));
+        const NearContacts near = list.near(kPose, side);
+        ASSERT_EQ(near.contacts.size(), all.size());
+        for (std::size_t i = 0; i < all.size(); ++i)
+          EXPECT_TRUE(same(near.contacts[i], all[i].contact)) << i << " " << kernels->isa;
+      }
+    }
 }
 
 TEST(ContactList, FewContactsAreAllThere) {

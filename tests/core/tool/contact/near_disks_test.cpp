@@ -49,7 +49,7 @@ TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
   for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
     if (isa > best_isa()) continue;
     const Look query(cloud, kernels_for(isa));
-    const auto points = query.finder.within(kPose, kReach_m);
+    const auto points = query.finder.within(kPose, kReach_m + NearDisks::kSpare_m);
     const TiledCloud& tiled = query.finder.cloud();
     ASSERT_EQ(query.disks.size(), points.size());
     EXPECT_GT(points.size(), 1000u);
@@ -90,26 +90,60 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   }
 }
 
+// How many disks are within a distance.
+std::size_t within(const NearDisks& disks, double distance_m) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < disks.size(); ++k) count += disks.distance_m(k) <= distance_m ? 1 : 0;
+  return count;
+}
+
 // What was found for a pose is not what counts in the next frame, at another pose or for another reach.
 TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   const PointCloud cloud = cloud_with_normals();
   const Kernels& kernels = scenes::kernels();
   Look query(cloud, kernels);
-  const std::size_t all = query.disks.size();
+  const std::size_t all = within(query.disks, kReach_m), some = within(query.disks, 0.001);
+  EXPECT_LT(some, all);
   query.disks.query(query.finder, kernels, kPose, 0.001);
-  EXPECT_LT(query.disks.size(), all);
-  query.disks.query(query.finder, kernels, {{1, 1, 1}, kPose.q_WT}, kReach_m);
+  EXPECT_EQ(within(query.disks, 0.001), some);
+  query.disks.query(query.finder, kernels, {{1, 1, 1}, kPose.q_WT}, 0.001);
   EXPECT_EQ(query.disks.size(), 0u);
+  query.disks.query(query.finder, kernels, kPose, 0.001);
+  EXPECT_EQ(within(query.disks, 0.001), some);
   query.disks.query(query.finder, kernels, kPose, kReach_m);
-  EXPECT_EQ(query.disks.size(), all);
+  EXPECT_EQ(within(query.disks, kReach_m), all);
   PointCloud fewer = cloud;
   fewer.x.resize(5000), fewer.y.resize(5000), fewer.z.resize(5000);
   fewer.nx.resize(5000), fewer.ny.resize(5000), fewer.nz.resize(5000);
   query.finder.on_frame(formatted<TiledCloud>(fewer));
   query.disks.on_frame(query.finder.cloud());
   query.disks.query(query.finder, kernels, kPose, kReach_m);
-  EXPECT_LT(query.disks.size(), all);
-  EXPECT_GT(query.disks.size(), 0u);
+  EXPECT_LT(within(query.disks, kReach_m), all);
+  EXPECT_GT(within(query.disks, kReach_m), 0u);
+}
+
+// A walk of steps that are mostly so short that the points are kept: at every pose all points within reach
+// are there, as a loop over all points finds them.
+TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
+  constexpr double kShort_m = 2e-5;
+  const PointCloud cloud = cloud_with_normals();
+  Look query(cloud, scenes::kernels());
+  ToolPose pose = kPose;
+  int kept = 0;
+  for (int step = 0; step < 60; ++step) {
+    const double a = 0.7 * step, size = step % 20 == 19 ? 100 : 1;
+    Vector6 motion;
+    motion << std::sin(a), std::cos(1.3 * a), std::sin(2.1 * a), 30 * std::cos(a), 30 * std::sin(1.7 * a), 30;
+    pose = moved(pose, size * kShort_m * motion);
+    query.disks.query(query.finder, scenes::kernels(), pose, kReach_m);
+    const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+    std::size_t expected = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      expected += sample_field(*kTool, R_TW * (cloud.point(i) - pose.p_W)).distance_m <= kReach_m ? 1 : 0;
+    ASSERT_EQ(within(query.disks, kReach_m), expected) << step;
+    kept += query.disks.size() != query.finder.within(pose, kReach_m + NearDisks::kSpare_m).size() ? 1 : 0;
+  }
+  EXPECT_GT(kept, 10) << "the points were searched anew at every step";
 }
 
 // A list that has looked at the pose already, and one that has not.
