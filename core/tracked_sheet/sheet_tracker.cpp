@@ -26,11 +26,6 @@ double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
 }
 
-// Of the difference of two heights, each with that standard error.
-double error_of_two(double error) {
-  return std::max(1.5 * error, 0.003);
-}
-
 }  // namespace
 
 SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
@@ -168,6 +163,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
     const double found = find_members(proxy);
     if (found >= kDoubtful * before || (gate_m >= s_.max_gate_m && found >= kLost * before && found >= 3)) {
       fit_map(age_ >= 1 ? 0.4 : 1);
+      if (shows_ == Shows::points && age_ >= 1 && changes_points()) map_.steady(before_it);
       return true;
     }
     map_ = before_it;
