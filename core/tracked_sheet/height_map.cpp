@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/tracked_sheet/shrinkage.h"
+
 namespace remote_touch {
 
 const HeightMap::Node& HeightMap::nearest_node(double u, double v) const {
@@ -72,6 +74,22 @@ void HeightMap::extend(int rings) {
         if (count > 0)
           node(i, j) = {sum.height / count, sum.slope_u / count, sum.slope_v / count, 0, true, false};
       }
+  }
+  fill_cells();
+}
+
+void HeightMap::steady(const HeightMap& earlier) {
+  constexpr double kLever = 3;  // rms distance of a wide window's points from its middle, contact radii
+  const auto keep = [](double& now, double before, double error) {
+    now = before + surely(now - before, error);
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& now = nodes_[i];
+    const Node& before = earlier.nodes_[i];
+    if (!now.covered || !before.covered) continue;
+    const double error = error_of_two(now.error);
+    keep(now.height, before.height, error);
+    keep(now.slope_u, before.slope_u, error / kLever), keep(now.slope_v, before.slope_v, error / kLever);
   }
   fill_cells();
 }

@@ -36,6 +36,9 @@ class HeightMap {
   void set_plane(double height, double slope_u, double slope_v, double radius);
   // Continues the map by so many contact radii beyond its border, as planes.
   void extend(int rings);
+  // Keeps of the change since an earlier map of the same patch what the nodes' errors do not explain: noise
+  // then moves the map much less from frame to frame, and a motion that is well above it hardly later.
+  void steady(const HeightMap& earlier);
   // Adds a plane: the motion and rotation of the sheet.
   void add_plane(double height, double slope_u, double slope_v);
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/kernels/depth_kernels.h"
 #include "core/tracked_sheet/sheet_acquisition.h"
 #include "core/tracked_sheet/sheet_registration.h"
+#include "core/tracked_sheet/shrinkage.h"
 
 namespace remote_touch {
 
@@ -24,23 +26,22 @@ double half_thickness(double sigma) {
   return std::max(kThinnest, kNoisePart * sigma);
 }
 
-// What of a measurement is not its standard error: nearly all of a large one, nothing of a small one.
-double surely(double x, double error) {
-  const double square = x * x;
-  return square > 0 ? square / (square + 4 * error * error) * x : 0;
-}
-
 }  // namespace
 
-SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels)
-    : s_(settings), unit_m_(contact_radius_m), kernels_(kernels), points_(kernels) {}
+SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
+                           Shows shows)
+    : s_(settings), unit_m_(contact_radius_m), kernels_(kernels), shows_(shows), points_(kernels) {}
 
 void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
+  points_.reserve(points);
+  sheet_.reserve(points);
+  if (shows_ == Shows::points) {
+    gathered_->reserve(points, false, false);
+    return;
+  }
   gathered_->reserve(points, with_radius, with_stiffness);
   buffer_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
-  points_.reserve(points);
-  sheet_.reserve(points);
 }
 
 void SheetTracker::swap_buffers() {
@@ -62,6 +63,7 @@ void SheetTracker::gather(double half_height) {
 
 void SheetTracker::restart(const Vec3& proxy_W) {
   age_ = missed_ = 0;
+  before_.known = false;
   shift_ = shift_before_ = 0;
   sheet_.clear();
   const auto found = find_sheet(*newest_, proxy_W, unit_m_, kernels_, {*gathered_, points_, fit_});
@@ -126,10 +128,10 @@ double SheetTracker::find_members(const PatchPlace& proxy) {
   const HeightProfile smooth = points_.profile_near(proxy, kRegistrationReach, region_.half_height)
                                    .smoothed(std::max(0.2, 0.5 * sigma_));
   const double max = half_thickness(sigma_);
-  const double up = std::min(max, smooth.valley_from(0, 1)), down = std::min(max, smooth.valley_from(0, -1));
+  up_ = std::min(max, smooth.valley_from(0, 1)), down_ = std::min(max, smooth.valley_from(0, -1));
   double count = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const bool is_member = points_.residual(i) <= up && points_.residual(i) >= -down;  // NaN is none
+    const bool is_member = points_.residual(i) <= up_ && points_.residual(i) >= -down_;  // NaN is none
     points_.set_member(i, is_member);
     count += is_member;
   }
@@ -161,6 +163,7 @@ bool SheetTracker::follow(const Vec3& proxy_W) {
     const double found = find_members(proxy);
     if (found >= kDoubtful * before || (gate_m >= s_.max_gate_m && found >= kLost * before && found >= 3)) {
       fit_map(age_ >= 1 ? 0.4 : 1);
+      if (shows_ == Shows::points && age_ >= 1 && changes_points()) map_.steady(before_it);
       return true;
     }
     map_ = before_it;
@@ -187,14 +190,45 @@ double SheetTracker::contact_distance(const PatchPlace& proxy) const {
 std::shared_ptr<const NeighbourSearch> SheetTracker::keep(std::shared_ptr<const NeighbourSearch> frame) {
   newest_ = std::move(frame);
   swap_buffers();
-  tracks_ = false;
+  tracks_ = before_.known = false;
   return newest_;
 }
 
-// How far above the sheet, along the patch's normal; NaN where there is none.
 double SheetTracker::clearance(const Vec3& p_W) const {
   const PatchPlace p = patch().place(p_W);
   return p.h - map_.height(p.u, p.v);
+}
+
+double SheetTracker::moved(const Vec3& p_W) const {
+  if (!before_.known) return std::numeric_limits<double>::quiet_NaN();
+  const PatchPlace p = before_.frame.place(p_W);
+  const double moved = p.h - before_.map.height(p.u, p.v) - clearance(p_W);
+  return std::abs(moved) <= kResolution ? 0 : moved;
+}
+
+double SheetTracker::moved_error(const Vec3& p_W) const {
+  const PatchPlace p = patch().place(p_W);
+  return error_of_two(map_.nearest_node(p.u, p.v).error);
+}
+
+ShownPoint SheetTracker::shown(const Vec3& p_W) const {
+  using enum ShownPoint::Kind;
+  ShownPoint shown;
+  const PatchPlace p = patch().place(p_W);
+  if (!region_.holds(p)) return shown;
+  shown.residual = p.h - map_.height(p.u, p.v);
+  if (!(shown.residual <= up_ && shown.residual >= -down_)) {  // NaN is no member
+    shown.kind = strays_.is_surface(p) ? surface : stray;
+    return shown;
+  }
+  const double max = kNoisePart * sigma_,
+               inside = 1 - (p.u * p.u + p.v * p.v) / (region_.radius * region_.radius);
+  const HeightMap::Slopes slopes = map_.slopes(p.u, p.v);
+  shown.kind = sheet;
+  shown.p_W = patch().world({p.u, p.v, PatchFrame::rounded(p.h - std::clamp(shown.residual, -max, max))});
+  shown.normal_W = patch().normal_W(slopes.u, slopes.v);
+  shown.weight = inside * inside;
+  return shown;
 }
 
 // Points without their noise lie elsewhere when they are seen from another place: how far a proxy must then
@@ -235,6 +269,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
   const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
+  before_.frame = unmoved, before_.map = map_, before_.known = false;
   region_.frame.move_along_normal(predicted_shift(interval_s));
   if (!follow(proxy.p_W)) {
     if (!proxy.pressing || ++missed_ > s_.max_missed_frames) return reacquire(proxy.p_W);
@@ -243,6 +278,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
     return {nullptr, Vec3::Zero(), 0, Vec3::Zero()};
   }
   missed_ = 0;
+  before_.known = true;
   SheetUpdate update;
   update.displacement_m = proxy_displacement(proxy, before) * unit_m_ * patch().normal_W();
   update.normal_W = patch().normal_W();
@@ -259,7 +295,7 @@ double SheetTracker::velocity(const Vec3& proxy_W, double clearance_before, doub
   const PatchPlace p = patch().place(proxy_W);
   shift_before_ = age_ >= 1 ? shift_ : moved;
   shift_ = moved;
-  shift_error_ = std::max(1.5 * map_.nearest_node(p.u, p.v).error, 0.003);  // of two heights
+  shift_error_ = error_of_two(map_.nearest_node(p.u, p.v).error);
   interval_s_ = interval_s;
   ++age_;
   return surely(shift_, shift_error_) * unit_m_ / interval_s;
@@ -276,6 +312,7 @@ bool SheetTracker::must_requery(const Vec3& proxy_W) const {
 
 SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
   if (!tracks_ || is_of_other_surface(proxy)) return reacquire(proxy.p_W);
+  before_.known = false;
   recentre(proxy.p_W);
   gather(half_height());
   map_.extend(6);
@@ -293,7 +330,7 @@ std::shared_ptr<const NeighbourSearch> SheetTracker::show(const Vec3& proxy_W) {
   nearer_stray_ = false;
   sheet_.clear();
   if (!tracks_) return newest_;
-  const bool clean = sigma_ < kUntouched || !s_.denoise;
+  const bool clean = !changes_points() || shows_ == Shows::points;
   const PatchPlace proxy = patch().place(proxy_W);
   const double max = kNoisePart * sigma_;
   SheetSearch& shown = *shown_[present_ ^= 1];

@@ -1,4 +1,5 @@
-// Follows the sheet of surface in front of a proxy from frame to frame.
+// Follows the sheet of surface in front of a proxy from frame to frame. A tool has several, each with a place
+// of the tool as its proxy: core/tracked_tool.
 #pragma once
 
 #include <memory>
@@ -9,15 +10,10 @@
 #include "core/tracked_sheet/height_profile.h"
 #include "core/tracked_sheet/patch_points.h"
 #include "core/tracked_sheet/sheet_search.h"
+#include "core/tracked_sheet/sheet_settings.h"
 #include "core/tracked_sheet/stray_points.h"
 
 namespace remote_touch {
-
-struct SheetSettings {
-  double gate_m = 0.015, initial_gate_m = 0.035, max_gate_m = 0.075;
-  int max_missed_frames = 1;
-  bool denoise = true;
-};
 
 // Where the proxy is, and whether a surface holds it back.
 struct ProxyPlace {
@@ -33,9 +29,24 @@ struct SheetUpdate {
   Vec3 normal_W = Vec3::Zero();
 };
 
+// What a tracker shows a point of the newest frame as. In its region a point is of the sheet, of another
+// surface, or a stray; of the sheet it is moved onto it along the patch's normal.
+struct ShownPoint {
+  enum class Kind { outside, sheet, surface, stray };
+  Kind kind = Kind::outside;
+  Vec3 p_W = Vec3::Zero(), normal_W = Vec3::Zero();  // of the sheet
+  double weight = 0;    // of the sheet: 1 in the middle of the patch, falling to 0 at its border
+  double residual = 0;  // how far it lay above the sheet, contact radii
+};
+
 class SheetTracker {
  public:
-  SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels);
+  // search: the points to show are a NeighbourSearch, and a fixture keeps the proxy at its distance; points:
+  // SheetUpdate::points is the frame as it came, or null, and shown() gives each point.
+  enum class Shows { search, points };
+
+  SheetTracker(const SheetSettings& settings, double contact_radius_m, const Kernels& kernels,
+               Shows shows = Shows::search);
   // For frames of so many points; allocates only if there was less capacity.
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);
 
@@ -53,6 +64,22 @@ class SheetTracker {
 
   bool changes_points() const { return tracks_ && sigma_ >= kUntouched && s_.denoise; }
 
+  // The sheet in the newest frame in which it was seen, if it tracks one; lengths in contact radii.
+  bool tracks() const { return tracks_; }
+  const PatchRegion& region() const { return region_; }
+  const HeightMap& map() const { return map_; }
+  double sigma() const { return sigma_; }
+  // How far a place lies above the sheet, along the patch's normal; NaN where the map knows no height.
+  double clearance(const Vec3& p_W) const;
+  // How far the newest frame moved the sheet at a place, along the patch's normal; 0 for less than the
+  // resolution of places, NaN where it is not known, as where the sheet was nowhere seen before.
+  double moved(const Vec3& p_W) const;
+  // Standard error of that.
+  double moved_error(const Vec3& p_W) const;
+  ShownPoint shown(const Vec3& p_W) const;
+  // Members in a square of one contact radius.
+  double density() const { return fit_.typical_density(); }
+
  private:
   static constexpr double kUntouched = 0.01;  // noise below this, in contact radii, is left as it is
   void gather(double half_height);
@@ -66,7 +93,6 @@ class SheetTracker {
   bool follow(const Vec3& proxy_W);
   double find_members(const PatchPlace& proxy);
   void fit_map(double weight_of_new_noise);
-  double clearance(const Vec3& p_W) const;
   double exit_distance(const Vec3& proxy_W) const;
   double proxy_displacement(const ProxyPlace& proxy, double clearance_before) const;
   double velocity(const Vec3& proxy_W, double clearance_before, double interval_s);
@@ -76,6 +102,7 @@ class SheetTracker {
   const SheetSettings s_;
   const double unit_m_;
   const Kernels& kernels_;
+  const Shows shows_;
   std::shared_ptr<const NeighbourSearch> newest_;
   std::shared_ptr<GatheredPoints> gathered_ = std::make_shared<GatheredPoints>(),
                                   buffer_ = std::make_shared<GatheredPoints>();
@@ -85,12 +112,18 @@ class SheetTracker {
   bool tracks_ = false;
   PatchRegion region_;
   HeightMap map_;
+  struct {
+    PatchFrame frame;
+    HeightMap map;
+    bool known = false;
+  } before_;  // the newest frame: where the sheet was, over the same patch
   HeightFit fit_;
   PatchPoints points_;
   StrayPoints strays_;
   std::vector<PatchPlace> sheet_;  // the members at the places where they are shown
   HeightProfile profile_;
   double sigma_ = 0;
+  double up_ = 0, down_ = 0;  // members lie no further above and below the sheet than this
   double shift_ = 0, shift_before_ = 0, shift_error_ = 0, interval_s_ = 0;
   int age_ = 0, missed_ = 0;     // shifts measured; frames without the sheet
   double pressed_distance_ = 1;  // contact_distance() when the sheet was last seen

@@ -140,6 +140,9 @@ std::vector<RendererEntry> built_in_renderers() {
           "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
       renderer_entry<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
                                                        "6-DOF rendering of a rigid tool, chapter 6"),
+      renderer_entry<LoadedTrackedTool, LoadedTrackedTool::Settings>(
+          "tracked-tool", DegreesOfFreedom::six, ContactModel::sheet,
+          "6-DOF rendering of a rigid tool on surfaces that are tracked from frame to frame and denoised; beyond the dissertation"),
       renderer_entry<LoadedToolPenalty, LoadedToolPenalty::Settings>(
           "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
           "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),

@@ -36,6 +36,10 @@ RenderedContact rendered_contact(const LoadedTool::Settings&) {
   return {kUnknownRest};
 }
 
+RenderedContact rendered_contact(const LoadedTrackedTool::Settings&) {
+  return {kUnknownRest};
+}
+
 RenderedContact rendered_contact(const LoadedToolPenalty::Settings&) {
   return {kUnknownRest};
 }

@@ -55,6 +55,7 @@ inline RenderedContact rendered_contact(const GodObjectParameters& p) {
 RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 // A tool has a shape, not a radius: not known.
 RenderedContact rendered_contact(const LoadedTool::Settings&);
+RenderedContact rendered_contact(const LoadedTrackedTool::Settings&);
 RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);
 RenderedContact rendered_contact(const LoadedSpheres::Settings&);
 

@@ -51,6 +51,9 @@ constexpr FigureEntry kFigures[] = {
     {"tool-lifts",
      "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
      figure_tool_lifts, 50},
+    {"tool-tracked",
+     "a plate on noisy surfaces that accelerate, by tracked sheets and by three contact rules",
+     figure_tool_tracked, 100, true, 2},
     {"turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4},
 };
 

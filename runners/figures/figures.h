@@ -126,6 +126,7 @@ Figure figure_bounds(const FigureContext& context);
 Figure figure_eq4_15(const FigureContext& context);
 Figure figure_proxy_rates(const FigureContext& context);
 Figure figure_tool_lifts(const FigureContext& context);
+Figure figure_tool_tracked(const FigureContext& context);
 Figure figure_turbidity(const FigureContext& context);
 
 }  // namespace remote_touch

@@ -27,10 +27,10 @@ Table noise_table(const std::string& name, const std::string& title) {
   return table;
 }
 
-Table map_table(const std::string& name, const SweepResult& result) {
+Table map_table(const std::string& name, const SweepResult& result, const std::string& measure) {
   const auto& sigma = std::get<std::vector<double>>(result.axes.at(0).values);
   const auto& acceleration = std::get<std::vector<double>>(result.axes.at(1).values);
-  const std::vector<double>& popped = result.measure("popped_through");
+  const std::vector<double>& popped = result.measure(measure);
   std::vector<double> x, y, survived, low, high, runs;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
     const Tally t = tally(result, popped, cell);

@@ -21,7 +21,9 @@ inline constexpr int kRiseFrames = 15;
 Table cell_table(const std::string& name, const std::string& title, std::vector<double> noise,
                  std::vector<double> acceleration);
 // One row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its Wilson interval, runs.
-Table map_table(const std::string& name, const SweepResult& result);
+// popped: the measure that is 1 where one did not.
+Table map_table(const std::string& name, const SweepResult& result,
+                const std::string& popped = "popped_through");
 // The cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 

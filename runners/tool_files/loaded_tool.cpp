@@ -19,19 +19,36 @@ std::string problem_of(const Settings& s) {
   return tool.empty() ? validate(s.motion) : tool;
 }
 
-ToolRenderer renderer_of(const ToolParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
-                         const Kernels& kernels) {
-  return {motion, tool, kernels};
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolRenderer>(motion, tool, kernels);
 }
-ToolRenderer renderer_of(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
-                         const Kernels& kernels) {
-  return {tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)};
+std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
+}
+
+// The penalty rule has settings of its own, none of which is live.
+class PenaltyTool final : public ToolRenderer {
+ public:
+  PenaltyTool(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
+              const Kernels& kernels)
+      : ToolRenderer(tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)) {
+  }
+  Parameters live_parameters() override { return {}; }
+};
+std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<PenaltyTool>(motion, tool, kernels);
 }
 
 ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
   ToolSettings tool = settings;
   tool.outer_field = motion.contact_rule == TouchRule::continuous;
   return tool;
+}
+ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters& motion) {
+  return tool_for(settings, motion.tool);
 }
 ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
   return settings;
@@ -42,6 +59,9 @@ ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&
 Parameters parameters(LoadedTool::Settings& s) {
   return parameters_of(s);
 }
+Parameters parameters(LoadedTrackedTool::Settings& s) {
+  return parameters_of(s);
+}
 Parameters parameters(LoadedToolPenalty::Settings& s) {
   return parameters_of(s);
 }
@@ -49,11 +69,17 @@ Parameters parameters(LoadedToolPenalty::Settings& s) {
 std::string validate(const LoadedTool::Settings& s) {
   return problem_of(s);
 }
+std::string validate(const LoadedTrackedTool::Settings& s) {
+  return problem_of(s);
+}
 std::string validate(const LoadedToolPenalty::Settings& s) {
   return problem_of(s);
 }
 
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {
+  return input_files(s.tool);
+}
+std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s) {
   return input_files(s.tool);
 }
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
@@ -64,16 +90,8 @@ template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
     : renderer_(renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
 
-// The penalty rule has settings of its own, which do not change.
-template <class MotionSettings>
-Parameters ToolFromMesh<MotionSettings>::live_parameters() {
-  if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
-    return renderer_.live_parameters();
-  else
-    return {};
-}
-
 template class ToolFromMesh<ToolParameters>;
+template class ToolFromMesh<TrackedToolParameters>;
 template class ToolFromMesh<ToolPenaltyParameters>;
 
 }  // namespace remote_touch

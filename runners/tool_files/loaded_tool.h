@@ -1,16 +1,18 @@
-// 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6 or by
-// the penalty rule to compare with.
+// 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6, by the
+// same on tracked sheets, or by the penalty rule to compare with.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/tool/motion/penalty_motion.h"
 #include "core/tool/motion/tool_renderer.h"
+#include "core/tracked_tool/tracked_tool_renderer.h"
 #include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
-// MotionSettings: ToolParameters or ToolPenaltyParameters.
+// MotionSettings: ToolParameters, TrackedToolParameters or ToolPenaltyParameters.
 template <class MotionSettings>
 class ToolFromMesh final : public Renderer {
  public:
@@ -21,29 +23,36 @@ class ToolFromMesh final : public Renderer {
 
   // Throws InputError when the tool cannot be made.
   ToolFromMesh(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
-  void prepare(Frame& frame) const override { renderer_.prepare(frame); }
-  void reserve(std::size_t points) override { renderer_.reserve(points); }
-  void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
-  Parameters live_parameters() override;
-  void parameters_changed() override { renderer_.parameters_changed(); }
+  void prepare(Frame& frame) const override { renderer_->prepare(frame); }
+  void reserve(std::size_t points) override { renderer_->reserve(points); }
+  void on_frame(const Frame& frame) override { renderer_->on_frame(frame); }
+  Parameters live_parameters() override { return renderer_->live_parameters(); }
+  void parameters_changed() override { renderer_->parameters_changed(); }
   RenderOutput step(const DeviceState& device, double time_s) override {
-    return renderer_.step(device, time_s);
+    return renderer_->step(device, time_s);
   }
 
  private:
-  ToolRenderer renderer_;
+  std::unique_ptr<Renderer> renderer_;
 };
 
 using LoadedTool = ToolFromMesh<ToolParameters>;
+using LoadedTrackedTool = ToolFromMesh<TrackedToolParameters>;
 using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
 
 Parameters parameters(LoadedTool::Settings& s);
+Parameters parameters(LoadedTrackedTool::Settings& s);
 Parameters parameters(LoadedToolPenalty::Settings& s);
 std::string validate(const LoadedTool::Settings& s);
+std::string validate(const LoadedTrackedTool::Settings& s);
 std::string validate(const LoadedToolPenalty::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
+inline double max_stiffness_N_per_m(const LoadedTrackedTool::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 inline double max_stiffness_N_per_m(const LoadedToolPenalty::Settings& s) {

@@ -38,26 +38,115 @@ double median_or_0(std::vector<double>& values) {
   return values.empty() ? 0 : median_in_place(values);
 }
 
+bool meets(const BoundingSphere& a, const BoundingSphere& b) {
+  const double reach = a.radius_m + b.radius_m;
+  return (a.centre_W - b.centre_W).squaredNorm() <= reach * reach;
+}
+
 }  // namespace
 
-void TiledCloud::add_point(const PointCloud& cloud, std::uint32_t i) {
-  x_.push_back(cloud.x[i]), y_.push_back(cloud.y[i]), z_.push_back(cloud.z[i]);
-  const Vec3 n =
-      cloud.has_normals() ? cloud.normal(i) : Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+void TiledCloud::add_point(const PointChange::Point& point) {
+  const auto& [p, n, spacing_m] = point;
+  x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
   if (!n.allFinite()) ++without_normal_;
   nx_.push_back(n.x()), ny_.push_back(n.y()), nz_.push_back(n.z());
+  spacing_m_.push_back(spacing_m);
+}
+
+void TiledCloud::add_point(const PointCloud& cloud, std::uint32_t i) {
+  const Vec3 no_normal = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  add_point({cloud.point(i), cloud.has_normals() ? cloud.normal(i) : no_normal, 0});
 }
 
 void TiledCloud::add_tile(const PointCloud& cloud, std::span<const std::uint32_t> points) {
   if (points.empty()) return;
   const auto first = static_cast<std::uint32_t>(x_.size());
   for (const std::uint32_t i : points) add_point(cloud, i);
-  while (x_.size() % kTilePoints != 0)
+  finish_tile(first);
+}
+
+// Of the points added from first on, if there are any.
+void TiledCloud::finish_tile(std::uint32_t first) {
+  const auto count = static_cast<std::uint32_t>(x_.size()) - first;
+  if (count == 0) return;
+  while (x_.size() % kTilePoints != 0) {
     for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->push_back(kFarAway);
-  const auto sphere = around(static_cast<std::uint32_t>(points.size()), [&](std::uint32_t i) {
-    return BoundingSphere{point(first + i), 0};
-  });
+    spacing_m_.push_back(0);
+  }
+  const auto sphere = around(count, [&](std::uint32_t i) { return BoundingSphere{point(first + i), 0}; });
   tiles_.push_back({sphere, first, static_cast<std::uint32_t>(x_.size()) - first});
+  gather_groups(first);
+}
+
+// A tile that is the same in another cloud.
+void TiledCloud::copy_tile(const TiledCloud& all, const Tile& tile) {
+  const auto first = static_cast<std::uint32_t>(x_.size());
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from, std::size_t begin,
+                         std::size_t count) {
+    const auto at = from.begin() + static_cast<std::ptrdiff_t>(begin);
+    to.insert(to.end(), at, at + static_cast<std::ptrdiff_t>(count));
+  };
+  constexpr std::vector<double> TiledCloud::*kColumns[] = {
+      &TiledCloud::x_,  &TiledCloud::y_,  &TiledCloud::z_,        &TiledCloud::nx_,
+      &TiledCloud::ny_, &TiledCloud::nz_, &TiledCloud::spacing_m_};
+  for (const auto column : kColumns) append(this->*column, all.*column, tile.first, tile.padded_count);
+  constexpr std::vector<double> Spheres::*kParts[] = {&Spheres::x, &Spheres::y, &Spheres::z,
+                                                      &Spheres::radius_m};
+  for (const auto part : kParts)
+    append(group_spheres_.*part, all.group_spheres_.*part, tile.first / kLanes, tile.padded_count / kLanes);
+  tiles_.push_back({tile.sphere, first, tile.padded_count});
+  for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i)
+    without_normal_ += all.x_[i] != kFarAway && !all.normal(i).allFinite() ? 1 : 0;
+}
+
+void TiledCloud::change_tile(const TiledCloud& all, const Tile& tile, const PointChange& change) {
+  const auto first = static_cast<std::uint32_t>(x_.size());
+  for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
+    if (all.x_[i] == kFarAway) continue;
+    PointChange::Point point{all.point(i), all.normal(i), all.spacing_m(i)};
+    if (change.show(point)) add_point(point);
+  }
+  finish_tile(first);
+}
+
+void TiledCloud::reserve(std::size_t points) {
+  const std::size_t tiles = points / kTilePoints + 1, padded = tiles * kTilePoints;
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_}) column->reserve(padded);
+  for (auto* column : {&tile_spheres_, &group_spheres_}) {
+    const std::size_t size = column == &tile_spheres_ ? tiles + kLanes : tiles * kLanes;
+    for (auto* part : {&column->x, &column->y, &column->z, &column->radius_m}) part->reserve(size);
+  }
+  tiles_.reserve(tiles), blocks_.reserve(tiles / kBlockTiles + 1);
+}
+
+void TiledCloud::clear() {
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_}) column->clear();
+  tile_spheres_.clear(), group_spheres_.clear();
+  tiles_.clear(), blocks_.clear();
+  without_normal_ = 0;
+}
+
+void TiledCloud::assign(const TiledCloud& all, const BoundingSphere& ball, const PointChange& change) {
+  clear();
+  reserve(all.padded_size());
+  for (const TileBlock& block : all.blocks()) {
+    if (!meets(block.sphere, ball)) continue;
+    for (const Tile& tile : all.tiles(block)) {
+      if (!meets(tile.sphere, ball)) continue;
+      if (change.concerns(tile.sphere))
+        change_tile(all, tile, change);
+      else
+        copy_tile(all, tile);
+    }
+  }
+  finish();
+}
+
+void TiledCloud::finish() {
+  gather_tile_spheres();
+  gather_blocks();
+  max_spacing_m_ = 0;
+  for (const double spacing_m : spacing_m_) max_spacing_m_ = std::max(max_spacing_m_, spacing_m);
 }
 
 void TiledCloud::Spheres::add(const BoundingSphere& sphere) {
@@ -65,8 +154,9 @@ void TiledCloud::Spheres::add(const BoundingSphere& sphere) {
   radius_m.push_back(sphere.radius_m);
 }
 
-void TiledCloud::gather_groups() {
-  for (std::uint32_t first = 0; first < x_.size(); first += kLanes) {
+// From the group of that point on.
+void TiledCloud::gather_groups(std::uint32_t first) {
+  for (; first < x_.size(); first += kLanes) {
     std::uint32_t count = 0;
     while (count < kLanes && x_[first + count] != kFarAway) ++count;  // padding stands last
     group_spheres_.add(count == 0 ? kNoSphere : around(count, [&](std::uint32_t i) {
@@ -89,10 +179,7 @@ void TiledCloud::gather_blocks() {
 }
 
 void TiledCloud::assign(const PointCloud& cloud) {
-  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->clear();
-  tile_spheres_.clear(), group_spheres_.clear();
-  tiles_.clear(), blocks_.clear();
-  without_normal_ = 0;
+  clear();
   if (cloud.image) {
     // Blocks of 64 x 64 pixels one after the other, so that the tiles of a block lie together.
     const auto width = static_cast<std::uint32_t>(cloud.image->camera.width),
@@ -114,12 +201,8 @@ void TiledCloud::assign(const PointCloud& cloud) {
     for (std::size_t i = 0; i < order.size(); i += kTilePoints)
       add_tile(cloud, std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i)));
   }
-  gather_groups();
-  gather_tile_spheres();
-  gather_blocks();
   measure_spacing(cloud);
-  max_spacing_m_ = 0;
-  for (const double spacing_m : spacing_m_) max_spacing_m_ = std::max(max_spacing_m_, spacing_m);
+  finish();
 }
 
 void TiledCloud::measure_spacing(const PointCloud& cloud) {

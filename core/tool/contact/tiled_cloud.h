@@ -32,11 +32,29 @@ struct TileBlock {
   std::uint32_t first, count;
 };
 
+// What becomes of the points of a cloud that is shown differently.
+class PointChange {
+ public:
+  struct Point {
+    Vec3 p_W, n_W;  // NaN: no normal
+    double spacing_m;
+  };
+  virtual ~PointChange() = default;
+  // Whether it can change points in that sphere.
+  virtual bool concerns(const BoundingSphere& sphere) const = 0;
+  // Changes a point, or returns false: it is not shown.
+  virtual bool show(Point& point) const = 0;
+};
+
 class TiledCloud {
  public:
   // The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64 points along a space-filling
   // curve. Points that are not finite are left out. Allocates.
   void assign(const PointCloud& cloud);
+  // The tiles of another cloud that reach into a ball, their points changed, in the same order. Allocates
+  // unless reserve() was called for as many points, or for the pixels of an image, sides rounded up to 8.
+  void assign(const TiledCloud& all, const BoundingSphere& ball, const PointChange& change);
+  void reserve(std::size_t points);
 
   std::span<const TileBlock> blocks() const { return blocks_; }
   std::span<const Tile> tiles(const TileBlock& block) const {
@@ -65,7 +83,13 @@ class TiledCloud {
  private:
   void add_tile(const PointCloud& cloud, std::span<const std::uint32_t> points);
   void add_point(const PointCloud& cloud, std::uint32_t i);
-  void gather_groups();
+  void add_point(const PointChange::Point& point);
+  void finish_tile(std::uint32_t first);
+  void copy_tile(const TiledCloud& all, const Tile& tile);
+  void change_tile(const TiledCloud& all, const Tile& tile, const PointChange& change);
+  void clear();
+  void gather_groups(std::uint32_t first);
+  void finish();
   void gather_tile_spheres();
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);

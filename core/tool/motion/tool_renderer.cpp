@@ -31,11 +31,35 @@ void ToolRenderer::reserve(std::size_t points) {
   contacts_.reserve(points);
 }
 
-void ToolRenderer::on_frame(const Frame& frame) {
-  if (!order_.take(frame)) return;
-  contacts_.on_frame(form_of<TiledCloud>(frame, kernels_));
+void ToolRenderer::take_points(std::shared_ptr<const TiledCloud> points) {
+  contacts_.on_frame(std::move(points));
   is_measured_ = false;
   updated_ = true;
+}
+
+void ToolRenderer::replace_points(std::shared_ptr<const TiledCloud> points) {
+  take_points(std::move(points));
+}
+
+void ToolRenderer::displace(const Vector6& by) {
+  if (by.isZero(0)) return;  // so that nothing is rounded
+  pose_ = moved(pose_, by);
+  frame_correction_m_ += by.head<3>();
+}
+
+void ToolRenderer::on_frame(const Frame& frame, std::shared_ptr<const TiledCloud> points,
+                            const ToolSurfaceMotion& motion) {
+  if (!order_.take(frame)) return;
+  take_points(std::move(points));
+  frame_arrived_s_ = frame.arrives_s;
+  displace(motion.displacement);
+  measured_rate_per_s_ = motion.rate_per_s;
+  velocity_.on_measured(frame.captured_s, motion.rate_per_s.head<3>().dot(normal_W_), normal_W_);
+}
+
+void ToolRenderer::on_frame(const Frame& frame) {
+  if (!order_.take(frame)) return;
+  take_points(form_of<TiledCloud>(frame, kernels_));
   frame_arrived_s_ = frame.arrives_s;
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
@@ -60,9 +84,12 @@ void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
 // tool, (4.15): the force rises evenly instead of by a step at each frame.
 ToolPose ToolRenderer::coupled_pose(double time_s) const {
   ToolPose pose = pose_;
-  if (!p_.velocity_estimate || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
+  const bool is_known = p_.velocity_estimate || measured_rate_per_s_.has_value();
+  if (!is_known || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
   const double sign = p_.velocity_force == ToolForce::minus ? 1 : -1;  // of u_hat = HIP - P - v t
+  if (measured_rate_per_s_)
+    return measured_rate_per_s_->isZero(0) ? pose : moved(pose, sign * since_frame_s * *measured_rate_per_s_);
   pose.p_W += sign * since_frame_s * velocity_.vector();
   return pose;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
@@ -13,9 +14,16 @@
 
 namespace remote_touch {
 
+// How a surface moved from one frame to the next, as a motion of the tool: world axes, about its centre of
+// mass.
+struct ToolSurfaceMotion {
+  Vector6 displacement = Vector6::Zero();  // what the tool is moved by, m and rad
+  Vector6 rate_per_s = Vector6::Zero();    // with which what holds the tool goes on, m/s and rad/s
+};
+
 // The device holds the tool at its centre of mass. Points without a normal are ignored by the printed rule,
 // and are points instead of disks for the look-ahead rule; ToolOutput::disabled_points counts them.
-class ToolRenderer final : public Renderer {
+class ToolRenderer : public Renderer {
  public:
   // pre: validate(parameters) is empty.
   ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
@@ -27,11 +35,25 @@ class ToolRenderer final : public Renderer {
   void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
+  // The same with points of its own, and a motion that was measured by other means, in place of (4.3) and
+  // (4.13).
+  void on_frame(const Frame& frame, std::shared_ptr<const TiledCloud> points,
+                const ToolSurfaceMotion& motion);
+  // Replaces the newest frame's points, and moves the tool.
+  void replace_points(std::shared_ptr<const TiledCloud> points);
+  void displace(const Vector6& by);
+  bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
+  const ToolPose& pose() const { return pose_; }
+  // Points pushed the tool in the last step of the last tick.
+  bool is_held() const { return is_held_; }
+  // What is near the tool where it is: valid until the next call of any function.
+  NearContacts near() { return contacts_.near(pose_, 0); }
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override;
   RenderOutput step(const DeviceState& device, double time_s) override;
 
  private:
+  void take_points(std::shared_ptr<const TiledCloud> points);
   void follow(const ToolPose& device, RenderOutput& out);
   ToolPose coupled_pose(double time_s) const;
   void measure(RenderOutput& out);
@@ -49,6 +71,7 @@ class ToolRenderer final : public Renderer {
   bool updated_ = false;          // a frame came in since the last tick
   bool is_held_ = false;          // points pushed the tool in the last step of the tick
   double frame_arrived_s_ = 0;
+  std::optional<Vector6> measured_rate_per_s_;  // in place of the estimate
   SlavePosition slave_;
   FrameOrder order_;
   Vec3 frame_correction_m_ = Vec3::Zero();

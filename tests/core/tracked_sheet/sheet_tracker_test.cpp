@@ -80,5 +80,39 @@ TEST(SheetTracker, LeavesASheetWithoutNoiseAsItIs) {
   EXPECT_FALSE(tracker.changes_points());
 }
 
+// --- for tools: the points one by one ---
+
+TEST(SheetTracker, TellsHowFarTheNewestFrameMovedTheSheet) {
+  SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
+  tracker.keep(plane(0, 0, 1));
+  tracker.requery({Vec3(0, kUnit, 0), false});
+  EXPECT_TRUE(std::isnan(tracker.moved(Vec3::Zero()))) << "seen once";
+  tracker.on_frame(plane(0.004, 0, 2), {Vec3(0, kUnit, 0), true}, 1.0 / 30);
+  for (const Vec3& p_W : {Vec3(0, 0, 0), Vec3(0.02, 0.01, 0), Vec3(-0.01, -0.002, 0.02)}) {
+    EXPECT_NEAR(tracker.moved(p_W), 0.004 / kUnit, 1e-3);
+    EXPECT_NEAR(tracker.clearance(p_W), (p_W.y() - 0.004) / kUnit, 1e-3);
+  }
+  tracker.on_frame(plane(0.004, 0, 2), {Vec3(0, 0.004 + kUnit, 0), true}, 1.0 / 30);
+  EXPECT_EQ(tracker.moved(Vec3::Zero()), 0) << "at rest";
+}
+
+TEST(SheetTracker, ShowsAPointOnTheSheetOrNotAtAll) {
+  const double sigma = 0.4;
+  SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
+  tracker.keep(plane(0, sigma, 1));
+  tracker.requery({Vec3(0, kUnit, 0), false});
+  for (unsigned k = 1; k <= 4; ++k) tracker.on_frame(plane(0, sigma, k), {Vec3(0, kUnit, 0), true}, 1.0 / 30);
+  ASSERT_TRUE(tracker.changes_points());
+  const Vec3 noisy_W(0.01, sigma * kUnit, -0.01);
+  const ShownPoint shown = tracker.shown(noisy_W);
+  ASSERT_EQ(shown.kind, ShownPoint::Kind::sheet);
+  EXPECT_NEAR(shown.p_W.y(), 0, 0.1 * sigma * kUnit);
+  EXPECT_NEAR((shown.p_W - noisy_W).cwiseProduct(Vec3(1, 0, 1)).norm(), 0, 0.05 * sigma * kUnit) << "along y";
+  EXPECT_GT(shown.normal_W.y(), 0.999);
+  EXPECT_NEAR(shown.residual, sigma, 0.1 * sigma);
+  EXPECT_EQ(tracker.shown(Vec3(0.01, 3.5 * kUnit, 0)).kind, ShownPoint::Kind::stray);
+  EXPECT_EQ(tracker.shown(Vec3(0.05, 0, 0)).kind, ShownPoint::Kind::outside);
+}
+
 }  // namespace
 }  // namespace remote_touch::sheet_tracker_test

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <vector>
 
 #include "core/cloud/camera.h"
+#include "runners/contract/allocation_counter.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::tiled_cloud_test {
@@ -103,6 +105,76 @@ TEST(TiledCloud, KnowsTheSpacing) {
   }
   tiled.assign(cloud);
   EXPECT_NEAR(tiled.spacing_m(27), 0.002 * std::sqrt(2), 3e-5);
+}
+
+// --- shown differently ---
+
+// Points in a ball are lifted, but not shown left of it; elsewhere they stay as they are.
+class Lifted final : public PointChange {
+ public:
+  explicit Lifted(const BoundingSphere& ball) : ball_(ball) {}
+  bool concerns(const BoundingSphere& sphere) const override {
+    return (sphere.centre_W - ball_.centre_W).norm() <= sphere.radius_m + ball_.radius_m;
+  }
+  bool show(Point& point) const override {
+    if ((point.p_W - ball_.centre_W).norm() > ball_.radius_m) return true;
+    if (point.p_W.x() < ball_.centre_W.x()) return false;
+    point.p_W.y() += 0.01, point.n_W = Vec3::UnitX(), point.spacing_m = 0.003;
+    return true;
+  }
+
+ private:
+  const BoundingSphere ball_;
+};
+
+std::vector<Vec3> points_of(const TiledCloud& cloud) {
+  std::vector<Vec3> points;
+  for (std::uint32_t i = 0; i < cloud.padded_size(); ++i)
+    if (cloud.x()[i] != kFarAway) points.push_back(cloud.point(i));
+  return points;
+}
+
+TEST(TiledCloud, PointsAreShownDifferentlyInTheSameOrder) {
+  const PointCloud flat = scenes::flat_grid(100);
+  TiledCloud all, shown;
+  all.assign(flat);
+  const Lifted change({Vec3(0.01, 0, 0.02), 0.02});
+  shown.reserve(all.padded_size());
+  shown.assign(all, {Vec3::Zero(), 10}, change);
+  std::vector<Vec3> expected;
+  for (const Vec3& p : points_of(all)) {
+    PointChange::Point point{p, Vec3::Zero(), 0};
+    if (change.show(point)) expected.push_back(point.p_W);
+  }
+  EXPECT_LT(expected.size(), flat.size());
+  EXPECT_EQ(points_of(shown), expected);
+  EXPECT_EQ(shown.max_spacing_m(), 0.003);
+  EXPECT_LT(shown.without_normal(), all.without_normal());
+  for (const TileBlock& block : shown.blocks())
+    for (const Tile& tile : shown.tiles(block))
+      for (std::uint32_t i = tile.first; i < tile.first + tile.padded_count; ++i) {
+        if (shown.x()[i] == kFarAway) continue;
+        EXPECT_LE((shown.point(i) - tile.sphere.centre_W).norm(), tile.sphere.radius_m);
+        EXPECT_TRUE(holds(shown.tile_spheres(), i / kTilePoints, shown.point(i)));
+        EXPECT_TRUE(holds(shown.group_spheres(), i / kLanes, shown.point(i)));
+      }
+}
+
+TEST(TiledCloud, OnlyTilesNearTheBallAreShownAndNothingIsAllocated) {
+  TiledCloud all, shown;
+  all.assign(image_cloud(320, 240));
+  shown.reserve(320 * 240);
+  const BoundingSphere ball{Vec3(0, 0, 0.7), 0.05};
+  const std::size_t before = allocation_count();
+  shown.assign(all, ball, Lifted({ball.centre_W, 0.03}));
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(shown.padded_size(), 0);
+  EXPECT_LT(shown.padded_size(), all.padded_size());
+  const std::vector<Vec3> points = points_of(shown);
+  for (const Vec3& p : points_of(all)) {
+    if ((p - ball.centre_W).norm() > ball.radius_m || (p - ball.centre_W).norm() <= 0.03) continue;
+    EXPECT_NE(std::find(points.begin(), points.end(), p), points.end());
+  }
 }
 
 }  // namespace

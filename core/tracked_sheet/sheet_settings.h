@@ -1,0 +1,20 @@
+// How a sheet is searched for, and what is shown of it.
+#pragma once
+
+#include <string>
+
+#include "core/parameters/parameter.h"
+
+namespace remote_touch {
+
+struct SheetSettings {
+  double gate_m = 0.015, initial_gate_m = 0.035, max_gate_m = 0.075;
+  int max_missed_frames = 1;
+  bool denoise = true;
+};
+
+Parameters parameters(SheetSettings& s);
+// Describes the first invalid combination of settings in one line; empty if there is none.
+std::string validate(const SheetSettings& s);
+
+}  // namespace remote_touch

@@ -1,0 +1,107 @@
+// The patches of tracked sheets around a tool, and how the tool moves with them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/tool/contact/tiled_cloud.h"
+#include "core/tool/dynamics/motion_program.h"
+#include "core/tool/dynamics/tool_pose.h"
+#include "core/tool/motion/tool_renderer.h"
+#include "core/tool/voxels/voxel_tool.h"
+#include "core/tracked_sheet/sheet_tracker.h"
+#include "core/tracked_tool/carried_motion.h"
+#include "core/tracked_tool/tool_places.h"
+
+namespace remote_touch {
+
+// What of the tool is in contact when a frame comes.
+struct ToolHold {
+  ToolPose pose;
+  bool held = false;                      // points push the tool
+  std::span<const ToolContact> contacts;  // what is near it, of the frame before
+};
+
+// One patch for each group of places of the tool: its proxy stands where the group's middle is, a contact
+// radius above the lowest of the group's places. The other patches are for contacts that none of these
+// explains, as a wall beside a tool on a floor: they begin there, and end when the tool has left them.
+class SheetPatches final : public PointChange {
+ public:
+  // unit_m: the contact radius of the trackers, their unit of length.
+  SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches, const VoxelTool& tool,
+               const Kernels& kernels);
+  void reserve(std::size_t points);
+
+  // Keeps a frame for requery() while the tool has no place yet.
+  void keep(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
+  struct Update {
+    bool missing = false;  // a surface that holds the tool is not seen, but not yet given up
+    ToolSurfaceMotion motion;
+  };
+  // A new frame. Allocates nothing if reserve() was called for its size.
+  Update on_frame(const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
+                  double captured_s);
+  // The tool has left the middle of its patches.
+  bool must_requery(const ToolPose& pose) const;
+  // Searches for the sheets around the tool anew in the newest frame; gives up those that are missing.
+  // Returns how the tool has to move so that it is not in them.
+  Vector6 requery(const ToolPose& pose, bool held);
+
+  // Whether any point is shown elsewhere than it was measured.
+  bool changes_points() const;
+  // Around the tool's centre of mass, where points must be shown until the next requery.
+  double shown_radius_m() const { return shown_radius_m_; }
+  bool concerns(const BoundingSphere& sphere) const override;
+  bool show(Point& point) const override;
+
+  // For tests and pages.
+  std::size_t size() const { return patches_.size(); }
+  bool tracks(std::size_t patch) const { return patches_[patch].in_use && patches_[patch].tracker->tracks(); }
+  const SheetTracker& tracker(std::size_t patch) const { return *patches_[patch].tracker; }
+
+ private:
+  struct Patch {
+    std::unique_ptr<SheetTracker> tracker;
+    std::span<const Vec3> places_T;
+    Vec3 middle_T = Vec3::Zero();
+    double reach_m = 0;     // how far the tool may go before the patch shows too little
+    bool of_group = false;  // else of a contact
+    bool in_use = false;
+    int contacts = 0;                       // that it explains
+    bool missing = false;                   // not seen in the newest frame
+    double captured_s = 0, interval_s = 0;  // of the newest frame that shows it, and since the one before
+    Vec3 queried_W = Vec3::Zero();
+  };
+  struct Lowest {
+    bool found = false;
+    double clearance = 0;  // above the sheet, units
+    Vec3 p_W = Vec3::Zero();
+  };
+  bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
+  Lowest lowest(const Patch& patch, const ToolPose& pose) const;
+  ProxyPlace proxy_place(const Patch& patch, const ToolPose& pose, bool held) const;
+  static bool holds(const Patch& patch, bool held) { return held && patch.contacts > 0; }
+  void count_contacts(const ToolHold& hold);
+  void follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
+              double captured_s);
+  void start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
+  ToolSurfaceMotion carried(const ToolHold& hold);
+  Vec3 out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const;
+  void note_query(Patch& patch, const ToolPose& pose) const;
+
+  const double unit_m_, reach_m_;
+  const ToolPlaces places_;
+  std::vector<Patch> patches_;
+  double shown_radius_m_ = 0;
+  Vector6 rate_per_s_ = Vector6::Zero();  // of a held tool, in the frame before
+  // The deepest contact that no patch explains: where another patch is to begin.
+  struct {
+    bool found = false;
+    Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
+    double depth_m = 0;
+  } unexplained_;
+  std::vector<int> patch_of_ = std::vector<int>(MotionProgram::kMaxContacts);  // each contact's; -1: none
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,65 @@
+// 6-DOF rendering of tracked sheets: the tool of chapter 6 on surfaces that are followed from frame to frame
+// and freed of their noise. Not in the dissertation; its inputs are those of the tool, points and times.
+//
+// Each frame: the sheets around the tool are found again where their motion predicts them; a tool that they
+// hold moves with them, rotation included, a free one only when one swept over it; their points are moved
+// onto the sheets and get normals from them. Ticks are those of the tool on these points, with the measured
+// velocity and rotation rate in (4.15).
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "core/tool/motion/tool_renderer.h"
+#include "core/tracked_sheet/sheet_settings.h"
+#include "core/tracked_tool/sheet_patches.h"
+
+namespace remote_touch {
+
+struct TrackedToolParameters {
+  ToolParameters tool;
+  SheetSettings sheet;
+  double sheet_unit_m = 0.005;
+  int max_patches = 4;
+};
+
+Parameters parameters(TrackedToolParameters& p);
+std::string validate(const TrackedToolParameters& p);
+// Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
+inline double max_stiffness_N_per_m(const TrackedToolParameters& p) {
+  return max_stiffness_N_per_m(p.tool);
+}
+
+class TrackedToolRenderer final : public Renderer {
+ public:
+  // pre: validate(parameters) is empty. For contact_rule = continuous the tool is made with outer_field.
+  TrackedToolRenderer(const TrackedToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
+                      const Kernels& kernels);
+  void prepare(Frame& frame) const override { tool_.prepare(frame); }
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  Parameters live_parameters() override;
+  void parameters_changed() override { tool_.parameters_changed(); }
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+  const SheetPatches& patches() const { return patches_; }
+
+ private:
+  std::shared_ptr<const TiledCloud> shown_points(const ToolPose& pose);
+  void requery(const ToolPose& pose, bool held);
+
+  const Kernels& kernels_;
+  const int max_hold_frames_;
+  ToolRenderer tool_;
+  SheetPatches patches_;
+  std::shared_ptr<const TiledCloud> measured_, shown_;  // the points, and what the tool is given of them
+  std::shared_ptr<const TiledCloud> newest_;            // while what holds the tool is missing in them
+  std::shared_ptr<TiledCloud> changed_[2] = {std::make_shared<TiledCloud>(), std::make_shared<TiledCloud>()};
+  int present_ = 0;
+  double captured_s_ = 0;                                          // of the newest frame that is shown
+  double hold_until_s_ = std::numeric_limits<double>::infinity();  // while what holds the tool is missing
+  bool has_frame_ = false;
+  bool placed_ = false;  // the tool is where the device was
+};
+
+}  // namespace remote_touch
