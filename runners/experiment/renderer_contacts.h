@@ -56,6 +56,7 @@ RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 // A tool has a shape, not a radius: not known.
 RenderedContact rendered_contact(const LoadedTool::Settings&);
 RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);
+RenderedContact rendered_contact(const LoadedToolGodObject::Settings&);
 RenderedContact rendered_contact(const LoadedSpheres::Settings&);
 
 }  // namespace remote_touch

@@ -25,7 +25,11 @@ ToolRenderer renderer_of(const ToolParameters& motion, const std::shared_ptr<con
 }
 ToolRenderer renderer_of(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
                          const Kernels& kernels) {
-  return {tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)};
+  return {tool_parameters(motion), tool, kernels, make_penalty_motion(motion, *tool)};
+}
+ToolRenderer renderer_of(const ToolGodObjectParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
+                         const Kernels& kernels) {
+  return {tool_parameters(motion), tool, kernels, std::make_unique<GodObjectMotion>(motion, *tool)};
 }
 
 ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
@@ -36,6 +40,11 @@ ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion
 ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
   return settings;
 }
+ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameters&) {
+  ToolSettings tool = settings;
+  tool.outer_field = true;
+  return tool;
+}
 
 }  // namespace
 
@@ -45,11 +54,17 @@ Parameters parameters(LoadedTool::Settings& s) {
 Parameters parameters(LoadedToolPenalty::Settings& s) {
   return parameters_of(s);
 }
+Parameters parameters(LoadedToolGodObject::Settings& s) {
+  return parameters_of(s);
+}
 
 std::string validate(const LoadedTool::Settings& s) {
   return problem_of(s);
 }
 std::string validate(const LoadedToolPenalty::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedToolGodObject::Settings& s) {
   return problem_of(s);
 }
 
@@ -59,12 +74,15 @@ std::vector<RecordingPart> input_files(const LoadedTool::Settings& s) {
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
   return input_files(s.tool);
 }
+std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s) {
+  return input_files(s.tool);
+}
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
     : renderer_(renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
 
-// The penalty rule has settings of its own, which do not change.
+// The rules for comparison have settings of their own, which do not change.
 template <class MotionSettings>
 Parameters ToolFromMesh<MotionSettings>::live_parameters() {
   if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
@@ -75,5 +93,6 @@ Parameters ToolFromMesh<MotionSettings>::live_parameters() {
 
 template class ToolFromMesh<ToolParameters>;
 template class ToolFromMesh<ToolPenaltyParameters>;
+template class ToolFromMesh<ToolGodObjectParameters>;
 
 }  // namespace remote_touch

@@ -1,16 +1,17 @@
 // 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6 or by
-// the penalty rule to compare with.
+// those to compare with, penalty and god-object.
 #pragma once
 
 #include <string>
 
+#include "core/tool/motion/god_object_motion.h"
 #include "core/tool/motion/penalty_motion.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
-// MotionSettings: ToolParameters or ToolPenaltyParameters.
+// MotionSettings: ToolParameters, ToolPenaltyParameters or ToolGodObjectParameters.
 template <class MotionSettings>
 class ToolFromMesh final : public Renderer {
  public:
@@ -36,17 +37,24 @@ class ToolFromMesh final : public Renderer {
 
 using LoadedTool = ToolFromMesh<ToolParameters>;
 using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
+using LoadedToolGodObject = ToolFromMesh<ToolGodObjectParameters>;
 
 Parameters parameters(LoadedTool::Settings& s);
 Parameters parameters(LoadedToolPenalty::Settings& s);
+Parameters parameters(LoadedToolGodObject::Settings& s);
 std::string validate(const LoadedTool::Settings& s);
 std::string validate(const LoadedToolPenalty::Settings& s);
+std::string validate(const LoadedToolGodObject::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 inline double max_stiffness_N_per_m(const LoadedToolPenalty::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
+inline double max_stiffness_N_per_m(const LoadedToolGodObject::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 

@@ -49,6 +49,7 @@ class ToolRenderer final : public Renderer {
   bool updated_ = false;          // a frame came in since the last tick
   bool is_held_ = false;          // points pushed the tool in the last step of the tick
   double frame_arrived_s_ = 0;
+  Vector6 allowed_W_ = Vector6::Zero();  // ToolMotionReport::allowed_W of the last tick
   SlavePosition slave_;
   FrameOrder order_;
   Vec3 frame_correction_m_ = Vec3::Zero();
