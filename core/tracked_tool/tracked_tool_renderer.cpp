@@ -44,6 +44,10 @@ Parameters TrackedToolRenderer::live_parameters() {
   return live_ones(of_a_tracked_tool(tool_.live_parameters()));
 }
 
+void TrackedToolRenderer::prepare(Frame& frame) const {
+  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
+}
+
 void TrackedToolRenderer::reserve(std::size_t points) {
   const std::size_t padded = (points / kTilePoints + 1) * kTilePoints;
   tool_.reserve(padded);

@@ -35,7 +35,7 @@ class TrackedToolRenderer final : public Renderer {
   // pre: validate(parameters) is empty. For contact_rule = continuous the tool is made with outer_field.
   TrackedToolRenderer(const TrackedToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                       const Kernels& kernels);
-  void prepare(Frame& frame) const override { tool_.prepare(frame); }
+  void prepare(Frame& frame) const override;
   void reserve(std::size_t points) override;
   void on_frame(const Frame& frame) override;
   Parameters live_parameters() override;

@@ -44,6 +44,10 @@ RenderedContact rendered_contact(const LoadedToolPenalty::Settings&) {
   return {kUnknownRest};
 }
 
+RenderedContact rendered_contact(const LoadedToolGodObject::Settings&) {
+  return {kUnknownRest};
+}
+
 RenderedContact rendered_contact(const LoadedSpheres::Settings&) {
   return {kUnknownRest};
 }

@@ -57,6 +57,7 @@ RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 RenderedContact rendered_contact(const LoadedTool::Settings&);
 RenderedContact rendered_contact(const LoadedTrackedTool::Settings&);
 RenderedContact rendered_contact(const LoadedToolPenalty::Settings&);
+RenderedContact rendered_contact(const LoadedToolGodObject::Settings&);
 RenderedContact rendered_contact(const LoadedSpheres::Settings&);
 
 }  // namespace remote_touch

@@ -11,10 +11,11 @@ std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
   std::vector<BenchmarkSweep> list;
   for (const ScenePlan& one : scenes) list.insert(list.end(), one.sweeps.begin(), one.sweeps.end());
   // A method's own force law is in the audit too, and is the same file.
-  for (const BenchmarkSweep& one : audit)
-    if (std::none_of(list.begin(), list.end(),
-                     [&](const BenchmarkSweep& other) { return other.name == one.name; }))
-      list.push_back(one);
+  for (const ScenePlan& scene : audit)
+    for (const BenchmarkSweep& one : scene.sweeps)
+      if (std::none_of(list.begin(), list.end(),
+                       [&](const BenchmarkSweep& other) { return other.name == one.name; }))
+        list.push_back(one);
   return list;
 }
 
@@ -28,12 +29,13 @@ BenchmarkPlan plan_of(const Benchmark& benchmark) {
       plan.skipped.emplace_back(scene.name, missing.what());
       continue;
     }
-    if (scene.name != kPassivityScene) continue;
-    for (const Method& method : plan.benchmark.methods)
-      for (Method& law : force_laws_of(method)) plan.laws.push_back(std::move(law));
+    if (!is_passivity_scene(scene.name)) continue;
+    if (plan.laws.empty())
+      for (const Method& method : plan.benchmark.methods)
+        for (Method& law : force_laws_of(method)) plan.laws.push_back(std::move(law));
     Benchmark audit = plan.benchmark;
     audit.methods = plan.laws;
-    plan.audit = sweeps_of(audit, scene);
+    plan.audit.push_back({scene, sweeps_of(audit, scene)});
   }
   return plan;
 }

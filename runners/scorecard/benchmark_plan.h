@@ -17,9 +17,9 @@ struct ScenePlan {
 struct BenchmarkPlan {
   Benchmark benchmark;
   std::vector<ScenePlan> scenes;
-  // Force laws that the passivity audit compares, and their sweeps; empty without its scene.
+  // Force laws that the passivity audit compares, and their sweeps in each of its scenes; empty without them.
   std::vector<Method> laws;
-  std::vector<BenchmarkSweep> audit;
+  std::vector<ScenePlan> audit;
   // Scenes whose recording is not on this machine, and why.
   std::vector<std::pair<std::string, std::string>> skipped;
 

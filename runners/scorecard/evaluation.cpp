@@ -79,10 +79,10 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
     for (std::size_t c = 0; c < stored.size(); ++c)
       report.failures.back().push_back(
           trace_failure(one.sweeps[c], stored[c], one.scene.success, folder, kernels, stop));
-    if (one.scene.name != kPassivityScene) continue;
-    report.audit = empty_card(plan.laws);
-    report.audit->scenes.push_back(score_of(reported(one.scene), read_all(plan.audit)));
   }
+  if (!plan.audit.empty()) report.audit = empty_card(plan.laws);
+  for (const ScenePlan& one : plan.audit)
+    report.audit->scenes.push_back(score_of(reported(one.scene), read_all(one.sweeps)));
   correct(report.card);
   report.costs = costs_of(plan, kernels, stop, folder / "costs.json");
   report.cpu = cpu_name();

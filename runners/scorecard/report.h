@@ -20,7 +20,7 @@ struct ScorecardReport {
   std::vector<std::pair<std::string, std::string>> skipped;
   std::vector<std::vector<std::optional<FailureTrace>>> failures;  // of each scene and method
   std::vector<Cost> costs;
-  // The passivity scene with every force law, if it was run; its methods are the laws.
+  // The passivity scenes with every force law, if they were run; its methods are the laws.
   std::optional<Scorecard> audit;
   std::string cpu = {};  // on which the costs were measured
 };

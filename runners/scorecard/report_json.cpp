@@ -149,25 +149,34 @@ const char* energy_word(const MeanDifference& energy) {
   return energy.low > 0 ? "given" : energy.high < 0 ? "taken" : "none";
 }
 
-Json audit_json(const std::optional<Scorecard>& audit) {
-  const auto all = audit ? energies(*audit) : std::nullopt;
-  if (!all) return {};
-  const SceneScore& scene = audit->scenes.front();
+Json audited_scene_json(const Scorecard& audit, const SceneScore& scene,
+                        const std::vector<std::vector<EnergySummary>>& all) {
   Json laws = Json::array();
-  for (std::size_t c = 0; c < audit->methods.size(); ++c) {
+  for (std::size_t c = 0; c < audit.methods.size(); ++c) {
     Json levels = Json::array();
-    for (const EnergySummary& energy : (*all)[c])
+    for (const EnergySummary& energy : all[c])
       levels.push_back({{"energy_per_cycle_J", mean_json(energy.per_cycle_J)},
                         {"energy_per_update_J", number_or_null(energy.per_update_J)},
                         {"mark", energy_word(energy.per_cycle_J)}});
-    laws.push_back({{"name", audit->methods[c]},
-                    {"title", audit->method_titles[c]},
+    laws.push_back({{"name", audit.methods[c]},
+                    {"title", audit.method_titles[c]},
                     {"levels", levels},
                     {"overall", proportion_json(scene.success[c].noisy)},
                     {"noise_free",
                      scene.success[c].noise_free ? proportion_json(*scene.success[c].noise_free) : Json()}});
   }
-  return {{"noise_sigma_m", levels_json(scene.noise_m)}, {"laws", laws}};
+  return {{"name", scene.name},
+          {"title", scene.title},
+          {"noise_sigma_m", levels_json(scene.noise_m)},
+          {"laws", laws}};
+}
+
+Json audit_json(const std::optional<Scorecard>& audit) {
+  Json scenes = Json::array();
+  if (audit)
+    for (const SceneScore& scene : audit->scenes)
+      if (const auto all = energies(scene)) scenes.push_back(audited_scene_json(*audit, scene, *all));
+  return scenes.empty() ? Json() : scenes;
 }
 
 Json costs_json(const ScorecardReport& report) {

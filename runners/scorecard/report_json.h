@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/2";
+inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/3";
 
 // SI units, null for a number that is not there. Lists "methods" and "laws" have their order everywhere.
 std::string to_json(const ScorecardReport& report);

@@ -71,12 +71,11 @@ std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<C
   return methods;
 }
 
-std::optional<std::vector<std::vector<EnergySummary>>> energies(const Scorecard& audit) {
-  const SceneScore& scene = audit.scenes.front();
+std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene) {
   const JudgedMeasure* run = find_measure(scene, "energy_injected");
   const JudgedMeasure* update = find_measure(scene, "mean_energy_per_update");
   if (!run || !update) return {};
-  std::vector<std::vector<EnergySummary>> laws(audit.methods.size());
+  std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
   for (std::size_t c = 0; c < laws.size(); ++c)
     for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
       MeanDifference cycle = run->at_level[c][i];

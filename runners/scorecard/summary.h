@@ -27,7 +27,7 @@ struct EnergySummary {
   MeanDifference per_cycle_J;
   double per_update_J;  // mean from one frame update to the next
 };
-// Of each law and level. None for a scene that does not measure energy.
-std::optional<std::vector<std::vector<EnergySummary>>> energies(const Scorecard& audit);
+// Of each law and level in a scene of the audit. None for a scene that does not measure energy.
+std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene);
 
 }  // namespace remote_touch

@@ -28,18 +28,21 @@ std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion,
   return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
 }
 
-// The penalty rule has settings of its own, none of which is live.
-class PenaltyTool final : public ToolRenderer {
+// The rules for comparison have settings of their own, none of which is live.
+class ToolToCompare final : public ToolRenderer {
  public:
-  PenaltyTool(const ToolPenaltyParameters& motion, const std::shared_ptr<const VoxelTool>& tool,
-              const Kernels& kernels)
-      : ToolRenderer(tool_parameters(motion), tool, kernels, std::make_unique<PenaltyMotion>(motion, *tool)) {
-  }
+  using ToolRenderer::ToolRenderer;
   Parameters live_parameters() override { return {}; }
 };
 std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion,
                                       const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
-  return std::make_unique<PenaltyTool>(motion, tool, kernels);
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         make_penalty_motion(motion, *tool));
+}
+std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion,
+                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         std::make_unique<GodObjectMotion>(motion, *tool));
 }
 
 ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
@@ -53,6 +56,11 @@ ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters&
 ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
   return settings;
 }
+ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameters&) {
+  ToolSettings tool = settings;
+  tool.outer_field = true;
+  return tool;
+}
 
 }  // namespace
 
@@ -65,6 +73,9 @@ Parameters parameters(LoadedTrackedTool::Settings& s) {
 Parameters parameters(LoadedToolPenalty::Settings& s) {
   return parameters_of(s);
 }
+Parameters parameters(LoadedToolGodObject::Settings& s) {
+  return parameters_of(s);
+}
 
 std::string validate(const LoadedTool::Settings& s) {
   return problem_of(s);
@@ -73,6 +84,9 @@ std::string validate(const LoadedTrackedTool::Settings& s) {
   return problem_of(s);
 }
 std::string validate(const LoadedToolPenalty::Settings& s) {
+  return problem_of(s);
+}
+std::string validate(const LoadedToolGodObject::Settings& s) {
   return problem_of(s);
 }
 
@@ -85,6 +99,9 @@ std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s) {
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s) {
   return input_files(s.tool);
 }
+std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s) {
+  return input_files(s.tool);
+}
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
@@ -93,5 +110,6 @@ ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, con
 template class ToolFromMesh<ToolParameters>;
 template class ToolFromMesh<TrackedToolParameters>;
 template class ToolFromMesh<ToolPenaltyParameters>;
+template class ToolFromMesh<ToolGodObjectParameters>;
 
 }  // namespace remote_touch

@@ -1,10 +1,11 @@
 // 6-DOF renderers for experiments: a tool made from a mesh, and its motion by the rules of chapter 6, by the
-// same on tracked sheets, or by the penalty rule to compare with.
+// same on tracked sheets, or by those to compare with, penalty and god-object.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "core/tool/motion/god_object_motion.h"
 #include "core/tool/motion/penalty_motion.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "core/tracked_tool/tracked_tool_renderer.h"
@@ -12,7 +13,7 @@
 
 namespace remote_touch {
 
-// MotionSettings: ToolParameters, TrackedToolParameters or ToolPenaltyParameters.
+// MotionSettings: ToolParameters, TrackedToolParameters, ToolPenaltyParameters or ToolGodObjectParameters.
 template <class MotionSettings>
 class ToolFromMesh final : public Renderer {
  public:
@@ -39,16 +40,20 @@ class ToolFromMesh final : public Renderer {
 using LoadedTool = ToolFromMesh<ToolParameters>;
 using LoadedTrackedTool = ToolFromMesh<TrackedToolParameters>;
 using LoadedToolPenalty = ToolFromMesh<ToolPenaltyParameters>;
+using LoadedToolGodObject = ToolFromMesh<ToolGodObjectParameters>;
 
 Parameters parameters(LoadedTool::Settings& s);
 Parameters parameters(LoadedTrackedTool::Settings& s);
 Parameters parameters(LoadedToolPenalty::Settings& s);
+Parameters parameters(LoadedToolGodObject::Settings& s);
 std::string validate(const LoadedTool::Settings& s);
 std::string validate(const LoadedTrackedTool::Settings& s);
 std::string validate(const LoadedToolPenalty::Settings& s);
+std::string validate(const LoadedToolGodObject::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedTrackedTool::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedToolPenalty::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedToolGodObject::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedTool::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
@@ -56,6 +61,9 @@ inline double max_stiffness_N_per_m(const LoadedTrackedTool::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 inline double max_stiffness_N_per_m(const LoadedToolPenalty::Settings& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
+inline double max_stiffness_N_per_m(const LoadedToolGodObject::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 

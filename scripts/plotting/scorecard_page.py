@@ -12,7 +12,7 @@ from plotting.scorecard_plots import colours_css, level_text, noise_plot
 from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
                                        level_tables, measure_table, overview_table, success_table)
 
-SCHEMA = "remote-touch-scorecard/2"
+SCHEMA = "remote-touch-scorecard/3"
 OWN_CSS = """
 body { font-size: 15px; max-width: 78rem; }
 h2#reading ~ p { max-width: 60rem; }
@@ -94,13 +94,13 @@ def audit_section(card):
     if not card["audit"]:
         return ""
     return f"""<h2 id="audit">Passivity</h2>
-<p>A simulated hand (a mass, moved along closed cycles by a spring and a damper) presses and slides on a plane at \
-rest; the rendered force acts on it. Each cell gives the energy that the hand received from the renderer in one cycle \
+<p>A simulated hand (a mass, moved along closed cycles by a spring and a damper) presses and slides, or turns, on a \
+plane at rest; the rendered force acts on it, and the torque of a tool. Each cell gives the energy that the hand received from the renderer in one cycle \
 and, in small print, from one frame update to the next while there is force, in mJ. Below 0 the renderer took energy; \
 this also happens when it loses the surface and is pressed into it again. Red: the 95 % interval is above 0; green: \
 below 0; a single run has no interval. v_plus and v_none give the sign of the velocity term of (4.15), which is minus \
 otherwise; k_d3 is a damper of 3 Ns/m in (4.16), and k_d_minus its printed sign.</p>
-{audit_table(card)}"""
+{"".join(f"<h3>{esc(scene['title'])}</h3>{audit_table(card, scene)}" for scene in card["audit"])}"""
 
 
 def costs_section(card):

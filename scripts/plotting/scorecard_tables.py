@@ -148,15 +148,15 @@ def level_tables(card, scene):
     return f"<details><summary>measures at each noise level</summary>{''.join(tables)}</details>"
 
 
-def audit_table(card):
+def audit_table(card, scene):
     """What each force law gives to a hand, in a cycle and in an update."""
     rows = []
-    for law in card["audit"]["laws"]:
+    for law in scene["laws"]:
         cells = [cell(f"{number(level['energy_per_cycle_J']['mean'], 1e3)} "
                       f"<small>{number(level['energy_per_update_J'], 1e3)}</small>", MARKS[level["mark"]])
                  for level in law["levels"]]
         rows.append([name_cell(law), *cells, cell(share_text(law["overall"]))])
-    return table(["noise / r_c", *level_heads(card, card["audit"]), "runs that are passive and felt"], rows)
+    return table(["noise / r_c", *level_heads(card, scene), "runs that are passive and felt"], rows)
 
 
 def cost_table(card):

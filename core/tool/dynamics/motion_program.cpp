@@ -12,8 +12,9 @@ constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
 
 }  // namespace
 
-MotionProgram::MotionProgram(const VoxelTool& tool) : rigid_(kMaxContacts), elastic_(kMaxContacts + 1) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(tool.inertia_m2);
+MotionProgram::MotionProgram(const Eigen::Matrix3d& inertia_m2)
+    : rigid_(kMaxContacts), elastic_(kMaxContacts + 1) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia_m2);
   root_ = axes.operatorSqrt();
   inverse_root_ = axes.operatorInverseSqrt();
 }

@@ -30,7 +30,9 @@ class MotionProgram {
  public:
   static constexpr int kMaxContacts = 256;
 
-  explicit MotionProgram(const VoxelTool& tool);
+  explicit MotionProgram(const VoxelTool& tool) : MotionProgram(tool.inertia_m2) {}
+  // For a body of another inertia than the tool's, about its centre of mass, divided by the mass.
+  explicit MotionProgram(const Eigen::Matrix3d& inertia_m2);
 
   // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero
   // and depths of 1. If a wedge makes (6.5) infeasible, the desired motion stays in the objective and one

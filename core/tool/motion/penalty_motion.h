@@ -1,38 +1,55 @@
-// A penalty method for comparison: the voxmap and pointshell of W. McNeely, K. Puterbaugh and J. Troy, "Six
-// degree-of-freedom haptic rendering using voxel sampling", SIGGRAPH 1999. There are no constraints. Every
-// point of the cloud that is inside the tool pushes it with the force
+// Penalty methods for comparison: points push the tool, and nothing constrains it. Of N points that touch,
+// each pushes with the force
 //
 //   f_i = k_p d_i n_i at r_i,
 //
-// where r_i is the point, d_i its depth below the tool's surface and n_i its normal (without a normal: the
-// direction in which the tool leaves the point soonest). Where N > 10 points touch, all f_i are multiplied by
-// 10 / N, as in the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool
-// moves towards the pose at which the wrench of the points and that of the coupling balance, linearised at
-// the present pose, by half a voxel at most.
+// where r_i is the point, d_i its depth and n_i a normal; where N > 10, all f_i are multiplied by 10 / N, as
+// in the source. The virtual coupling (6.9) pulls the tool to the device. In each step the tool moves towards
+// the pose at which the wrench of the points and that of the coupling balance, linearised at the present
+// pose, by half a voxel at most. Two force laws:
 //
-// Differences from the source: the roles are exchanged (there the environment is voxels and the tool is
-// points); d_i is taken from the distance field, not from a plane through the middle of a voxel, so it is
-// exact and continues to grow inside; the tool has no mass, but rests where the wrenches balance, as in M.
-// Wan and W. McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", IEEE
-// Visualization 2003; nothing brakes the tool before contact.
+// Voxmap and pointshell (`voxmap`): W. McNeely, K. Puterbaugh and J. Troy, "Six degree-of-freedom haptic
+// rendering using voxel sampling", SIGGRAPH 1999. The tool is points with normals into it (pointshell.h), the
+// scene is voxels (voxmap.h), made anew from each frame in prepare(). A point of the tool in a surface voxel
+// is as deep as it is below its tangent plane: the plane through the middle of the voxel, across the normal
+// of the point.
+//
+// Distance field (`distance-field`): as J. Barbic and D. James, "Six-DoF haptic rendering of contact between
+// geometrically complex reduced deformable models", IEEE Transactions on Haptics 2008, take the depth from a
+// distance field. Here the roles are exchanged: the field is the tool's, the points are the cloud's, and n_i
+// is the normal of the cloud; without one, the direction in which the tool leaves the point soonest.
+//
+// Differences from the sources: the tool has no mass, but rests where the wrenches balance, as in M. Wan and
+// W. McNeely, "Quasi-static approximation for 6 degrees-of-freedom haptic rendering", IEEE Visualization
+// 2003. So there is no velocity that the proximity layers of the 1999 paper could brake before contact; that
+// no step is longer than half a voxel keeps points from jumping over a layer of voxels, which braking is for.
+// The points of the pointshell lie on the surface and not in the middle of voxels. A cloud has no interior
+// voxels.
 //
 // Known limits, which the comparison should show: the depth of the points in the tool is proportional to the
-// force; the tool passes through points that are deeper in it than its middle; where walls are close, the
-// points of all walls push at once.
+// force; the tool passes through points that are deeper in it than its middle, or, with a voxmap, through a
+// layer of voxels that gives way; where walls are close, the points of all walls push at once. With a voxmap
+// a surface is where the middles of its voxels are, up to half a voxel beside its points and in steps where
+// it is not along an axis.
 #pragma once
 
 #include "core/parameters/parameter.h"
+#include "core/tool/contact/voxmap.h"
+#include "core/tool/dynamics/even_coupling.h"
 #include "core/tool/motion/tool_motion.h"
+#include "core/tool/voxels/pointshell.h"
 
 namespace remote_touch {
 
+enum class PenaltyLaw { distance_field, voxmap };
+
 struct ToolPenaltyParameters {
+  PenaltyLaw force_law = PenaltyLaw::distance_field;
+  double voxmap_voxel_m = 0.003;
   double point_stiffness_N_per_m = 2400;  // k_p
   int steps_per_tick = 200;
   double rest_threshold_m = 1e-6;
-  // As of ToolParameters.
-  double stiffness_N_per_m = 600, gyration_radius_m = 0.03;
-  double max_force_N = 20, max_torque_Nm = 1;
+  EvenCoupling coupling;
 };
 
 Parameters parameters(ToolPenaltyParameters& p);
@@ -41,30 +58,68 @@ inline std::string validate(const ToolPenaltyParameters&) {
 }
 // Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.
 inline double max_stiffness_N_per_m(const ToolPenaltyParameters& p) {
-  return p.stiffness_N_per_m;
+  return p.coupling.stiffness_N_per_m;
 }
 // The spring, its limits and how contacts are counted, as ToolRenderer takes them.
 ToolParameters tool_parameters(const ToolPenaltyParameters& p);
 
-class PenaltyMotion final : public ToolMotion {
+// The part that both force laws share.
+class PenaltyMotion : public ToolMotion {
  public:
-  PenaltyMotion(const ToolPenaltyParameters& parameters, const VoxelTool& tool)
-      : p_(parameters), reach_m_(tool.reach_m), max_step_m_(0.5 * tool.grid.size_m) {}
-  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
+  ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) final;
 
- private:
+ protected:
+  // max_step_m: of any point of the tool.
+  PenaltyMotion(const ToolPenaltyParameters& parameters, const VoxelTool& tool, double max_step_m)
+      : p_(parameters), reach_m_(tool.reach_m), max_step_m_(max_step_m) {}
+
   // Effect of the points on the tool: in tool axes, about its centre of mass.
   struct Push {
     int points = 0;
     Vector6 wrench_T = Vector6::Zero();  // N, N m
     Eigen::Matrix<double, 6, 6> stiffness_T =
         decltype(stiffness_T)::Zero();  // of the wrench, by displacement
+
+    // A point at r_T, depth_m deep along the unit vector n_T, that pushes with k_p.
+    void add(const Vec3& r_T, const Vec3& n_T, double depth_m, double k_p_N_per_m);
   };
-  Push push(const ToolPose& pose, const ContactList& contacts) const;
-  Vector6 balancing_step(const ToolPose& pose, const ToolPose& device, const Push& push) const;
+  virtual Push push(const ToolPose& pose, const ContactList& contacts) const = 0;
 
   const ToolPenaltyParameters p_;
-  const double reach_m_, max_step_m_;
+  const double reach_m_;
+
+ private:
+  Vector6 balancing_step(const ToolPose& pose, const ToolPose& device, const Push& push) const;
+
+  const double max_step_m_;
 };
+
+class FieldPenalty final : public PenaltyMotion {
+ public:
+  FieldPenalty(const ToolPenaltyParameters& parameters, const VoxelTool& tool)
+      : PenaltyMotion(parameters, tool, 0.5 * tool.grid.size_m) {}
+
+ private:
+  Push push(const ToolPose& pose, const ContactList& contacts) const override;
+};
+
+class VoxmapPenalty final : public PenaltyMotion {
+ public:
+  VoxmapPenalty(const ToolPenaltyParameters& parameters, const VoxelTool& tool)
+      : PenaltyMotion(parameters, tool, 0.5 * parameters.voxmap_voxel_m),
+        shell_(make_pointshell(tool, parameters.voxmap_voxel_m)) {}
+  std::shared_ptr<const FramePreparation> prepared(const PointCloud& cloud) const override;
+  void on_frame(std::shared_ptr<const FramePreparation> prepared) override;
+
+ private:
+  Push push(const ToolPose& pose, const ContactList& contacts) const override;
+
+  const Pointshell shell_;
+  std::shared_ptr<const Voxmap> map_;  // of the newest frame
+};
+
+// The tool has to outlive the result.
+std::unique_ptr<ToolMotion> make_penalty_motion(const ToolPenaltyParameters& parameters,
+                                                const VoxelTool& tool);
 
 }  // namespace remote_touch

@@ -19,6 +19,9 @@ struct ToolMotionReport {
   Vec3 touch_W = Vec3::Zero();  // sum of the normals of what is touched, pushing or not
   // From the start of the tick to the first change of state: the first step of (4.13).
   Vec3 first_step_m = Vec3::Zero();
+  // Displacement, in world axes, that the constraints at the last pose would still allow. There is no force
+  // for it: the coupling begins where it ends. Zero for rules whose coupling begins at the tool.
+  Vector6 allowed_W = Vector6::Zero();
 };
 
 // The part of an output that a motion explains. normal_W: of contact, kept where nothing tells it.
@@ -29,6 +32,10 @@ void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& o
 class ToolMotion {
  public:
   virtual ~ToolMotion() = default;
+  // What the rule reads of a frame besides the tiles of its points, made in advance as by
+  // Renderer::prepare(); and the newest one, for all that follows. Rules that read no more have none.
+  virtual std::shared_ptr<const FramePreparation> prepared(const PointCloud& /*cloud*/) const { return {}; }
+  virtual void on_frame(std::shared_ptr<const FramePreparation> /*prepared*/) {}
   // Moves the pose towards the device. updated: a frame came in since the last tick. Does not allocate.
   virtual ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts,
                                 bool updated) = 0;

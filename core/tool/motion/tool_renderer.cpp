@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/rendering/frame_preparation.h"
 #include "core/tool/dynamics/wrench_coupling.h"
 
 namespace remote_touch {
@@ -23,8 +22,27 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       velocity_(parameters.max_prediction_s),
       slave_(parameters.slave_command) {}
 
+namespace {
+
+struct PreparedToolFrame final : FramePreparation {
+  TiledCloud tiles;
+  std::shared_ptr<const FramePreparation> for_rule;
+};
+
+std::shared_ptr<const PreparedToolFrame> prepared_tool_frame(const Frame& frame, const ToolMotion& rule,
+                                                             const Kernels& kernels) {
+  const auto made = std::make_shared<PreparedToolFrame>();
+  PointCloud buffer;
+  const PointCloud& cloud = frame.points->every_point(kernels, buffer);
+  made->tiles.assign(cloud);
+  made->for_rule = rule.prepared(cloud);
+  return made;
+}
+
+}  // namespace
+
 void ToolRenderer::prepare(Frame& frame) const {
-  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
+  frame.prepared = prepared_tool_frame(frame, *motion_, kernels_);
 }
 
 void ToolRenderer::reserve(std::size_t points) {
@@ -59,7 +77,10 @@ void ToolRenderer::on_frame(const Frame& frame, std::shared_ptr<const TiledCloud
 
 void ToolRenderer::on_frame(const Frame& frame) {
   if (!order_.take(frame)) return;
-  take_points(form_of<TiledCloud>(frame, kernels_));
+  auto prepared = std::dynamic_pointer_cast<const PreparedToolFrame>(frame.prepared);
+  if (!prepared) prepared = prepared_tool_frame(frame, *motion_, kernels_);
+  take_points({prepared, &prepared->tiles});
+  motion_->on_frame(prepared->for_rule);
   frame_arrived_s_ = frame.arrives_s;
   if (!p_.velocity_estimate) return;
   const Vec3 correction = velocity_.on_frame(frame.captured_s, normal_W_);  // (4.3)
@@ -77,13 +98,14 @@ void ToolRenderer::follow(const ToolPose& device, RenderOutput& out) {
   const ToolMotionReport report = motion_->move(pose_, device, contacts_, std::exchange(updated_, false));
   velocity_.on_step(report.first_step_m);  // (4.13)
   is_held_ = report.active_count > 0;
+  allowed_W_ = report.allowed_W;
   take_report(report, normal_W_, out);
 }
 
 // Where the force takes the tool to be. Between frames what holds it goes on along v_hat, and so would the
 // tool, (4.15): the force rises evenly instead of by a step at each frame.
 ToolPose ToolRenderer::coupled_pose(double time_s) const {
-  ToolPose pose = pose_;
+  ToolPose pose = allowed_W_.isZero(0) ? pose_ : moved(pose_, allowed_W_);
   const bool is_known = p_.velocity_estimate || measured_rate_per_s_.has_value();
   if (!is_known || !is_held_ || p_.velocity_force == ToolForce::none) return pose;
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());

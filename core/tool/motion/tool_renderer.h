@@ -72,6 +72,7 @@ class ToolRenderer : public Renderer {
   bool is_held_ = false;          // points pushed the tool in the last step of the tick
   double frame_arrived_s_ = 0;
   std::optional<Vector6> measured_rate_per_s_;  // in place of the estimate
+  Vector6 allowed_W_ = Vector6::Zero();         // ToolMotionReport::allowed_W of the last tick
   SlavePosition slave_;
   FrameOrder order_;
   Vec3 frame_correction_m_ = Vec3::Zero();

@@ -118,8 +118,9 @@ TEST(Benchmark, ToolsAreComparedWithTools) {
   EXPECT_EQ(all.scenes.size() + tools.scenes.size(), chosen_scenes({}).size());
   EXPECT_EQ(all.methods.size() + slot.methods.size(), chosen_methods({}).size());
   EXPECT_GE(tools.scenes.size(), 5u);
-  EXPECT_EQ(names(slot.methods), (std::vector<std::string>{"tool-continuous", "tool-look-ahead",
-                                                           "tool-penalty", "tool-tracked", "tool-voxels"}));
+  EXPECT_EQ(names(slot.methods),
+            (std::vector<std::string>{"tool-continuous", "tool-god-object", "tool-look-ahead", "tool-penalty",
+                                      "tool-tracked", "tool-voxels", "tool-voxmap"}));
   EXPECT_HAS(refusal([&] { chosen({"proxy"}, {"tool-slot"}); }),
              "scene tool-slot: expected only those for a HIP");
   EXPECT_HAS(refusal([&] {
@@ -206,11 +207,20 @@ TEST(Benchmark, CostsAreThoseOfTheSamePoints) {
 
 TEST(Benchmark, TheAuditsOwnForceLawsAreTheScenesSweeps) {
   const BenchmarkPlan plan =
-      plan_of({chosen_methods({"proxy", "penalty"}), chosen_scenes({kPassivityScene}), 2, "card"});
+      plan_of({chosen_methods({"proxy", "penalty"}), chosen_scenes({kPassivityScenes[0]}), 2, "card"});
   std::set<std::string> names;
   for (const BenchmarkSweep& sweep : plan.sweeps())
     EXPECT_TRUE(names.insert(sweep.name).second) << sweep.name;
   EXPECT_EQ(names.size(), plan.laws.size());
+}
+
+TEST(Benchmark, TheAuditOfToolsHasTwoScenes) {
+  const BenchmarkPlan plan = plan_of({chosen_methods({"tool-voxels", "tool-penalty"}),
+                                      chosen_scenes({kPassivityScenes[1], kPassivityScenes[2]}), 2, "card"});
+  EXPECT_EQ(plan.laws.size(), 2u);
+  ASSERT_EQ(plan.audit.size(), 2u);
+  for (const ScenePlan& one : plan.audit) EXPECT_EQ(one.sweeps.size(), 2u);
+  EXPECT_EQ(plan.sweeps().size(), 4u);
 }
 
 TEST(ForceLaws, AreEachOnceAndWhatTheRendererHas) {

@@ -267,7 +267,7 @@ TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
   ScorecardReport report = report_of(two_scenes());
   EXPECT_EQ(json_of(report)["audit"], nullptr);
   report.audit = Scorecard{{"law"}, {"a law"}, {score(rules, {sweep}, false)}};
-  const Json audit = json_of(report)["audit"], &law = audit["laws"][0], &levels = law["levels"];
+  const Json audit = json_of(report)["audit"][0], &law = audit["laws"][0], &levels = law["levels"];
   EXPECT_EQ(audit["noise_sigma_m"], Json({0.001, 0.005}));
   EXPECT_EQ(law["name"], "law");
   EXPECT_EQ(law["title"], "a law");

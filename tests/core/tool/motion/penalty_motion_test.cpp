@@ -17,7 +17,7 @@ const Vec3 kHalf_m(0.02, 0.005, 0.01);
 
 ToolRenderer renderer(const ToolPenaltyParameters& p = {}) {
   const auto tool = scenes::box_tool(kHalf_m);
-  return {tool_parameters(p), tool, scenes::kernels(), std::make_unique<PenaltyMotion>(p, *tool)};
+  return {tool_parameters(p), tool, scenes::kernels(), make_penalty_motion(p, *tool)};
 }
 
 // columns x rows points at y = 0, 2 mm apart; the edges of the tool are 1 mm from any.
@@ -89,6 +89,53 @@ TEST(PenaltyMotion, APointBesideTheMiddleTurnsTheTool) {
 // Nothing constrains the tool: points beyond its middle push it through.
 TEST(PenaltyMotion, PressedHardItPassesTheSurface) {
   EXPECT_LT(pressed(sheet(20, 10), -0.3).proxy_W.y(), -0.1);
+}
+
+// Where the sheet lies on the lower side of a layer of voxels, the planes go through their middles:
+// k (y - y_device) = 10 k_p (s / 2 - y) for the lower side y of the tool. Its points are not quite symmetric,
+// so it tilts by a hair.
+TEST(PenaltyMotion, OnAVoxmapItRestsOnTheMiddlesOfVoxels) {
+  constexpr double k = 600, k_p = 2400;
+  for (const double voxel_m : {0.003, 0.004}) {
+    ToolPenaltyParameters p;
+    p.force_law = PenaltyLaw::voxmap, p.voxmap_voxel_m = voxel_m;
+    const RenderOutput out = pressed(sheet(40, 40), -0.004, p);
+    const double y_m = (10 * k_p * 0.5 * voxel_m - k * 0.004) / (k + 10 * k_p);
+    EXPECT_NEAR(out.proxy_W.y() - kHalf_m.y(), y_m, 2e-5) << voxel_m;
+    EXPECT_NEAR(out.force_N.y(), k * (y_m + 0.004), 0.012) << voxel_m;
+    EXPECT_NEAR(out.tool->torque_Nm.norm(), 0, 0.02) << voxel_m;
+    EXPECT_GE(out.tool->active_constraints, 10);
+    EXPECT_TRUE(out.converged);
+  }
+}
+
+// Behind the layer of voxels nothing is known, and nothing pushes.
+TEST(PenaltyMotion, ThroughALayerOfVoxelsItIsFree) {
+  ToolPenaltyParameters p;
+  p.force_law = PenaltyLaw::voxmap;
+  const RenderOutput out = pressed(sheet(40, 40), -0.3, p);
+  EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y() - 0.3, 1e-6);
+  EXPECT_EQ(out.force_N, Vec3::Zero());
+}
+
+// A map that was made in advance, and one that was not.
+TEST(PenaltyMotion, APreparedVoxmapChangesNothing) {
+  ToolPenaltyParameters p;
+  p.force_law = PenaltyLaw::voxmap;
+  ToolRenderer now = renderer(p), before = renderer(p);
+  Frame frame = scenes::frame(sheet(40, 40));
+  now.on_frame(frame);
+  before.prepare(frame);
+  before.on_frame(frame);
+  for (int i = 0; i < 40; ++i) {
+    const DeviceState d{{0.0002 * i, 0.008 - 0.0002 * i, 0}, rotation({0, 0, 0.01 * i})};
+    const RenderOutput a = now.step(d, 0), b = before.step(d, 0);
+    EXPECT_EQ(a.force_N, b.force_N);
+    EXPECT_EQ(a.tool->torque_Nm, b.tool->torque_Nm);
+    if (i == 39) {
+      EXPECT_GT(a.force_N.norm(), 0.5);
+    }
+  }
 }
 
 // Half a voxel a step, so a tick moves the tool no farther than its steps do.

@@ -1,0 +1,40 @@
+// The pointshell of a box, which is known.
+#include "core/tool/voxels/pointshell.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/box_tool.h"
+
+namespace remote_touch::pointshell_test {
+namespace {
+
+TEST(Pointshell, OfABoxLiesOnItsFacesWithNormalsInto) {
+  const Vec3 half_m(0.02, 0.005, 0.01);
+  const auto tool = scenes::box_tool(half_m);
+  for (const double spacing_m : {0.002, 0.003}) {
+    const Pointshell shell = make_pointshell(*tool, spacing_m);
+    const double faces_m2 = 8 * (half_m.x() * half_m.y() + half_m.y() * half_m.z() + half_m.z() * half_m.x());
+    EXPECT_NEAR(static_cast<double>(shell.size()) * spacing_m * spacing_m / faces_m2, 1, 0.35) << spacing_m;
+    for (std::size_t i = 0; i < shell.size(); ++i) {
+      EXPECT_NEAR(scenes::box_distance(half_m, shell.p_T[i]), 0, 3e-4);
+      EXPECT_NEAR(shell.n_T[i].norm(), 1, 1e-12);
+      EXPECT_LT(scenes::box_distance(half_m, shell.p_T[i] + 1e-3 * shell.n_T[i]), -3e-4);
+    }
+  }
+}
+
+// No place of the surface is far from a point.
+TEST(Pointshell, HasNoHoles) {
+  const Vec3 half_m(0.02, 0.005, 0.01);
+  constexpr double spacing_m = 0.003;
+  const Pointshell shell = make_pointshell(*scenes::box_tool(half_m), spacing_m);
+  for (double x = -0.02; x <= 0.02; x += 0.0007)
+    for (double z = -0.01; z <= 0.01; z += 0.0007) {
+      double nearest = 1;
+      for (const Vec3& p : shell.p_T) nearest = std::min(nearest, (p - Vec3(x, -half_m.y(), z)).norm());
+      EXPECT_LT(nearest, 1.5 * spacing_m);
+    }
+}
+
+}  // namespace
+}  // namespace remote_touch::pointshell_test
