@@ -35,11 +35,8 @@ SheetTracker::SheetTracker(const SheetSettings& settings, double contact_radius_
 void SheetTracker::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
   points_.reserve(points);
   sheet_.reserve(points);
-  if (shows_ == Shows::points) {
-    gathered_->reserve(points, false, false);
-    return;
-  }
   gathered_->reserve(points, with_radius, with_stiffness);
+  if (shows_ == Shows::points) return;
   buffer_->reserve(points, true, true);  // what is shown may be of a frame with other columns than the newest
   for (auto& search : shown_) search->reserve(points, with_radius, with_stiffness);
 }

@@ -49,7 +49,7 @@ SheetPatches::SheetPatches(const SheetSettings& settings, double unit_m, std::si
 }
 
 void SheetPatches::reserve(std::size_t points) {
-  for (Patch& patch : patches_) patch.tracker->reserve(points, false, false);
+  for (Patch& patch : patches_) patch.tracker->reserve(points, true, true);
 }
 
 void SheetPatches::keep(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {

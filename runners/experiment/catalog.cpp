@@ -147,7 +147,7 @@ std::vector<RendererEntry> built_in_renderers() {
           "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
           "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
       renderer_entry<LoadedToolGodObject, LoadedToolGodObject::Settings>(
-          "tool-god-object", DegreesOfFreedom::six, ContactModel::points,
+          "tool-god-object", DegreesOfFreedom::six, ContactModel::resting_points,
           "6-DOF method for comparison: a god-object held by the contacts of its pose, Ortega, Redon and Coquillart 2007"),
       renderer_entry<LoadedSpheres, LoadedSpheres::Settings>(
           "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,

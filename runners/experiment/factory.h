@@ -102,8 +102,10 @@ enum class DegreesOfFreedom { three, six };
 // the points matters. sheet: a sheet fitted to points in cells along the world's axes, so a rotated scene, or
 // one sent more often, gives similar outputs but not the same bits. nothing: points only push, and a HIP
 // pressed deeper passes them. oriented: points, but the direction to the sensor matters; the layout of an
-// image gives it, else a setting in the world's axes; forbidden regions do not count.
-enum class ContactModel { points, regions, mesh, sheet, nothing, oriented };
+// image gives it, else a setting in the world's axes; forbidden regions do not count. resting_points: points,
+// but what a frame puts into the tool stays there, so on a surface that moves rounding decides when it
+// passes.
+enum class ContactModel { points, regions, mesh, sheet, nothing, oriented, resting_points };
 
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;

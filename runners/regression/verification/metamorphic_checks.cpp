@@ -56,10 +56,19 @@ class Subject {
     const auto renderer = changed->build(run.scene.haptic_rate_hz, *run.kernels);
     return remote_touch::play(run.scene, *renderer);
   }
-  // A renderer of tools that knows regions alone needs a scene with some.
-  bool can_touch(const MetamorphicScene& scene) const {
-    return !is_tool() || entry_.contact_model != ContactModel::regions ||
-           !scene.views.front().cloud.fixture_radius_m.empty();
+  // Whether the scene determines what a renderer of tools answers.
+  bool is_for(const MetamorphicScene& scene) const {
+    if (!is_tool()) return true;
+    switch (entry_.contact_model) {
+      case ContactModel::regions:
+        return !scene.views.front().cloud.fixture_radius_m.empty();
+      case ContactModel::resting_points:
+        return scene.cloud_rests;
+      case ContactModel::sheet:
+        return !scene.has_crease;
+      default:
+        return true;
+    }
   }
   DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
   bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
@@ -155,7 +164,7 @@ std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
   std::vector<CheckResult> results;
   for (const MetamorphicScene& scene : scenes) {
     if (stop && *stop) throw Interrupted{};
-    if (!subject.can_touch(scene)) continue;
+    if (!subject.is_for(scene)) continue;
     for (CheckResult& result : verify_scene(subject, scene)) results.push_back(std::move(result));
   }
   return results;

@@ -35,6 +35,7 @@ MetamorphicScene tool_groove(const Kernels& kernels) {
                      {80, {0.002, 0.012, -0.004}, {0.05, 1.5, 0.04}},
                      {320, {-0.003, 0.008, 0.005}, {0.1, 1.3, 0.1}}},
                     smooth_sheet(groove_surface, kernels));
+  scene.has_crease = true;
   place(scene, kSteepTilt, {-0.04, 0.02, -0.01});
   return scene;
 }

@@ -116,6 +116,7 @@ bool carries_unit(const std::string& name) {
                                               "colour_noise",
                                               "approach_axis",
                                               "max_tool_leaves",
+                                              "max_patches",
                                               "min_points",
                                               "button",
                                               "fraction",
