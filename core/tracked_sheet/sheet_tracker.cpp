@@ -113,6 +113,17 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   fit_.fit(0.3 * sigma_, map_);
 }
 
+// Brings the origin back to a sheet that has moved away from it, unforeseen, so far that it would soon leave
+// the region.
+void SheetTracker::level() {
+  constexpr double kFar = 2;
+  const double height = PatchFrame::rounded(map_.height(0, 0));
+  if (!(std::abs(height) > kFar)) return;
+  region_.frame.move_along_normal(height);
+  map_.add_plane(-height, 0, 0);
+  for (PatchPlace& q : sheet_) q.h -= height;
+}
+
 // From the last two shifts; of their change as much as is not noise.
 double SheetTracker::predicted_shift(double interval_s) const {
   if (age_ == 0 || !(interval_s_ > 0)) return 0;
@@ -314,6 +325,7 @@ SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
   if (!tracks_ || is_of_other_surface(proxy)) return reacquire(proxy.p_W);
   before_.known = false;
   recentre(proxy.p_W);
+  level();
   gather(half_height());
   map_.extend(6);
   find_members(patch().place(proxy.p_W));

@@ -89,6 +89,7 @@ class SheetTracker {
   void restart(const Vec3& proxy_W);
   bool is_of_other_surface(const ProxyPlace& proxy) const;
   void recentre(const Vec3& middle_W);
+  void level();
   double predicted_shift(double interval_s) const;
   bool follow(const Vec3& proxy_W);
   double find_members(const PatchPlace& proxy);

@@ -13,9 +13,11 @@ namespace {
 constexpr double kGroupRadius = 6.5;  // of the tool's places that one patch is for
 constexpr double kShownBeyond = 0.8;  // so far around the tool points have to be of the patch
 constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;   // of the tool until patches are queried anew
-constexpr double kOnSheet = 0.5;      // a contact further from a sheet is not with it
-constexpr double kAlike = 0.7;        // cosine between a contact's normal and that of its sheet
+                 kContactReach = 3;      // of the tool until patches are queried anew
+constexpr double kOnSheet = 0.5;         // a contact further from a sheet is not with it
+constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
+constexpr double kSameDirection = 0.95;  // the same between contacts with a face
+constexpr int kEnoughAlike = 3;
 constexpr double kSameSheet = 0.85;   // the same between two patches of one sheet
 constexpr double kLeft = 2;           // a contact's patch ends when the tool is further away
 constexpr double kBehind = -0.5;      // a place deeper than this was not in front of the sheet
@@ -96,28 +98,40 @@ ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, b
   return place;
 }
 
-// Which patches the contacts are with.
+// The number of the patch that a contact is with; -1: none.
+int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) const {
+  const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
+  double nearest = std::numeric_limits<double>::infinity();
+  int of = -1;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    if (!explains(patches_[i], p_W, n_W)) continue;
+    const double distance = std::abs(patches_[i].tracker->clearance(p_W));
+    if (distance < nearest) nearest = distance, of = static_cast<int>(i);
+  }
+  return of;
+}
+
 void SheetPatches::count_contacts(const ToolHold& hold) {
   for (Patch& patch : patches_) patch.contacts = 0;
-  unexplained_.found = false;
-  std::size_t counted = 0;
-  for (const ToolContact& contact : hold.contacts) {
-    int of = -1;
-    if (contact.depth_m >= -kTouching_m) {
-      const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < patches_.size(); ++i) {
-        if (!explains(patches_[i], p_W, n_W)) continue;
-        const double distance = std::abs(patches_[i].tracker->clearance(p_W));
-        if (distance < nearest) nearest = distance, of = static_cast<int>(i);
-      }
-      if (of >= 0)
-        ++patches_[static_cast<std::size_t>(of)].contacts;
-      else if (!unexplained_.found || contact.depth_m > unexplained_.depth_m)
-        unexplained_ = {true, p_W, n_W, contact.depth_m};
-    }
-    patch_of_[counted++] = of;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const bool touches = hold.contacts[k].depth_m >= -kTouching_m;
+    patch_of_[k] = touches ? patch_of(hold, hold.contacts[k]) : -1;
+    if (patch_of_[k] >= 0) ++patches_[static_cast<std::size_t>(patch_of_[k])].contacts;
   }
+}
+
+// Contacts at an edge of the tool have directions between those of its faces: several have to be alike.
+void SheetPatches::count_unexplained(const ToolHold& hold) {
+  unexplained_.alike = 0, unexplained_.depth_m = -kTouching_m;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const ToolContact& contact = hold.contacts[k];
+    if (patch_of_[k] >= 0 || contact.depth_m < unexplained_.depth_m) continue;
+    unexplained_ = {1, world(hold.pose, contact.r_T), hold.pose.q_WT * contact.n_T, contact.depth_m};
+  }
+  if (unexplained_.alike == 0) return;
+  unexplained_.alike = 0;
+  for (const ToolContact& contact : hold.contacts)
+    unexplained_.alike += (hold.pose.q_WT * contact.n_T).dot(unexplained_.n_W) >= kSameDirection ? 1 : 0;
 }
 
 // --- a new frame ---
@@ -143,9 +157,15 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
   SheetTracker& tracker = *unused->tracker;
   tracker.keep(frame);
   tracker.reacquire(unexplained_.p_W + unit_m_ * unexplained_.n_W);
-  unused->in_use = tracker.tracks() && tracker.region().frame.normal_W().dot(unexplained_.n_W) >= kAlike;
-  unused->missing = false, unused->contacts = 0;
-  unused->captured_s = captured_s;
+  unused->missing = false, unused->contacts = 0, unused->captured_s = captured_s;
+  if (!tracker.tracks()) return;
+  const Vec3 n_W = tracker.region().frame.normal_W(), foot_W = tracker.region().frame.origin_W();
+  const bool is_known = std::any_of(patches_.begin(), patches_.end(), [&](const Patch& other) {
+    return other.in_use && other.tracker->tracks() &&
+           other.tracker->region().frame.normal_W().dot(n_W) >= kSameSheet &&
+           std::abs(other.tracker->clearance(foot_W)) <= 2 * kOnSheet;
+  });
+  unused->in_use = !is_known && n_W.dot(unexplained_.n_W) >= kSameSheet;
 }
 
 // How the surfaces that hold the tool take it along. Their velocity goes on as it was, but for what noise
@@ -188,6 +208,7 @@ SheetPatches::Update SheetPatches::on_frame(const std::shared_ptr<const Neighbou
                                             const ToolHold& hold, double captured_s) {
   if (patch_of_.size() < hold.contacts.size()) patch_of_.resize(hold.contacts.size());
   count_contacts(hold);
+  count_unexplained(hold);
   bool seen = false, missing = false;
   for (Patch& patch : patches_) {
     if (!patch.in_use) continue;
@@ -203,14 +224,13 @@ SheetPatches::Update SheetPatches::on_frame(const std::shared_ptr<const Neighbou
     rate_per_s_.setZero();
   ToolPose pose =
       update.motion.displacement.isZero(0) ? hold.pose : moved(hold.pose, update.motion.displacement);
-  for (Patch& patch : patches_) {
-    if (!patch.in_use) continue;
-    note_query(patch, pose);
-    if (!patch.tracker->tracks() || holds(patch, hold.held)) continue;
+  for (const Patch& patch : patches_) {
+    if (!patch.in_use || !patch.tracker->tracks() || holds(patch, hold.held)) continue;
     const Vec3 out_m = out_of_swept(patch, pose, hold.pose);
     pose.p_W += out_m, update.motion.displacement.head<3>() += out_m;
   }
-  if (unexplained_.found) start_patch(frame, captured_s);
+  for (Patch& patch : patches_) note_query(patch, pose);
+  if (unexplained_.alike >= kEnoughAlike) start_patch(frame, captured_s);
   return update;
 }
 

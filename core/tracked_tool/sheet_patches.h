@@ -82,7 +82,9 @@ class SheetPatches final : public PointChange {
   Lowest lowest(const Patch& patch, const ToolPose& pose) const;
   ProxyPlace proxy_place(const Patch& patch, const ToolPose& pose, bool held) const;
   static bool holds(const Patch& patch, bool held) { return held && patch.contacts > 0; }
+  int patch_of(const ToolHold& hold, const ToolContact& contact) const;
   void count_contacts(const ToolHold& hold);
+  void count_unexplained(const ToolHold& hold);
   void follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
               double captured_s);
   void start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
@@ -95,9 +97,9 @@ class SheetPatches final : public PointChange {
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;
   Vector6 rate_per_s_ = Vector6::Zero();  // of a held tool, in the frame before
-  // The deepest contact that no patch explains: where another patch is to begin.
+  // The deepest contact that no patch explains, and how many are like it: where another patch is to begin.
   struct {
-    bool found = false;
+    int alike = 0;
     Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
     double depth_m = 0;
   } unexplained_;
