@@ -18,8 +18,9 @@ constexpr double kOnSheet = 0.5;         // a contact further from a sheet is no
 constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
 constexpr double kSameDirection = 0.95;  // the same between contacts with a face
 constexpr int kEnoughAlike = 3;
-constexpr double kSameSheet = 0.85;   // the same between two patches of one sheet
-constexpr double kLeft = 2;           // a contact's patch ends when the tool is further away
+constexpr double kSameSheet = 0.85;  // the same between two patches of one sheet
+constexpr double kLeft = 2;          // a contact's patch ends when the tool is further away
+constexpr double kNearlyAsLow = 0.5;
 constexpr double kBehind = -0.5;      // a place deeper than this was not in front of the sheet
 constexpr double kLever = 2;          // see CarriedMotion
 constexpr double kTouching_m = 5e-4;  // contacts further from the tool do not hold it
@@ -72,17 +73,26 @@ bool SheetPatches::explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W
 }
 
 SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& pose) const {
-  Lowest lowest;
   const PatchRegion& region = patch.tracker->region();
   const HeightMap& map = patch.tracker->map();
-  for (const Vec3& p_T : patch.places_T) {
-    const Vec3 p_W = world(pose, p_T);
-    const PatchPlace p = region.frame.place(p_W);
-    if (!(p.u * p.u + p.v * p.v < region.radius * region.radius) || !map.covers(p.u, p.v)) continue;
-    const double clearance = p.h - map.height(p.u, p.v);
-    if (!lowest.found || clearance < lowest.clearance) lowest = {true, clearance, p_W};
-  }
-  return lowest;
+  const auto each = [&](auto&& use) {
+    for (const Vec3& p_T : patch.places_T) {
+      const Vec3 p_W = world(pose, p_T);
+      const PatchPlace p = region.frame.place(p_W);
+      if (p.u * p.u + p.v * p.v < region.radius * region.radius && map.covers(p.u, p.v))
+        use(p_W, p.h - map.height(p.u, p.v));
+    }
+  };
+  Lowest low;
+  each([&](const Vec3&, double clearance) {
+    if (!low.found || clearance < low.clearance) low.found = true, low.clearance = clearance;
+  });
+  double count = 0;
+  each([&](const Vec3& p_W, double clearance) {
+    if (clearance <= low.clearance + kNearlyAsLow) low.p_W += p_W, count += 1;
+  });
+  if (low.found) low.p_W /= count;
+  return low;
 }
 
 // A contact radius above the lowest place, over the middle of the group if the sheet is seen there.
@@ -146,7 +156,24 @@ void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSea
   patch.interval_s = interval_s, patch.captured_s = captured_s;
   if (patch.of_group || holds(patch, hold.held)) return;
   const Lowest low = patch.tracker->tracks() ? lowest(patch, hold.pose) : Lowest{};
-  patch.in_use = low.found && low.clearance <= kLeft;
+  patch.in_use = low.found && low.clearance <= kLeft &&
+                 patch.tracker->region().frame.normal_W().dot(patch.normal_W) >= kSameSheet;
+}
+
+// Whether a sheet that was begun at a contact is a surface there and faces the tool: points beside an edge of
+// the tool push it sideways, too, and so do those of a corner.
+bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
+  constexpr double kAround = 3, kEnough = 0.4, kSteepest = 0.35;
+  const HeightMap& map = tracker.map();
+  double nodes = 0, covered = 0;
+  for (int j = 0; j < HeightMap::kNodes; ++j)
+    for (int i = 0; i < HeightMap::kNodes; ++i) {
+      if (std::hypot(HeightMap::node_at(i), HeightMap::node_at(j)) > kAround) continue;
+      nodes += 1, covered += map.node(i, j).covered ? 1 : 0;
+    }
+  const HeightMap::Slopes slopes = map.mean_slopes(0, 0, kAround);
+  return covered >= kEnough * nodes && std::hypot(slopes.u, slopes.v) <= kSteepest &&
+         tracker.sigma() <= 1.4 * sigma + 0.05;
 }
 
 // Where a contact is with none of the sheets that are tracked.
@@ -155,17 +182,17 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
       std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
   if (unused == patches_.end()) return;
   SheetTracker& tracker = *unused->tracker;
+  const double sigma = patches_.front().tracker->tracks() ? patches_.front().tracker->sigma() : 0;
   tracker.keep(frame);
-  tracker.reacquire(unexplained_.p_W + unit_m_ * unexplained_.n_W);
+  tracker.begin(unexplained_.p_W, unexplained_.n_W, sigma);
   unused->missing = false, unused->contacts = 0, unused->captured_s = captured_s;
-  if (!tracker.tracks()) return;
-  const Vec3 n_W = tracker.region().frame.normal_W(), foot_W = tracker.region().frame.origin_W();
+  unused->normal_W = unexplained_.n_W;
   const bool is_known = std::any_of(patches_.begin(), patches_.end(), [&](const Patch& other) {
     return other.in_use && other.tracker->tracks() &&
-           other.tracker->region().frame.normal_W().dot(n_W) >= kSameSheet &&
-           std::abs(other.tracker->clearance(foot_W)) <= 2 * kOnSheet;
+           other.tracker->region().frame.normal_W().dot(unexplained_.n_W) >= kSameSheet &&
+           std::abs(other.tracker->clearance(unexplained_.p_W)) <= 1 + 3.5 * sigma;
   });
-  unused->in_use = !is_known && n_W.dot(unexplained_.n_W) >= kSameSheet;
+  unused->in_use = !is_known && is_face(tracker, sigma);
 }
 
 // How the surfaces that hold the tool take it along. Their velocity goes on as it was, but for what noise

@@ -68,6 +68,7 @@ class SheetPatches final : public PointChange {
     double reach_m = 0;     // how far the tool may go before the patch shows too little
     bool of_group = false;  // else of a contact
     bool in_use = false;
+    Vec3 normal_W = Vec3::Zero();           // of that contact
     int contacts = 0;                       // that it explains
     bool missing = false;                   // not seen in the newest frame
     double captured_s = 0, interval_s = 0;  // of the newest frame that shows it, and since the one before
@@ -75,8 +76,8 @@ class SheetPatches final : public PointChange {
   };
   struct Lowest {
     bool found = false;
-    double clearance = 0;  // above the sheet, units
-    Vec3 p_W = Vec3::Zero();
+    double clearance = 0;     // above the sheet, units
+    Vec3 p_W = Vec3::Zero();  // the mean of the places that are nearly as low
   };
   bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
   Lowest lowest(const Patch& patch, const ToolPose& pose) const;
@@ -87,6 +88,7 @@ class SheetPatches final : public PointChange {
   void count_unexplained(const ToolHold& hold);
   void follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
               double captured_s);
+  bool is_face(const SheetTracker& tracker, double sigma) const;
   void start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
   ToolSurfaceMotion carried(const ToolHold& hold);
   Vec3 out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const;
