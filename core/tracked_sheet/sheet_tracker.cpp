@@ -58,23 +58,42 @@ void SheetTracker::gather(double half_height) {
   points_.take(*gathered_, region_);
 }
 
-void SheetTracker::restart(const Vec3& proxy_W) {
+void SheetTracker::forget() {
   age_ = missed_ = 0;
-  before_.known = false;
+  before_.known = keeps_normal_ = false;
   shift_ = shift_before_ = 0;
   sheet_.clear();
-  const auto found = find_sheet(*newest_, proxy_W, unit_m_, kernels_, {*gathered_, points_, fit_});
-  tracks_ = found.has_value();
-  if (!tracks_) return;
-  region_ = {found->frame, HeightMap::kHalf, 0};
-  sigma_ = found->sigma;
+}
+
+// From the middle of the patch outwards.
+void SheetTracker::grow(const PatchFrame& frame, double known, const Vec3& proxy_W) {
+  region_ = {frame, HeightMap::kHalf, 0};
   gather(half_height());
-  map_.set_plane(0, 0, 0, found->known + 1);
+  map_.set_plane(0, 0, 0, known + 1);
   for (int ring = 0; ring < 4; ++ring) {
     map_.extend(3);
     find_members(patch().place(proxy_W));
     fit_map(1);
   }
+}
+
+void SheetTracker::restart(const Vec3& proxy_W) {
+  forget();
+  const auto found = find_sheet(*newest_, proxy_W, unit_m_, kernels_, {*gathered_, points_, fit_});
+  tracks_ = found.has_value();
+  if (!tracks_) return;
+  sigma_ = found->sigma;
+  grow(found->frame, found->known, proxy_W);
+}
+
+void SheetTracker::begin(const Vec3& foot_W, const Vec3& normal_W, double sigma) {
+  constexpr double kKnown = 2;
+  forget();
+  tracks_ = keeps_normal_ = true;
+  sigma_ = sigma;
+  const Vec3 proxy_W = foot_W + unit_m_ * normal_W;
+  grow(PatchFrame(foot_W, normal_W, unit_m_), kKnown, proxy_W);
+  show(proxy_W);
 }
 
 // By the hand's motion, or because the tracked sheet is not what holds the proxy.
@@ -96,9 +115,10 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   const HeightMap::Slopes slopes = map_.mean_slopes(p.u, p.v, kMiddle);
   const double steep = std::hypot(slopes.u, slopes.v);
   if (!std::isfinite(height + steep)) return;
-  if (p.u * p.u + p.v * p.v < kOff * kOff && steep < kSteep) return;
+  if (p.u * p.u + p.v * p.v < kOff * kOff && (steep < kSteep || keeps_normal_)) return;
   const PatchFrame before = patch();
-  const Vec3 normal_W = steep < kTooSteep ? before.normal_W(slopes.u, slopes.v) : before.normal_W();
+  const bool turns = steep < kTooSteep && !keeps_normal_;
+  const Vec3 normal_W = turns ? before.normal_W(slopes.u, slopes.v) : before.normal_W();
   region_.frame = PatchFrame(before.world({p.u, p.v, height}), normal_W, unit_m_);
   points_.clear();
   for (PatchPlace& q : sheet_) q = patch().place(before.world(q));
@@ -108,6 +128,17 @@ void SheetTracker::recentre(const Vec3& middle_W) {
   for (const PatchPlace& q : sheet_) points_.add(q, true);
   fit_.take(points_, fit_trend(points_, std::max(0.3 * sigma_, kUntouched)));
   fit_.fit(0.3 * sigma_, map_);
+}
+
+// Brings the origin back to a sheet that has moved away from it, unforeseen, so far that it would soon leave
+// the region.
+void SheetTracker::level() {
+  constexpr double kFar = 2;
+  const double height = PatchFrame::rounded(map_.height(0, 0));
+  if (!(std::abs(height) > kFar)) return;
+  region_.frame.move_along_normal(height);
+  map_.add_plane(-height, 0, 0);
+  for (PatchPlace& q : sheet_) q.h -= height;
 }
 
 // From the last two shifts; of their change as much as is not noise.
@@ -311,6 +342,7 @@ SheetUpdate SheetTracker::requery(const ProxyPlace& proxy) {
   if (!tracks_ || is_of_other_surface(proxy)) return reacquire(proxy.p_W);
   before_.known = false;
   recentre(proxy.p_W);
+  level();
   gather(half_height());
   map_.extend(6);
   find_members(patch().place(proxy.p_W));

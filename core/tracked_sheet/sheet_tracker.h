@@ -59,6 +59,9 @@ class SheetTracker {
   bool must_requery(const Vec3& proxy_W) const;
   // Gives up a missing sheet and searches for one in the newest frame. No allocation.
   SheetUpdate reacquire(const Vec3& proxy_W);
+  // Or begins with a sheet that is known to pass near a place with this normal, which the patch then keeps.
+  // Its noise is about sigma, contact radii. No allocation.
+  void begin(const Vec3& foot_W, const Vec3& normal_W, double sigma);
   // The newest frame's points around the proxy's new place. No allocation.
   SheetUpdate requery(const ProxyPlace& proxy);
 
@@ -86,9 +89,12 @@ class SheetTracker {
   const PatchFrame& patch() const { return region_.frame; }
   void swap_buffers();
   double half_height() const;
+  void forget();
   void restart(const Vec3& proxy_W);
+  void grow(const PatchFrame& frame, double known, const Vec3& proxy_W);
   bool is_of_other_surface(const ProxyPlace& proxy) const;
   void recentre(const Vec3& middle_W);
+  void level();
   double predicted_shift(double interval_s) const;
   bool follow(const Vec3& proxy_W);
   double find_members(const PatchPlace& proxy);
@@ -110,6 +116,7 @@ class SheetTracker {
   int present_ = 0;
 
   bool tracks_ = false;
+  bool keeps_normal_ = false;
   PatchRegion region_;
   HeightMap map_;
   struct {

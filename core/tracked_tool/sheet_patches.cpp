@@ -13,11 +13,14 @@ namespace {
 constexpr double kGroupRadius = 6.5;  // of the tool's places that one patch is for
 constexpr double kShownBeyond = 0.8;  // so far around the tool points have to be of the patch
 constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;   // of the tool until patches are queried anew
-constexpr double kOnSheet = 0.5;      // a contact further from a sheet is not with it
-constexpr double kAlike = 0.7;        // cosine between a contact's normal and that of its sheet
-constexpr double kSameSheet = 0.85;   // the same between two patches of one sheet
-constexpr double kLeft = 2;           // a contact's patch ends when the tool is further away
+                 kContactReach = 3;      // of the tool until patches are queried anew
+constexpr double kOnSheet = 0.5;         // a contact further from a sheet is not with it
+constexpr double kAlike = 0.7;           // cosine between a contact's normal and that of its sheet
+constexpr double kSameDirection = 0.95;  // the same between contacts with a face
+constexpr int kEnoughAlike = 3;
+constexpr double kSameSheet = 0.85;  // the same between two patches of one sheet
+constexpr double kLeft = 2;          // a contact's patch ends when the tool is further away
+constexpr double kNearlyAsLow = 0.5;
 constexpr double kBehind = -0.5;      // a place deeper than this was not in front of the sheet
 constexpr double kLever = 2;          // see CarriedMotion
 constexpr double kTouching_m = 5e-4;  // contacts further from the tool do not hold it
@@ -70,17 +73,26 @@ bool SheetPatches::explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W
 }
 
 SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& pose) const {
-  Lowest lowest;
   const PatchRegion& region = patch.tracker->region();
   const HeightMap& map = patch.tracker->map();
-  for (const Vec3& p_T : patch.places_T) {
-    const Vec3 p_W = world(pose, p_T);
-    const PatchPlace p = region.frame.place(p_W);
-    if (!(p.u * p.u + p.v * p.v < region.radius * region.radius) || !map.covers(p.u, p.v)) continue;
-    const double clearance = p.h - map.height(p.u, p.v);
-    if (!lowest.found || clearance < lowest.clearance) lowest = {true, clearance, p_W};
-  }
-  return lowest;
+  const auto each = [&](auto&& use) {
+    for (const Vec3& p_T : patch.places_T) {
+      const Vec3 p_W = world(pose, p_T);
+      const PatchPlace p = region.frame.place(p_W);
+      if (p.u * p.u + p.v * p.v < region.radius * region.radius && map.covers(p.u, p.v))
+        use(p_W, p.h - map.height(p.u, p.v));
+    }
+  };
+  Lowest low;
+  each([&](const Vec3&, double clearance) {
+    if (!low.found || clearance < low.clearance) low.found = true, low.clearance = clearance;
+  });
+  double count = 0;
+  each([&](const Vec3& p_W, double clearance) {
+    if (clearance <= low.clearance + kNearlyAsLow) low.p_W += p_W, count += 1;
+  });
+  if (low.found) low.p_W /= count;
+  return low;
 }
 
 // A contact radius above the lowest place, over the middle of the group if the sheet is seen there.
@@ -96,28 +108,40 @@ ProxyPlace SheetPatches::proxy_place(const Patch& patch, const ToolPose& pose, b
   return place;
 }
 
-// Which patches the contacts are with.
+// The number of the patch that a contact is with; -1: none.
+int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) const {
+  const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
+  double nearest = std::numeric_limits<double>::infinity();
+  int of = -1;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    if (!explains(patches_[i], p_W, n_W)) continue;
+    const double distance = std::abs(patches_[i].tracker->clearance(p_W));
+    if (distance < nearest) nearest = distance, of = static_cast<int>(i);
+  }
+  return of;
+}
+
 void SheetPatches::count_contacts(const ToolHold& hold) {
   for (Patch& patch : patches_) patch.contacts = 0;
-  unexplained_.found = false;
-  std::size_t counted = 0;
-  for (const ToolContact& contact : hold.contacts) {
-    int of = -1;
-    if (contact.depth_m >= -kTouching_m) {
-      const Vec3 p_W = world(hold.pose, contact.r_T), n_W = hold.pose.q_WT * contact.n_T;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < patches_.size(); ++i) {
-        if (!explains(patches_[i], p_W, n_W)) continue;
-        const double distance = std::abs(patches_[i].tracker->clearance(p_W));
-        if (distance < nearest) nearest = distance, of = static_cast<int>(i);
-      }
-      if (of >= 0)
-        ++patches_[static_cast<std::size_t>(of)].contacts;
-      else if (!unexplained_.found || contact.depth_m > unexplained_.depth_m)
-        unexplained_ = {true, p_W, n_W, contact.depth_m};
-    }
-    patch_of_[counted++] = of;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const bool touches = hold.contacts[k].depth_m >= -kTouching_m;
+    patch_of_[k] = touches ? patch_of(hold, hold.contacts[k]) : -1;
+    if (patch_of_[k] >= 0) ++patches_[static_cast<std::size_t>(patch_of_[k])].contacts;
   }
+}
+
+// Contacts at an edge of the tool have directions between those of its faces: several have to be alike.
+void SheetPatches::count_unexplained(const ToolHold& hold) {
+  unexplained_.alike = 0, unexplained_.depth_m = -kTouching_m;
+  for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
+    const ToolContact& contact = hold.contacts[k];
+    if (patch_of_[k] >= 0 || contact.depth_m < unexplained_.depth_m) continue;
+    unexplained_ = {1, world(hold.pose, contact.r_T), hold.pose.q_WT * contact.n_T, contact.depth_m};
+  }
+  if (unexplained_.alike == 0) return;
+  unexplained_.alike = 0;
+  for (const ToolContact& contact : hold.contacts)
+    unexplained_.alike += (hold.pose.q_WT * contact.n_T).dot(unexplained_.n_W) >= kSameDirection ? 1 : 0;
 }
 
 // --- a new frame ---
@@ -132,7 +156,24 @@ void SheetPatches::follow(Patch& patch, const std::shared_ptr<const NeighbourSea
   patch.interval_s = interval_s, patch.captured_s = captured_s;
   if (patch.of_group || holds(patch, hold.held)) return;
   const Lowest low = patch.tracker->tracks() ? lowest(patch, hold.pose) : Lowest{};
-  patch.in_use = low.found && low.clearance <= kLeft;
+  patch.in_use = low.found && low.clearance <= kLeft &&
+                 patch.tracker->region().frame.normal_W().dot(patch.normal_W) >= kSameSheet;
+}
+
+// Whether a sheet that was begun at a contact is a surface there and faces the tool: points beside an edge of
+// the tool push it sideways, too, and so do those of a corner.
+bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
+  constexpr double kAround = 3, kEnough = 0.4, kSteepest = 0.35;
+  const HeightMap& map = tracker.map();
+  double nodes = 0, covered = 0;
+  for (int j = 0; j < HeightMap::kNodes; ++j)
+    for (int i = 0; i < HeightMap::kNodes; ++i) {
+      if (std::hypot(HeightMap::node_at(i), HeightMap::node_at(j)) > kAround) continue;
+      nodes += 1, covered += map.node(i, j).covered ? 1 : 0;
+    }
+  const HeightMap::Slopes slopes = map.mean_slopes(0, 0, kAround);
+  return covered >= kEnough * nodes && std::hypot(slopes.u, slopes.v) <= kSteepest &&
+         tracker.sigma() <= 1.4 * sigma + 0.05;
 }
 
 // Where a contact is with none of the sheets that are tracked.
@@ -141,11 +182,17 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
       std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
   if (unused == patches_.end()) return;
   SheetTracker& tracker = *unused->tracker;
+  const double sigma = patches_.front().tracker->tracks() ? patches_.front().tracker->sigma() : 0;
   tracker.keep(frame);
-  tracker.reacquire(unexplained_.p_W + unit_m_ * unexplained_.n_W);
-  unused->in_use = tracker.tracks() && tracker.region().frame.normal_W().dot(unexplained_.n_W) >= kAlike;
-  unused->missing = false, unused->contacts = 0;
-  unused->captured_s = captured_s;
+  tracker.begin(unexplained_.p_W, unexplained_.n_W, sigma);
+  unused->missing = false, unused->contacts = 0, unused->captured_s = captured_s;
+  unused->normal_W = unexplained_.n_W;
+  const bool is_known = std::any_of(patches_.begin(), patches_.end(), [&](const Patch& other) {
+    return other.in_use && other.tracker->tracks() &&
+           other.tracker->region().frame.normal_W().dot(unexplained_.n_W) >= kSameSheet &&
+           std::abs(other.tracker->clearance(unexplained_.p_W)) <= 1 + 3.5 * sigma;
+  });
+  unused->in_use = !is_known && is_face(tracker, sigma);
 }
 
 // How the surfaces that hold the tool take it along. Their velocity goes on as it was, but for what noise
@@ -188,6 +235,7 @@ SheetPatches::Update SheetPatches::on_frame(const std::shared_ptr<const Neighbou
                                             const ToolHold& hold, double captured_s) {
   if (patch_of_.size() < hold.contacts.size()) patch_of_.resize(hold.contacts.size());
   count_contacts(hold);
+  count_unexplained(hold);
   bool seen = false, missing = false;
   for (Patch& patch : patches_) {
     if (!patch.in_use) continue;
@@ -203,14 +251,13 @@ SheetPatches::Update SheetPatches::on_frame(const std::shared_ptr<const Neighbou
     rate_per_s_.setZero();
   ToolPose pose =
       update.motion.displacement.isZero(0) ? hold.pose : moved(hold.pose, update.motion.displacement);
-  for (Patch& patch : patches_) {
-    if (!patch.in_use) continue;
-    note_query(patch, pose);
-    if (!patch.tracker->tracks() || holds(patch, hold.held)) continue;
+  for (const Patch& patch : patches_) {
+    if (!patch.in_use || !patch.tracker->tracks() || holds(patch, hold.held)) continue;
     const Vec3 out_m = out_of_swept(patch, pose, hold.pose);
     pose.p_W += out_m, update.motion.displacement.head<3>() += out_m;
   }
-  if (unexplained_.found) start_patch(frame, captured_s);
+  for (Patch& patch : patches_) note_query(patch, pose);
+  if (unexplained_.alike >= kEnoughAlike) start_patch(frame, captured_s);
   return update;
 }
 

@@ -68,6 +68,7 @@ class SheetPatches final : public PointChange {
     double reach_m = 0;     // how far the tool may go before the patch shows too little
     bool of_group = false;  // else of a contact
     bool in_use = false;
+    Vec3 normal_W = Vec3::Zero();           // of that contact
     int contacts = 0;                       // that it explains
     bool missing = false;                   // not seen in the newest frame
     double captured_s = 0, interval_s = 0;  // of the newest frame that shows it, and since the one before
@@ -75,16 +76,19 @@ class SheetPatches final : public PointChange {
   };
   struct Lowest {
     bool found = false;
-    double clearance = 0;  // above the sheet, units
-    Vec3 p_W = Vec3::Zero();
+    double clearance = 0;     // above the sheet, units
+    Vec3 p_W = Vec3::Zero();  // the mean of the places that are nearly as low
   };
   bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
   Lowest lowest(const Patch& patch, const ToolPose& pose) const;
   ProxyPlace proxy_place(const Patch& patch, const ToolPose& pose, bool held) const;
   static bool holds(const Patch& patch, bool held) { return held && patch.contacts > 0; }
+  int patch_of(const ToolHold& hold, const ToolContact& contact) const;
   void count_contacts(const ToolHold& hold);
+  void count_unexplained(const ToolHold& hold);
   void follow(Patch& patch, const std::shared_ptr<const NeighbourSearch>& frame, const ToolHold& hold,
               double captured_s);
+  bool is_face(const SheetTracker& tracker, double sigma) const;
   void start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s);
   ToolSurfaceMotion carried(const ToolHold& hold);
   Vec3 out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const;
@@ -95,9 +99,9 @@ class SheetPatches final : public PointChange {
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;
   Vector6 rate_per_s_ = Vector6::Zero();  // of a held tool, in the frame before
-  // The deepest contact that no patch explains: where another patch is to begin.
+  // The deepest contact that no patch explains, and how many are like it: where another patch is to begin.
   struct {
-    bool found = false;
+    int alike = 0;
     Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
     double depth_m = 0;
   } unexplained_;

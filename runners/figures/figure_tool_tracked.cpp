@@ -94,10 +94,10 @@ struct ToolJump {
 // Squares of the change at a frame beyond that of the tick before, so that an even rise counts as none; over
 // the updates at which the plate is held before and after, from 0.5 s on.
 ToolJump squared_jumps(const Trace& trace) {
-  constexpr double kJumpsFrom_s = 0.5;
+  constexpr double kFrom_s = 0.5;
   ToolJump sum;
   for (std::size_t i = 2; i < trace.length(); ++i) {
-    if (trace.time_s[i] < kJumpsFrom_s || !trace.frame_update(i)) continue;
+    if (trace.time_s[i] < kFrom_s || !trace.frame_update(i)) continue;
     if (trace.force_N[i].isZero(0) || trace.force_N[i - 1].isZero(0)) continue;
     const auto beyond = [i](const std::vector<Vec3>& rows) {
       return (rows[i] - 2 * rows[i - 1] + rows[i - 2]).squaredNorm();

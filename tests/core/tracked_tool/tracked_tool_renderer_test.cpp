@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -143,42 +144,57 @@ TEST(TrackedTool, ATiltingPlaneTakesThePlateAlong) {
   }
 }
 
-// How the force goes on between frames: on a plane that rises and turns evenly it has no step at a frame.
+// How the force goes on between frames: on a plane that rises by 5 mm a frame with the hand 8 mm below it, it
+// has no step at a frame; nor has the torque on one that turns, too. There the plate slides down the slope,
+// so the force along it changes.
 TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
-  TrackedToolRenderer r = renderer();
-  Panels panels(0);
-  RenderOutput last;
-  for (int frame = 0; frame < 22; ++frame) {
-    const int moved = std::max(0, frame - 8);
-    const Vec3 middle_W(0, 0.005 * moved, 0);
-    r.on_frame(frame_at(frame, panels.add(middle_W, rotation({0, 0, 0.02 * moved})).take()));
-    const DeviceState hand = approaching(frame, Vec3::UnitY(), device({0, -0.003, 0}));
-    const RenderOutput first = r.step(hand, frame / kFrames_hz);
-    if (frame > 11) {
-      // Of steps of 3 N and 0.011 N m without (4.15); the last tick is 1/30 ms before the frame.
-      EXPECT_LT((first.force_N - last.force_N).norm(), 0.3) << frame;
-      EXPECT_LT((first.tool->torque_Nm - last.tool->torque_Nm).norm(), 0.0015) << frame;
+  for (const double turn_rad : {0.0, 0.02}) {
+    TrackedToolRenderer r = renderer();
+    Panels panels(0);
+    RenderOutput last;
+    for (int tick = 0, frame = -1; tick < 700; ++tick) {
+      const double time_s = 0.001 * tick;
+      const bool is_new = static_cast<int>(time_s * kFrames_hz) > frame;
+      const auto rise_m = [](double moved) { return 0.005 * std::max(0.0, moved - 8); };
+      if (is_new) {
+        ++frame;
+        panels.add({0, rise_m(frame), 0}, rotation({0, 0, turn_rad * std::max(0, frame - 8)}));
+        r.on_frame(frame_at(frame, panels.take()));
+      }
+      const double hand_m = std::max(0.03 - 0.2 * time_s, -0.003) + rise_m(time_s * kFrames_hz);
+      const RenderOutput out = r.step(device({0, hand_m, 0}), time_s);
+      if (is_new && frame > 11) {  // steps of 3 N and 0.011 N m without (4.15)
+        if (turn_rad == 0) {
+          EXPECT_LT((out.force_N - last.force_N).norm(), 0.25) << frame;
+        }
+        EXPECT_LT((out.tool->torque_Nm - last.tool->torque_Nm).norm(), 0.0015) << frame;
+      }
+      last = out;
     }
-    last = ticks(r, frame, hand);
   }
 }
 
-// A floor and a wall, both noisy; both move. The tool stays at its distance from both.
+// A floor and a wall, both noisy; both move. The tool stays at its distance from both, but for single frames in
+// which a point of the corner that is on neither sheet holds it, by up to 3.5 sigma.
 TEST(TrackedTool, AFloorAndAWallAreTwoSheets) {
+  const double sigma_m = 0.2 * kUnit_m;
   TrackedToolRenderer r = renderer();
-  Panels panels(0.2 * kUnit_m, 9);
-  RenderOutput out;
+  Panels panels(sigma_m, 9);
+  std::vector<double> errors_m;
   for (int frame = 0; frame < 34; ++frame) {
     const double moved_m = 0.002 * std::max(0, frame - 14);
     panels.add({0.03, moved_m, 0}, Eigen::Quaterniond::Identity(), 100);
     panels.add({-0.05 + moved_m, 0.06 + moved_m, 0}, rotation({0, 0, -0.5 * M_PI}), 80);
     r.on_frame(frame_at(frame, panels.take()));
     const DeviceState end = device({-0.035 + moved_m, moved_m - 0.003, 0});
-    out = ticks(r, frame, approaching(frame, Vec3(1, 1, 0), end));
+    const RenderOutput out = ticks(r, frame, approaching(frame, Vec3(1, 1, 0), end));
     if (frame < 14) continue;
-    EXPECT_NEAR(out.proxy_W.y() - moved_m, kHalf_m.y(), 6e-4) << frame;
-    EXPECT_NEAR(out.proxy_W.x() - moved_m, -0.05 + kHalf_m.x(), 8e-4) << frame;
+    errors_m.push_back(std::abs(out.proxy_W.y() - moved_m - kHalf_m.y()));
+    errors_m.push_back(std::abs(out.proxy_W.x() - moved_m + 0.05 - kHalf_m.x()));
   }
+  std::sort(errors_m.begin(), errors_m.end());
+  EXPECT_LT(errors_m[errors_m.size() / 2], 0.5 * sigma_m);
+  EXPECT_LT(errors_m.back(), 3.5 * sigma_m);
   int tracked = 0;
   for (std::size_t i = 0; i < r.patches().size(); ++i) tracked += r.patches().tracks(i) ? 1 : 0;
   EXPECT_EQ(tracked, 2);
