@@ -31,7 +31,8 @@ RestingWrench block_on_line(double a_m, double b_m, const EvenSpring& spring, do
     const double middle = 0.5 * (low + high);
     (slope(middle) < 0 ? low : high) = middle;
   }
-  return {{0, k * (touching_m(high) - height_m)}, std::copysign(turning * (high - wanted), angle_rad)};
+  const double torque_Nm = turning * (high - wanted);
+  return {{0, k * (touching_m(high) - height_m)}, angle_rad < 0 ? -torque_Nm : torque_Nm};
 }
 
 // The middle of the ball may be where it is a radius away from both lines; the nearest such place to the hand
