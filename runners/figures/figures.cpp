@@ -48,6 +48,8 @@ constexpr FigureEntry kFigures[] = {
      figure_7_5_recorded, 7},
     {"latency", "how far a forbidden region is violated when frames arrive late, irregularly or not at all",
      figure_latency, 18},
+    {"tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
+     figure_tool_forces, 8},
     {"tool-lifts",
      "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
      figure_tool_lifts, 50},

@@ -60,7 +60,7 @@ void GodObjectMotion::gather_touched(const NearContacts& near) {
   touched_.clear();
   for (ToolContact contact : near.contacts) {
     if (contact.depth_m < -kTouching_m) continue;
-    if (contact.depth_m > kTolerance_m) contact.depth_m = 0;
+    if (settling_ || contact.depth_m > kTolerance_m) contact.depth_m = 0;
     touched_.push_back(contact);
   }
 }

@@ -18,8 +18,8 @@
 // disk. Points are never passed (clear_way.h); for disks the time of contact is that of the linearised
 // motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
-// Contacts are kept ContinuousContacts::kGap_m away, as the source keeps its own tolerance: a contact within
-// twice that is a row J a >= d with the distance d that is missing, so that errors of second order do not
+// Contacts are kept ContinuousContacts::kGap_m away: while no frame has put points into the tool, a contact
+// within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do not
 // accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and not
 // of the tool, so that the spring is the same as with the other methods.
 //
