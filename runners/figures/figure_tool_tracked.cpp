@@ -17,20 +17,20 @@ namespace {
 
 const std::string kTrackedToolFigure = "tool-tracked";
 
-struct ToolMethod {
+struct TrackedMethod {
   const char *column, *label, *renderer;
 };
-constexpr ToolMethod kTrackedTool{"tracked", "tracked sheets",
+constexpr TrackedMethod kTrackedTool{"tracked", "tracked sheets",
                                   R"(renderer={"name": "tracked-tool", "tool_mesh": "slab-10"})"};
 // As they are by default, and with the velocity estimate that sweep tool-noise gives them.
-constexpr ToolMethod kToolRivals[] = {
+constexpr TrackedMethod kToolRivals[] = {
     {"voxels", "as printed",
      R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "voxels", "velocity_estimate": true})"},
     {"look_ahead", "look-ahead",
      R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "look-ahead", "velocity_estimate": true})"},
     {"continuous", "continuous",
      R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "continuous", "velocity_estimate": true})"}};
-constexpr ToolMethod kLookAheadAsIs{
+constexpr TrackedMethod kLookAheadAsIs{
     "look_ahead_plain", "look-ahead, no velocity estimate",
     R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "look-ahead"})"};
 
@@ -63,7 +63,7 @@ Survived count_of(const Table& map) {
   return all;
 }
 
-Table lift_map_of(const FigureContext& context, const ToolMethod& method, int seed) {
+Table lift_map_of(const FigureContext& context, const TrackedMethod& method, int seed) {
   const Sweep sweep = context.map("tool-tracked", {method.renderer, seeded_run(seed)});
   return map_table(std::string("map_") + method.column, context.sweep(sweep), "tool_popped_through");
 }
@@ -130,7 +130,7 @@ const std::vector<JumpMotion> kJumpMotions = {
      {"scenario.rise_frames=25", "scenario.acceleration_frames=0"}}};
 
 // Rms over the runs of each noise.
-std::vector<ToolJump> jumps(const FigureContext& context, const ToolMethod& method,
+std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& method,
                             const std::vector<std::string>& motion) {
   std::vector<Experiment> runs;
   for (const double sigma : kJumpNoise)
@@ -161,9 +161,9 @@ Table jump_table(const FigureContext& context, const JumpMotion& motion) {
   Table table{motion.table, motion.title};
   table.add("noise", "r_c", "standard deviation of the noise",
             std::vector<double>(std::begin(kJumpNoise), std::end(kJumpNoise)));
-  std::vector<ToolMethod> methods(std::begin(kToolRivals), std::end(kToolRivals));
+  std::vector<TrackedMethod> methods(std::begin(kToolRivals), std::end(kToolRivals));
   methods.insert(methods.begin(), kTrackedTool), methods.push_back(kLookAheadAsIs);
-  for (const ToolMethod& method : methods) {
+  for (const TrackedMethod& method : methods) {
     std::vector<double> force, torque;
     for (const ToolJump& jump : jumps(context, method, motion.overrides))
       force.push_back(jump.force_N), torque.push_back(jump.torque_Nm);
@@ -197,7 +197,7 @@ double mean_height_over(const Trace& trace) {
 }
 
 // How much higher noise holds the plate than the same renderer without noise; in r_c.
-std::vector<double> raised_by_noise(const FigureContext& context, const ToolMethod& method) {
+std::vector<double> raised_by_noise(const FigureContext& context, const TrackedMethod& method) {
   std::vector<Experiment> runs;
   for (const char* shape : kToolShapes)
     for (const double sigma : kShapeNoise) {
@@ -263,7 +263,7 @@ std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& pri
 Panel jump_panel(const Table& table, const std::string& what, const std::string& y_label) {
   Panel panel{table.title, "noise (r_c)", y_label};
   panel.curves.push_back({table.name, "noise", "tracked" + what, CurveStyle::line, kTrackedTool.label});
-  for (const ToolMethod& method : kToolRivals)
+  for (const TrackedMethod& method : kToolRivals)
     panel.curves.push_back({table.name, "noise", method.column + what, CurveStyle::dashed, method.label});
   panel.curves.push_back(
       {table.name, "noise", kLookAheadAsIs.column + what, CurveStyle::dots, kLookAheadAsIs.label});
@@ -289,7 +289,7 @@ Figure figure_tool_tracked(const FigureContext& context) {
       figure.tables.push_back(map), figure.tables.push_back(survivors("survived_tracked", map));
   }
   success.emplace_back(kTrackedTool.label, ours);
-  for (const ToolMethod& method : kToolRivals) {
+  for (const TrackedMethod& method : kToolRivals) {
     const Table map = lift_map_of(context, method, kOtherSeed);
     figure.tables.push_back(map);
     figure.tables.push_back(survivors(std::string("survived_") + method.column, map));
@@ -300,7 +300,7 @@ Figure figure_tool_tracked(const FigureContext& context) {
   for (const JumpMotion& motion : kJumpMotions) jumps.push_back(jump_table(context, motion));
   figure.panels = {map_panel("Tracked sheets", {{"survived_tracked", "noise", "acceleration",
                                                  CurveStyle::squares, "did not pop through"}})};
-  for (const ToolMethod& method : kToolRivals)
+  for (const TrackedMethod& method : kToolRivals)
     figure.panels.push_back(
         map_panel(method.label, {{std::string("survived_") + method.column, "noise", "acceleration",
                                   CurveStyle::squares, "did not pop through"}}));

@@ -31,6 +31,7 @@ struct MetamorphicScene {
   std::vector<Eigen::Quaterniond> device_WH;
   bool cloud_rests = false;  // every view shows the same points
   bool hip_rests = false;    // the HIP is at rest before the second view arrives, and stays there
+  bool has_crease = false;   // walls meet, which a fitted sheet rounds off
   // How points are searched: an organised cloud by its image, others by a grid with cells of this size; 0:
   // brute force.
   double cell_m = 0.004;
