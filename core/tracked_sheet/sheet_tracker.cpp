@@ -295,6 +295,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   swap_buffers();
   if (!continues) return reacquire(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
+  if (shows_ == Shows::points) level();
   const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
   before_.frame = unmoved, before_.map = map_, before_.known = false;
