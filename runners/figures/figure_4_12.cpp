@@ -3,7 +3,7 @@
 
 #include "analysis/measures/measures.h"
 #include "runners/figures/pop_through_map.h"
-#include "runners/figures/second_implementation.h"
+#include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {
 

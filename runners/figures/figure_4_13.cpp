@@ -4,7 +4,7 @@
 
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
-#include "runners/figures/second_implementation.h"
+#include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 
 #include "analysis/measures/contact_point.h"
 #include "runners/figures/figures.h"
-#include "runners/figures/second_implementation.h"
+#include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 
 #include "core/random/noise.h"
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/second_implementation.h"
 #include "runners/figures/tool_picture.h"
+#include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {
 

@@ -200,14 +200,12 @@ Table deviation_table(const std::string& name, const std::string& title, const s
   return table;
 }
 
-// The legend of the first panel is that of all: methods have the same colours.
 Panel deviation_panel(const Table& table, const std::string& of, const std::string& x_label,
                       const std::string& y_label, std::pair<double, double> place) {
-  const bool has_legend = place == std::pair(0.0, 0.0);
   Panel panel{table.title, x_label, y_label};
   for (const ToolMethod& method : kToolMethods)
     panel.curves.push_back({table.name, table.columns[0].name, std::string(method.column) + "_" + of,
-                            CurveStyle::line, has_legend ? method.label : ""});
+                            CurveStyle::line, method.label});
   panel.place = place;
   return panel;
 }
@@ -225,7 +223,7 @@ Table slot_table(const PressResults& results) {
 Panel slot_panel(const Table& table, std::pair<double, double> place) {
   Panel panel{table.title, "angle of the device (deg)", "torque (N m)"};
   for (const ToolMethod& method : kToolMethods)
-    panel.curves.push_back({table.name, "angle", method.column, CurveStyle::line});
+    panel.curves.push_back({table.name, "angle", method.column, CurveStyle::line, method.label});
   panel.curves.push_back({table.name, "angle", "exact", CurveStyle::dashed, "exact"});
   panel.x_range = {15, 32};
   panel.place = place;
@@ -348,8 +346,8 @@ Figure figure_tool_forces(const FigureContext& context) {
       deviation_panel(figure.tables[1], "torque", "tilt by the hand (deg)", "|torque|" + off, {1, 1}),
       deviation_panel(figure.tables[2], "force_direction", "slope (deg)", turned, {2, 0}),
       slot_panel(figure.tables[3], {2, 1})};
-  figure.panels[3].curves.push_back({"matched", "turn", "look_ahead_torque", CurveStyle::dashed,
-                                     "look-ahead, coupling with the gyration radius of the tool"});
+  figure.panels[3].curves.push_back(
+      {"matched", "turn", "look_ahead_torque", CurveStyle::dashed, "look-ahead, r of the tool"});
   figure.claims = plane_claims(figure.tables[0]);
   for (const auto& more : {block_claims(figure.tables[1], figure.tables[4]),
                            groove_and_slot_claims(figure.tables[2], figure.tables[3])})

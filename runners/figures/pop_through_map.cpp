@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/statistics/proportion.h"
-#include "runners/figures/second_implementation.h"
+#include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/figures/second_implementation.h"
+#include "runners/second_implementation/second_implementation.h"
 
 #include <nlohmann/json.hpp>
 
