@@ -56,17 +56,10 @@ void limit(int resource, rlim_t wanted) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &now);
 }
 
-// In the child. Signals end it, whatever the program does with them; so does the end of the program.
+// In the child.
 [[noreturn]] void answer(int to, const ChildLimits& limits,
                          const std::function<std::string()>& work) noexcept {
-  for (const int signal :
-       {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP})
-    std::signal(signal, SIG_DFL);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  Hdf5Work::silence();
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, limits.processor_s);
-  limit(RLIMIT_AS, address_space() + limits.memory_bytes);
+  become_limited_child(limits);
   const auto send = [to](char kind, std::string_view text) {  // allocates nothing
     write_all(to, &kind, 1);
     write_all(to, text.data(), text.size());
@@ -100,6 +93,17 @@ ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory
   return {kMinMemory + memory_for_each_byte * size, 1 + static_cast<unsigned>(size >> 20)};
 }
 
+void become_limited_child(const ChildLimits& limits) {
+  for (const int signal :
+       {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP})
+    std::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  Hdf5Work::silence();
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.processor_s);
+  limit(RLIMIT_AS, address_space() + limits.memory_bytes);
+}
+
 std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error(std::strerror(errno));
@@ -122,6 +126,10 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
                              " MiB of memory");
   if (kind == kFailure) throw std::runtime_error(answered);
   return answered;
+}
+
+std::string in_own_child(const ChildLimits& limits, ChildReader reader, const std::string& question) {
+  return in_child(limits, [&] { return reader(question); });
 }
 
 }  // namespace remote_touch

@@ -21,4 +21,16 @@ ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory
 // the message of the exception of work, or with how the process ended.
 std::string in_child(const ChildLimits& limits, const std::function<std::string()>& work);
 
+// A reader that gets all it needs as bytes, so that also a process that began earlier can run it.
+using ChildReader = std::string (*)(const std::string& question);
+// Runs a reader in a child process; returns and throws as in_child does.
+using RunInChild =
+    std::function<std::string(const ChildLimits&, ChildReader reader, const std::string& question)>;
+// In a child that begins for this question and ends with its answer.
+std::string in_own_child(const ChildLimits& limits, ChildReader reader, const std::string& question);
+
+// For a process that has just begun as a child: from now on signals end it, whatever the program does with
+// them, and so do the end of its parent and what goes beyond the limits.
+void become_limited_child(const ChildLimits& limits);
+
 }  // namespace remote_touch

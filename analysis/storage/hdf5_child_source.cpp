@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
-#include "analysis/storage/child_process.h"
 #include "analysis/storage/packed_values.h"
 
 namespace remote_touch {
@@ -40,22 +40,57 @@ Hdf5Summary summary_of(const Hdf5Source& source) {
   return summary;
 }
 
+enum class About : std::uint8_t { summary, column, rows };
+
+// What a child is asked about a file.
+struct Question {
+  About about = About::summary;
+  std::string dataset = {};
+  std::size_t first = 0, count = 0;  // rows
+};
+
+std::string packed_question(const std::string& file, const Question& question) {
+  MemoryPacker pack;
+  pack.text(file), pack.value(question.about), pack.text(question.dataset);
+  pack.value(question.first), pack.value(question.count);
+  return pack.take();
+}
+
+// In the child.
+std::string answer(const std::string& bytes) {
+  Unpacker unpack(bytes);
+  std::string file;
+  Question question;
+  unpack.text(file), unpack.value(question.about), unpack.text(question.dataset);
+  unpack.value(question.first), unpack.value(question.count);
+  const auto hdf5 = open_hdf5(file);
+  switch (question.about) {
+    case About::summary:
+      return packed(summary_of(*hdf5));
+    case About::column:
+      return packed(hdf5->column(question.dataset));
+    case About::rows:
+      break;
+  }
+  return packed(hdf5->rows(question.dataset, question.first, question.count));
+}
+
 class ChildSource final : public Hdf5Source {
  public:
-  explicit ChildSource(const std::filesystem::path& file)
-      : file_(file),
+  ChildSource(const std::filesystem::path& file, RunInChild run)
+      : file_(file.string()),
+        run_(std::move(run)),
         // Twice the values: as they are read, and packed; some files are compressed a little.
         limits_(limits_to_read(file, 4)),
-        summary_(unpacked_summary(ask([](const Hdf5Source& hdf5) { return packed(summary_of(hdf5)); }))) {}
+        summary_(unpacked_summary(ask({}))) {}
 
   TextAttributes attributes() const override { return summary_.attributes; }
   std::vector<std::string> datasets() const override { return summary_.datasets; }
   Column column(const std::string& dataset) const override {
-    return unpacked_column(ask([&](const Hdf5Source& hdf5) { return packed(hdf5.column(dataset)); }));
+    return unpacked_column(ask({About::column, dataset}));
   }
   Column rows(const std::string& dataset, std::size_t first, std::size_t count) const override {
-    return unpacked_column(
-        ask([&](const Hdf5Source& hdf5) { return packed(hdf5.rows(dataset, first, count)); }));
+    return unpacked_column(ask({About::rows, dataset, first, count}));
   }
   std::int64_t offset(const std::string& dataset) const override {
     const auto found = std::find(summary_.datasets.begin(), summary_.datasets.end(), dataset);
@@ -66,12 +101,12 @@ class ChildSource final : public Hdf5Source {
   }
 
  private:
-  template <class Question>
-  std::string ask(Question question) const {
-    return in_child(limits_, [&] { return question(*open_hdf5(file_)); });
+  std::string ask(const Question& question) const {
+    return run_(limits_, answer, packed_question(file_, question));
   }
 
-  std::filesystem::path file_;
+  std::string file_;
+  RunInChild run_;
   ChildLimits limits_;
   Hdf5Summary summary_;
 };
@@ -122,8 +157,8 @@ Column unpacked_column(const std::string& bytes) {
   return column;
 }
 
-std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file) {
-  return std::make_unique<ChildSource>(file);
+std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file, const RunInChild& run) {
+  return std::make_unique<ChildSource>(file, run);
 }
 
 }  // namespace remote_touch

@@ -102,10 +102,10 @@ Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> conte
   require_version();
 }
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& file) : file_(file.string()) {
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, const RunInChild& run) : file_(file.string()) {
   const bool is_sealed = require_readable(file);
   guarded([&] {
-    content_ = is_sealed ? open_hdf5(file) : open_hdf5_in_child(file);
+    content_ = is_sealed ? open_hdf5(file) : open_hdf5_in_child(file, run);
     attributes_ = content_->attributes();
   });
   require_version();

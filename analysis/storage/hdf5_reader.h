@@ -18,8 +18,9 @@ namespace remote_touch {
 class Hdf5Reader {
  public:
   // Throws InputError when the file is missing or not HDF5, when its seal is broken or a finished result of
-  // this program has none, or when its layout is that of another version of this program.
-  explicit Hdf5Reader(const std::filesystem::path& file);
+  // this program has none, or when its layout is that of another version of this program. run: how the
+  // child processes are run.
+  explicit Hdf5Reader(const std::filesystem::path& file, const RunInChild& run = in_own_child);
   // The content of a sealed file of that name; throws InputError for another version of this program.
   Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> content);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/child_process.h"
 #include "analysis/storage/hdf5_file.h"
 
 namespace remote_touch {
@@ -29,6 +30,7 @@ class Hdf5Source {
 std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file);
 
 // Each answer comes from a child process with limits, which alone calls the library.
-std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file);
+std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file,
+                                               const RunInChild& run = in_own_child);
 
 }  // namespace remote_touch

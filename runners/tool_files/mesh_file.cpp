@@ -10,7 +10,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "analysis/storage/child_process.h"
 #include "analysis/storage/packed_values.h"
 #include "core/parameters/input_error.h"
 #include "core/tool/mesh/mesh_corners.h"
@@ -82,9 +81,9 @@ namespace {
 
 // As the library reads it. In a child, for the library believes what a file says: damaged ones make it take
 // all memory or go on for ever.
-TriangleMesh mesh_by_assimp(const std::filesystem::path& file) {
+TriangleMesh mesh_by_assimp(const std::string& file) {
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  const aiScene* scene = importer.ReadFile(file, 0);
   if (scene == nullptr) {
     const std::string error = importer.GetErrorString();
     throw std::runtime_error(error == "std::bad_alloc" ? "it claims more than fits into memory" : error);
@@ -99,13 +98,16 @@ TriangleMesh mesh_by_assimp(const std::filesystem::path& file) {
   return mesh;
 }
 
-TriangleMesh mesh_in_child(const std::filesystem::path& file) {
-  const std::string bytes = in_child(limits_to_read(file, kMemoryPerByte), [&file] {
-    const TriangleMesh mesh = mesh_by_assimp(file);
-    MemoryPacker pack;
-    pack.list(mesh.vertices), pack.list(mesh.triangles);
-    return pack.take();
-  });
+// In the child.
+std::string packed_mesh(const std::string& file) {
+  const TriangleMesh mesh = mesh_by_assimp(file);
+  MemoryPacker pack;
+  pack.list(mesh.vertices), pack.list(mesh.triangles);
+  return pack.take();
+}
+
+TriangleMesh mesh_in_child(const std::filesystem::path& file, const RunInChild& run) {
+  const std::string bytes = run(limits_to_read(file, kMemoryPerByte), packed_mesh, file.string());
   TriangleMesh mesh;
   Unpacker unpack(bytes);
   unpack.list(mesh.vertices), unpack.list(mesh.triangles);
@@ -115,7 +117,7 @@ TriangleMesh mesh_in_child(const std::filesystem::path& file) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file) {
+TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run) {
   const char* allowed = "expected an OBJ, PLY or STL file";
   if (!is_mesh_file(file)) throw InputError(file.string(), std::string("not a mesh: ") + allowed);
   if (!std::filesystem::is_regular_file(file))
@@ -124,7 +126,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
   try {
     if (ending_of(file) == ".ply")
       if (const std::string problem = ply_problem(file); !problem.empty()) throw std::runtime_error(problem);
-    mesh = mesh_in_child(file);
+    mesh = mesh_in_child(file, run);
   } catch (const std::runtime_error& error) {
     throw InputError(file.string(), "cannot be read (" + one_line(error.what()) + "); " + allowed);
   }

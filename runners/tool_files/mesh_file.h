@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "analysis/storage/child_process.h"
 #include "core/tool/mesh/triangle_mesh.h"
 
 namespace remote_touch {
@@ -12,8 +13,8 @@ bool is_mesh_file(const std::filesystem::path& file);
 
 // All meshes of the file as one, vertices at equal positions welded, polygons cut into fans; lines and points
 // are left out. Coordinates have single precision, in the unit of the file. Throws InputError, naming the
-// file.
-TriangleMesh read_mesh(const std::filesystem::path& file);
+// file. run: how the child process is run, in which alone the library reads the file.
+TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
 // The reader's version: another one may read a file differently.
 std::string mesh_reader_version();

@@ -3,6 +3,7 @@
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/lasting_child.h"
 #include "tests/fuzz/scratch_file.h"
 
 namespace remote_touch::fuzz::hdf5_bytes {
@@ -12,7 +13,7 @@ void read(std::string_view bytes) {
   use_hdf5();  // begun before, not in each child
   const auto file = scratch_file("file.h5", bytes);
   accepts(bytes, [&] {
-    const Hdf5Reader reader(file);
+    const Hdf5Reader reader(file, run_in_child());
     if (reader.has("/sweep/checksum")) read_sweep(reader);
     for (const std::string& dataset : reader.datasets()) reader.column(dataset);
   });

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/lasting_child.h"
 
 using remote_touch::fuzz::targets;
 
@@ -39,6 +40,8 @@ void limit_time(time_t seconds) {
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   std::signal(SIGPROF, on_too_long);
+  static remote_touch::fuzz::LastingChild child;
+  remote_touch::fuzz::run_in_child() = std::ref(child);
   return pthread_atfork(nullptr, nullptr, be_quiet_in_children);
 }
 

@@ -3,6 +3,7 @@
 #include "core/tool/mesh/mesh_corners.h"
 #include "runners/tool_files/mesh_file.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/lasting_child.h"
 #include "tests/fuzz/scratch_file.h"
 
 namespace remote_touch::fuzz {
@@ -10,7 +11,7 @@ namespace remote_touch::fuzz {
 void read_as_mesh(const std::string& name, std::string_view bytes) {
   const auto file = scratch_file(name, bytes);
   accepts(bytes, [&] {
-    const TriangleMesh mesh = read_mesh(file);
+    const TriangleMesh mesh = read_mesh(file, run_in_child());
     require(has_its_vertices(mesh), "a corner is a vertex");
   });
 }

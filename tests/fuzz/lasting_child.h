@@ -1,0 +1,45 @@
+// A child process that reads many files. To begin a process costs a hundred times as much as to read a small
+// file.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "analysis/storage/child_process.h"
+
+namespace remote_touch::fuzz {
+
+// Runs readers as in_own_child() does, most of them in one process, whose limits count for all that it reads
+// together. A question of which it ended, or for which it had no memory, is asked again in a child of its
+// own: so every crash, every want of memory and every end of time is that of one input, told as the program
+// tells it.
+class LastingChild {
+ public:
+  LastingChild() = default;
+  LastingChild(const LastingChild&) = delete;
+  LastingChild& operator=(const LastingChild&) = delete;
+  ~LastingChild() { end(); }
+  std::string operator()(const ChildLimits& limits, ChildReader reader, const std::string& question);
+  int begun() const { return begun_; }  // how many processes so far, each after the end of the one before
+  int repeated() const { return repeated_; }  // questions that were asked again
+
+ private:
+  struct Answer {
+    bool is_failure;
+    std::string text;
+  };
+  void begin(const ChildLimits& limits);
+  void end();
+  std::optional<Answer> ask(ChildReader reader, const std::string& question);
+  pid_t child_ = -1;
+  int questions_ = -1, answers_ = -1;  // ends of pipes
+  int begun_ = 0, repeated_ = 0;
+};
+
+// How targets run the readers that want a child: by default as the program does, in libFuzzer's programs in a
+// lasting child.
+RunInChild& run_in_child();
+
+}  // namespace remote_touch::fuzz
