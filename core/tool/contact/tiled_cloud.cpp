@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/geometry/bounding_box.h"
 #include "core/numeric/order_statistic.h"
 #include "core/search/morton_order.h"
+#include "core/tool/contact/contact_thinning.h"
+#include "core/tool/contact/merged_points.h"
 
 namespace remote_touch {
 
@@ -15,6 +18,7 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
 constexpr std::uint32_t kTileSide_px = 8;
+constexpr std::size_t kWorth = 2;  // times fewer points, and a merged cloud is used
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 
 // The smallest sphere around the middle of the box of count items.
@@ -88,11 +92,16 @@ void TiledCloud::gather_blocks() {
   }
 }
 
-void TiledCloud::assign(const PointCloud& cloud) {
-  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) column->clear();
+void TiledCloud::clear() {
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_, &extent_m_}) column->clear();
   tile_spheres_.clear(), group_spheres_.clear();
   tiles_.clear(), blocks_.clear();
+  merged_.reset();
   without_normal_ = 0;
+}
+
+void TiledCloud::assign(const PointCloud& cloud) {
+  clear();
   if (cloud.image) {
     // Blocks of 64 x 64 pixels one after the other, so that the tiles of a block lie together.
     const auto width = static_cast<std::uint32_t>(cloud.image->camera.width),
@@ -118,8 +127,63 @@ void TiledCloud::assign(const PointCloud& cloud) {
   gather_tile_spheres();
   gather_blocks();
   measure_spacing(cloud);
-  max_spacing_m_ = 0;
+  extent_m_.assign(x_.size(), 0);
+  set_max();
+  merge();
+}
+
+void TiledCloud::set_max() {
+  max_spacing_m_ = max_extent_m_ = 0;
   for (const double spacing_m : spacing_m_) max_spacing_m_ = std::max(max_spacing_m_, spacing_m);
+  for (const double extent_m : extent_m_) max_extent_m_ = std::max(max_extent_m_, extent_m);
+}
+
+// The points of a cube of a grid become one point if they are flat.
+void TiledCloud::merge() {
+  std::vector<double> usual = spacing_m_;
+  std::erase(usual, 0);
+  if (!(median_or_0(usual) <= kMaxMergedSpacing_m)) return;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> cubes;  // and the points in them
+  for (std::uint32_t i = 0; i < x_.size(); ++i)
+    if (x_[i] != kFarAway) cubes.emplace_back(cell_number(point(i), 1 / kMergedCube_m), i);
+  std::sort(cubes.begin(), cubes.end());
+  PointCloud fewer;
+  std::vector<double> spacing_m, extent_m;
+  const auto add = [&](const Vec3& p_W, const Vec3& n_W, double spacing, double extent) {
+    fewer.append(p_W, n_W), spacing_m.push_back(spacing), extent_m.push_back(extent);
+  };
+  std::vector<CloudPoint> points;
+  for (std::size_t first = 0, end = 0; first < cubes.size(); first = end) {
+    points.clear();
+    for (; end < cubes.size() && cubes[end].first == cubes[first].first; ++end)
+      points.push_back({point(cubes[end].second), normal(cubes[end].second)});
+    const double spacing = spacing_m_[cubes[first].second];
+    if (const auto one = merged_point(points, spacing, kFlat_m))
+      add(one->p_W, one->n_W, spacing, one->extent_m);
+    else
+      for (std::size_t k = first; k < end; ++k)
+        add(points[k - first].p_W, points[k - first].n_W, spacing_m_[cubes[k].second], 0);
+  }
+  if (kWorth * fewer.size() > cubes.size()) return;
+  merged_ = std::make_unique<TiledCloud>();
+  merged_->assign_merged(fewer, spacing_m, extent_m);
+}
+
+void TiledCloud::assign_merged(const PointCloud& cloud, std::span<const double> spacing_m,
+                               std::span<const double> extent_m) {
+  clear();
+  const std::vector<std::uint32_t> order = morton_order(cloud);
+  for (std::size_t i = 0; i < order.size(); i += kTilePoints) {
+    const auto tile = std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i));
+    add_tile(cloud, tile);
+    for (const std::uint32_t point : tile)
+      spacing_m_.push_back(spacing_m[point]), extent_m_.push_back(extent_m[point]);
+    spacing_m_.resize(x_.size(), 0), extent_m_.resize(x_.size(), 0);
+  }
+  gather_groups();
+  gather_tile_spheres();
+  gather_blocks();
+  set_max();
 }
 
 void TiledCloud::measure_spacing(const PointCloud& cloud) {
