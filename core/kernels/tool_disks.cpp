@@ -24,7 +24,7 @@ inline Doubles3 rotated(const double (&R)[3][3], const Doubles3& a) {
 
 struct PointLanes {
   Doubles3 p_W, n_W;
-  Doubles spacing;
+  Doubles spacing, extent;
 };
 
 constexpr int kColumns = 14;
@@ -37,7 +37,7 @@ inline DiskLanes measured(const PointLanes& points, double fraction, double cell
   const Doubles3 p =
       rotated(f.R_TW, {points.p_W.x - f.p_W[0], points.p_W.y - f.p_W[1], points.p_W.z - f.p_W[2]});
   const Doubles3 n = rotated(f.R_TW, points.n_W);
-  const Doubles radius = fraction * points.spacing;
+  const Doubles radius = fraction * points.spacing + points.extent;
   const FieldLanes at = sample(f, p);
   const Doubles3& g = at.gradient_T;
   const Doubles slope = norm(g - dot(g, n) * n);
@@ -67,7 +67,8 @@ void disks_in_field(const PointColumns& points, std::size_t count, double fracti
   for (std::size_t i = 0; i < count; i += kDoubles) {
     const DiskLanes disks = measured({{load(points.x + i), load(points.y + i), load(points.z + i)},
                                       {load(points.nx + i), load(points.ny + i), load(points.nz + i)},
-                                      load(points.spacing + i)},
+                                      load(points.spacing + i),
+                                      load(points.extent + i)},
                                      fraction, cells_per_m, f);
     for (int c = 0; c < kColumns - 1; ++c) store(column[c] + i, disks.column[c]);
     __builtin_memcpy(out.cell + i, &disks.column[kColumns - 1], sizeof(Doubles));

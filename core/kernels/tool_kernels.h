@@ -44,6 +44,7 @@ struct PointColumns {
   const double* ny;
   const double* nz;
   const double* spacing;
+  const double* extent;  // of what a point stands for around it; 0 for itself alone
 };
 
 // The pose of a tool, and its distance field in m at the nodes of a grid, the first coordinate running
@@ -95,8 +96,9 @@ struct ToolKernels {
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
                                  const CellTable&, int min, std::uint32_t* found);
-  // The disks around the first count points, of radius fraction x spacing: bit for bit what sample_field()
-  // and lower_bound_m() give, but for places outside the grid, whose lower is NaN. The columns are padded.
+  // The disks around the first count points, of radius fraction x spacing + extent: bit for bit what
+  // sample_field() and lower_bound_m() give, but for places outside the grid, whose lower is NaN. The columns
+  // are padded.
   void (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
                          const PosedField&, const DiskColumns&);
   // The contacts of the disks number[0..count): bit for bit those of far_contact() if lower is more than

@@ -86,7 +86,7 @@ if(BULLET_FOUND AND fcl_FOUND AND octomap_FOUND)
   target_compile_options(peer_tool PRIVATE -O3)
   add_executable(peer_tool_benchmark EXCLUDE_FROM_ALL
     benchmarks/checked_benchmark.cpp benchmarks/peer_tool_benchmark.cpp benchmarks/tool_scene.cpp
-    $<TARGET_OBJECTS:peer_tool>)
+    benchmarks/voxmap_pointshell.cpp $<TARGET_OBJECTS:peer_tool>)
   target_link_libraries(peer_tool_benchmark PRIVATE core benchmark::benchmark fcl ${BULLET_LIBRARIES})
 else()
   peers_missing(peer_tool_benchmark "libbullet-dev, libfcl-dev and liboctomap-dev")

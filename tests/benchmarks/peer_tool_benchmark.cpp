@@ -1,7 +1,7 @@
-// The collision list next to the collision detection of Bullet and FCL: 2500 points, and the tool touching
-// them and pressed in. Others find what the surface passes through, ours what is in shell and interior
-// voxels, so there is no one right list; each is judged by the exact distance of the points to the mesh, in
-// poses that are raised, lowered and shifted:
+// The collision list next to the collision detection of Bullet, FCL and a voxmap with a pointshell: 2500
+// points, and the tool touching them and pressed in. Others find what the surface passes through, ours what
+// is in shell and interior voxels, so there is no one right list; each is judged by the exact distance of the
+// points to the mesh, in poses that are raised, lowered and shifted:
 // - ours has every point that is more than half a voxel's diagonal inside and none that is as far outside,
 //   and is the list of the plain loop over all points;
 // - others find every body with corners on both sides of the surface, and none whose point is farther from
@@ -23,6 +23,7 @@
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_tool.h"
 #include "tests/benchmarks/tool_scene.h"
+#include "tests/benchmarks/voxmap_pointshell.h"
 #include "tests/support/formatted.h"
 
 namespace remote_touch::benchmarks {
@@ -30,6 +31,7 @@ namespace {
 
 constexpr double kUndecided_m = 1e-5;  // others compute in float, or iterate up to 1e-6
 constexpr double kPressed_m = 2e-3;
+constexpr double kSpacing_m = 2e-3, kDiskOfSpacing = 0.75;
 constexpr int kMinCrossing = 100;  // bodies in all poses, or the comparison says too little
 
 peers::Place place(const Vec3& p) {
@@ -164,13 +166,44 @@ void add_peer(const peers::ToolPeer& peer, const Surface& surface, const std::st
       });
 }
 
+// Its points are of the tool, so the list cannot be the same: it is compared with a plain search in the list
+// of its own surface voxels, and its shell with the mesh. A point on the border of two voxels may count for
+// either.
+bool voxmap_right(VoxmapPointshell& voxmap, const Surface& surface) {
+  std::size_t touched = 0;
+  for (const ToolPose& pose : surface.poses()) {
+    const auto found = voxmap.touch(pose), expected = voxmap.plain_touch(pose);
+    const double scale = 1e-9 + expected.force_W.norm();
+    if (found.points != expected.points || (found.force_W - expected.force_W).norm() > 1e-9 * scale ||
+        (found.torque_W - expected.torque_W).norm() > 1e-9 * scale)
+      return false;
+    touched += found.points;
+  }
+  return touched >= kMinCrossing && voxmap.touch(surface.scene().separated).points == 0 &&
+         voxmap.shell_error_m() < kUndecided_m + 0.1 * surface.scene().tool->grid.size_m;
+}
+
+void add_voxmap(const Surface& surface, const std::string& where, const ToolPose& pose, const char* name,
+                double voxel_m) {
+  const auto voxmap = std::make_shared<VoxmapPointshell>(*surface.scene().tool, surface.scene().cloud,
+                                                         voxel_m, kDiskOfSpacing * kSpacing_m);
+  add(
+      "list/" + where + "/" + name, [=, &surface] { return voxmap_right(*voxmap, surface); },
+      [=](benchmark::State& state) {
+        int i = 0;
+        for (auto _ : state) benchmark::DoNotOptimize(voxmap->touch(shaken(pose, i++)).points);
+        state.counters["found"] = static_cast<double>(voxmap->touch(pose).points);
+        state.counters["contacts"] = static_cast<double>(voxmap->shell_size());
+      });
+}
+
 }  // namespace
 }  // namespace remote_touch::benchmarks
 
 int main(int argc, char** argv) {
   using namespace remote_touch;
   using namespace remote_touch::benchmarks;
-  const ToolScene scene = tool_scene("2500", generated_tool("husky"), 50, 2e-3);
+  const ToolScene scene = tool_scene("2500", generated_tool("husky"), 50, kSpacing_m);
   const Surface surface(scene);
   const std::vector<peers::ToolPeer> others = peers::tool_peers(plain(scene));
   const std::vector<std::pair<std::string, ToolPose>> poses = {
@@ -178,6 +211,8 @@ int main(int argc, char** argv) {
   for (const auto& [where, pose] : poses) {
     add_ours(surface, where, pose);
     for (const peers::ToolPeer& peer : others) add_peer(peer, surface, where, pose);
+    add_voxmap(surface, where, pose, "voxmap_0.5mm", 5e-4);
+    add_voxmap(surface, where, pose, "voxmap_2mm", kSpacing_m);
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <string>
@@ -20,8 +19,6 @@
 
 namespace remote_touch::benchmarks {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 ToolParameters settings(TouchRule rule) {
   ToolParameters p;
@@ -171,9 +168,9 @@ void time_ride(benchmark::State& state, const ToolScene& scene, const ToolParame
   double detections = 0, steps = 0;
   int tick = 0;
   for (auto _ : state) {
-    const Clock::time_point start = Clock::now();
+    const double start_ns = cpu_ns();
     const RenderOutput out = ride.step(tick);
-    const double ns = std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+    const double ns = cpu_ns() - start_ns;
     min_ns[static_cast<std::size_t>(tick)] = std::min(min_ns[static_cast<std::size_t>(tick)], ns);
     detections += out.tool->detections, steps += out.steps;
     tick = (tick + 1) % kSlideTicks;
@@ -203,10 +200,13 @@ int main(int argc, char** argv) {
   using namespace remote_touch;
   using namespace remote_touch::benchmarks;
   const auto husky = generated_tool("husky");
-  const std::vector<ToolScene> scenes = {tool_scene("2500", husky, 50, 2e-3),
+  const std::vector<ToolScene> scenes = {tool_scene("1089", husky, 33, 3e-3),
+                                         tool_scene("2500", husky, 50, 2e-3),
                                          tool_scene("40000", husky, 200, 1e-3),
                                          tool_scene("40000_dense", husky, 200, 5e-4),
-                                         tool_scene("40000_slab", generated_tool("slab-20"), 200, 5e-4)};
+                                         tool_scene("111556_dense", husky, 334, 3e-4),
+                                         tool_scene("40000_slab", generated_tool("slab-20"), 200, 5e-4),
+                                         tool_scene("111556_slab", generated_tool("slab-20"), 334, 3e-4)};
   for (const ToolScene& scene : scenes) {
     add_list(scene, "contact", scene.in_contact);
     add_list(scene, "separated", scene.separated);

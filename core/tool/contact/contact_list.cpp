@@ -21,7 +21,8 @@ ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParame
     : p_(parameters),
       kernels_(kernels),
       finder_(std::move(tool), kernels),
-      disks_(parameters.disk_radius_ratio, ContactThinning::kCell_m) {}
+      disks_(parameters.disk_radius_ratio, ContactThinning::kCell_m),
+      merged_disks_(parameters.disk_radius_ratio, ContactThinning::kCell_m) {}
 
 void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   finder_.on_frame(std::move(cloud));
@@ -29,10 +30,18 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   max_disk_m_ = p_.disk_radius_ratio * points.max_spacing_m();
   reserve(points.padded_size());
   disks_.on_frame(points);
+  // A certificate is of points, and points without disks leave gaps.
+  const bool can_merge = p_.contact_rule == TouchRule::look_ahead && p_.disk_radius_ratio > 0;
+  const TiledCloud* merged = can_merge ? points.merged() : nullptr;
+  near_disks_ = merged ? &merged_disks_ : &disks_;
+  max_near_disk_m_ = max_disk_m_;
+  if (!merged) return;
+  merged_disks_.on_frame(*merged);
+  max_near_disk_m_ = p_.disk_radius_ratio * merged->max_spacing_m() + merged->max_extent_m();
 }
 
 void ContactList::reserve(std::size_t padded_size) {
-  finder_.reserve(padded_size), disks_.reserve(padded_size);
+  finder_.reserve(padded_size), disks_.reserve(padded_size), merged_disks_.reserve(padded_size);
   contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
   near_.reserve(padded_size), nearest_.reserve(padded_size), others_.reserve(padded_size);
   chosen_.reserve(padded_size);
@@ -45,28 +54,30 @@ std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& cont
 }
 
 bool ContactList::is_worth_a_search(std::size_t disk) const {
-  return disks_.lower_m(disk) <= kSearch_m;
+  return near_disks_->lower_m(disk) <= kSearch_m;
 }
 
 // No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
 double ContactList::bound_m(std::size_t disk) const {
-  const bool exact = is_worth_a_search(disk) && disks_.is_flat(disk);
-  return exact ? disks_.distance_m(disk) : disks_.lower_m(disk);
+  const bool exact = is_worth_a_search(disk) && near_disks_->is_flat(disk);
+  return exact ? near_disks_->distance_m(disk) : near_disks_->lower_m(disk);
 }
 
 void ContactList::gather_near(double reach_m) {
-  near_.resize(disks_.size());
+  near_.resize(near_disks_->size());
   std::size_t count = 0;
-  for (std::size_t i = 0; i < disks_.size(); ++i) {  // without a branch: which are near is hard to foresee
+  for (std::size_t i = 0; i < near_disks_->size();
+       ++i) {  // without a branch: which are near is hard to foresee
     near_[count] = {bound_m(i), static_cast<std::uint32_t>(i), 0};
-    const bool is_near = (disks_.lower_m(i) <= p_.look_ahead_m) & (disks_.distance_m(i) <= reach_m);
+    const bool is_near =
+        (near_disks_->lower_m(i) <= p_.look_ahead_m) & (near_disks_->distance_m(i) <= reach_m);
     count += is_near ? 1 : 0;
   }
   near_.resize(count);
 }
 
 void ContactList::append_contacts(double side) {
-  disks_.append_contacts(chosen_, finder_, kernels_, kSearch_m, side, contacts_);
+  near_disks_->append_contacts(chosen_, finder_, kernels_, kSearch_m, side, contacts_);
 }
 
 // The nearest disk of every cell of the tool, by their bounds.
@@ -76,7 +87,7 @@ void ContactList::gather_cells() {
   std::uint64_t last_key = 0;
   std::size_t last_cell = ContactThinning::kNoCell;
   for (NearDisk& near : near_) {
-    const std::uint64_t key = disks_.cell(near.disk);
+    const std::uint64_t key = near_disks_->cell(near.disk);
     const std::size_t cell =
         key == last_key && last_cell != ContactThinning::kNoCell ? last_cell : thinning_.cell(key);
     last_key = key, last_cell = cell;
@@ -112,10 +123,10 @@ void ContactList::gather_deepest(double side) {
 }
 
 NearContacts ContactList::near(const ToolPose& pose, double side) {
-  const double reach_m = std::min(p_.look_ahead_m + max_disk_m_, kMaxReach_m);
+  const double reach_m = std::min(p_.look_ahead_m + max_near_disk_m_, kMaxReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   contacts_.clear();
-  disks_.query(finder_, kernels_, pose, reach_m);
+  near_disks_->query(finder_, kernels_, pose, reach_m);
   gather_near(reach_m);
   if (near_.size() > ContactThinning::kMaxCount) {
     gather_deepest(side);
@@ -146,28 +157,50 @@ VoxelContacts ContactList::in_voxels(const ToolPose& pose) {
   return found;
 }
 
+// The nearest place of a disk is no farther from the tool than its centre, so most need no search.
+bool ContactList::is_touched(std::size_t i) const {
+  if (disks_.lower_m(i) > kTouch_m) return false;
+  return disks_.distance_m(i) <= kTouch_m ||
+         (!disks_.is_flat(i) && nearest_place(finder_.tool(), disks_.disk(i)).at.distance_m <= kTouch_m);
+}
+
+void ContactList::add_cluster(const Vec3& p_T) {
+  constexpr std::size_t kRecent = 4;  // neighbours mostly follow each other
+  const std::uint64_t cell = cell_number(p_T, kClustersPer_m);
+  const std::size_t first = clusters_.size() > kRecent ? clusters_.size() - kRecent : 0;
+  for (std::size_t k = first; k < clusters_.size(); ++k)
+    if (clusters_[k] == cell) return;
+  clusters_.push_back(cell);
+}
+
+// No voxel of the tool is farther from its surface than two edges of a voxel, so that points and disks
+// farther away need not be known, unless none is nearer.
 Touched ContactList::touched(const ToolPose& pose) {
   const bool disks = p_.contact_rule != TouchRule::voxels;
-  const double shown_m = std::max(p_.look_ahead_m, 2 * finder_.tool().grid.size_m);
-  const double reach_m = std::min(shown_m + (disks ? max_disk_m_ : 0), kMaxReach_m);
+  const double voxels_m = 2 * finder_.tool().grid.size_m, shown_m = std::max(p_.look_ahead_m, voxels_m);
+  const double disk_m = disks ? max_disk_m_ : 0;
+  Touched all = touched_within(pose, std::min(std::max(voxels_m, kTouch_m + disk_m), kMaxReach_m));
+  if (all.nearest_distance_m > voxels_m) all = touched_within(pose, std::min(shown_m + disk_m, kMaxReach_m));
+  if (all.nearest_distance_m > shown_m) all.nearest_distance_m = std::numeric_limits<double>::infinity();
+  return all;
+}
+
+Touched ContactList::touched_within(const ToolPose& pose, double reach_m) {
+  const bool disks = p_.contact_rule != TouchRule::voxels;
+  const double voxels_m = 2 * finder_.tool().grid.size_m;
   Touched all;
   all.nearest_distance_m = std::numeric_limits<double>::infinity();
   clusters_.clear();
   disks_.query(finder_, kernels_, pose, reach_m);
   for (std::size_t i = 0; i < disks_.size(); ++i) {
     all.nearest_distance_m = std::min(all.nearest_distance_m, disks_.distance_m(i));
-    // No voxel of the tool is farther from its surface than that.
-    const bool may_be_in = disks_.distance_m(i) <= 2 * finder_.tool().grid.size_m;
-    const Voxel voxel = may_be_in ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
-    if (voxel == Voxel::free && !(disks && disks_.lower_m(i) <= kTouch_m &&
-                                  nearest_place(finder_.tool(), disks_.disk(i)).at.distance_m <= kTouch_m))
-      continue;
+    const Voxel voxel = disks_.distance_m(i) <= voxels_m ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
+    if (voxel == Voxel::free && !(disks && is_touched(i))) continue;
     all.state =
         std::max(all.state, voxel == Voxel::interior ? ContactState::entrenched : ContactState::contact);
     ++all.points;
-    clusters_.push_back(cell_number(disks_.p_T(i), kClustersPer_m));
+    add_cluster(disks_.p_T(i));
   }
-  if (all.nearest_distance_m > shown_m) all.nearest_distance_m = std::numeric_limits<double>::infinity();
   std::sort(clusters_.begin(), clusters_.end());
   all.clusters = static_cast<int>(std::unique(clusters_.begin(), clusters_.end()) - clusters_.begin());
   return all;

@@ -41,7 +41,8 @@ class ContactList final : public NearContactSource {
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
-  const NearDisks& near_disks() const { return disks_; }  // of the last call of near() or touched()
+  // Of the last call of near() or touched(); for TouchRule::continuous those of the points.
+  const NearDisks& near_disks() const { return *near_disks_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().
@@ -58,13 +59,17 @@ class ContactList final : public NearContactSource {
   void append_contacts(double side);
   void gather_cells();
   void gather_deepest(double side);
+  bool is_touched(std::size_t disk) const;
+  void add_cluster(const Vec3& p_T);
+  Touched touched_within(const ToolPose& pose, double reach_m);
   std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
 
   const ToolParameters p_;
   const Kernels& kernels_;
   TouchFinder finder_;
-  NearDisks disks_;
-  double max_disk_m_ = 0;
+  NearDisks disks_, merged_disks_;
+  NearDisks* near_disks_ = &disks_;  // what near() looks at: the points, or fewer that stand for them
+  double max_disk_m_ = 0, max_near_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
   struct NearDisk {

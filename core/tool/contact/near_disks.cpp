@@ -28,13 +28,15 @@ PosedField posed(const VoxelTool& tool, const ToolPose& pose) {
 }  // namespace
 
 void NearDisks::on_frame(const TiledCloud& cloud) {
+  cloud_ = &cloud;
   reserve(cloud.padded_size());
 }
 
 void NearDisks::reserve(std::size_t padded_size) {
   for (Columns* columns : {&p_W_, &n_W_, &p_T_, &n_T_, &gradient_T_, &contact_r_T_, &contact_n_T_})
     for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(padded_size);
-  for (auto* column : {&spacing_, &radius_, &distance_, &slope_, &lower_, &contact_depth_, &contact_side_})
+  for (auto* column :
+       {&spacing_, &extent_, &radius_, &distance_, &slope_, &lower_, &contact_depth_, &contact_side_})
     column->grow(padded_size);
   cell_.grow(padded_size);
   count_ = 0, is_known_ = false, searched_m_ = -1;
@@ -51,28 +53,28 @@ bool NearDisks::is_covered(const TouchFinder& finder, const ToolPose& pose, doub
 
 void NearDisks::search(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
   searched_at_ = pose, searched_m_ = std::max(reach_m, std::min(reach_m + kSpare_m, kMaxSearch_m));
-  const std::span<const std::uint32_t> points = finder.within(pose, searched_m_);
-  const PointColumns all = finder.cloud().columns();
+  const std::span<const std::uint32_t> points = finder.within(*cloud_, pose, searched_m_);
+  const PointColumns all = cloud_->columns();
   count_ = points.size();
   for (std::size_t k = 0; k < count_; ++k) {
     const std::uint32_t i = points[k];
     p_W_.x[k] = all.x[i], p_W_.y[k] = all.y[i], p_W_.z[k] = all.z[i];
     n_W_.x[k] = all.nx[i], n_W_.y[k] = all.ny[i], n_W_.z[k] = all.nz[i];
-    spacing_[k] = all.spacing[i];
+    spacing_[k] = all.spacing[i], extent_[k] = all.extent[i];
   }
   for (std::size_t k = count_; k % kLanes != 0; ++k)
-    for (Buffer<double>* column : {&p_W_.x, &p_W_.y, &p_W_.z, &n_W_.x, &n_W_.y, &n_W_.z, &spacing_})
+    for (Buffer<double>* column : {&p_W_.x, &p_W_.y, &p_W_.z, &n_W_.x, &n_W_.y, &n_W_.z, &spacing_, &extent_})
       (*column)[k] = kFarAway;
 }
 
 void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
                       double reach_m) {
-  if (is_known_ && pose == pose_ && reach_m == reach_m_) return;
+  if (is_known_ && pose == pose_ && reach_m <= reach_m_) return;
   const VoxelTool& tool = finder.tool();
   field_ = posed(tool, pose);
   if (!is_covered(finder, pose, reach_m)) search(finder, pose, reach_m);
-  const PointColumns points{p_W_.x.data(), p_W_.y.data(), p_W_.z.data(),  n_W_.x.data(),
-                            n_W_.y.data(), n_W_.z.data(), spacing_.data()};
+  const PointColumns points{p_W_.x.data(), p_W_.y.data(), p_W_.z.data(),   n_W_.x.data(),
+                            n_W_.y.data(), n_W_.z.data(), spacing_.data(), extent_.data()};
   kernels.tool.disks_in_field(points, count_, disk_radius_ratio_, cells_per_m_, field_, columns());
   finish_outside(tool);
   is_known_ = true, pose_ = pose, reach_m_ = reach_m;

@@ -22,8 +22,9 @@ class NearDisks {
   NearDisks(double disk_radius_ratio, double cell_m)
       : disk_radius_ratio_(disk_radius_ratio), cells_per_m_(1 / cell_m) {}
 
-  void on_frame(const TiledCloud& cloud);  // allocates unless reserved
-  void reserve(std::size_t padded_size);   // for clouds of that size
+  // Allocates unless reserved. The cloud has to outlive the queries; it is the finder's, or fewer points.
+  void on_frame(const TiledCloud& cloud);
+  void reserve(std::size_t padded_size);  // for clouds of that size
   // All disks whose centre is within reach_m, and some farther ones; in the order of the cloud's tiles. Which
   // farther ones depends on the poses before.
   // pre: reach_m <= kFieldMargin_m - 2e-4.
@@ -59,9 +60,10 @@ class NearDisks {
   void finish_outside(const VoxelTool& tool);
 
   const double disk_radius_ratio_, cells_per_m_;
+  const TiledCloud* cloud_ = nullptr;
   // The points kept, and where and how far they were searched.
   Columns p_W_, n_W_;
-  Buffer<double> spacing_;
+  Buffer<double> spacing_, extent_;
   ToolPose searched_at_;
   double searched_m_ = -1;
 

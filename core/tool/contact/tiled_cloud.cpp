@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/geometry/bounding_box.h"
 #include "core/numeric/order_statistic.h"
 #include "core/search/morton_order.h"
+#include "core/tool/contact/contact_thinning.h"
+#include "core/tool/contact/merged_points.h"
 
 namespace remote_touch {
 
@@ -15,6 +18,7 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
 constexpr std::uint32_t kTileSide_px = 8;
+constexpr std::size_t kWorth = 2;  // times fewer points, and a merged cloud is used
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 
 // The smallest sphere around the middle of the box of count items.
@@ -111,7 +115,7 @@ void TiledCloud::change_tile(const TiledCloud& all, const Tile& tile, const Poin
 
 void TiledCloud::reserve(std::size_t points) {
   const std::size_t tiles = points / kTilePoints + 1, padded = tiles * kTilePoints;
-  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_}) column->reserve(padded);
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_, &extent_m_}) column->reserve(padded);
   for (auto* column : {&tile_spheres_, &group_spheres_}) {
     const std::size_t size = column == &tile_spheres_ ? tiles + kLanes : tiles * kLanes;
     for (auto* part : {&column->x, &column->y, &column->z, &column->radius_m}) part->reserve(size);
@@ -120,9 +124,10 @@ void TiledCloud::reserve(std::size_t points) {
 }
 
 void TiledCloud::clear() {
-  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_}) column->clear();
+  for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_, &extent_m_}) column->clear();
   tile_spheres_.clear(), group_spheres_.clear();
   tiles_.clear(), blocks_.clear();
+  merged_.reset();
   without_normal_ = 0;
 }
 
@@ -139,14 +144,16 @@ void TiledCloud::assign(const TiledCloud& all, const BoundingSphere& ball, const
         copy_tile(all, tile);
     }
   }
+  extent_m_.assign(x_.size(), 0);
   finish();
 }
 
 void TiledCloud::finish() {
   gather_tile_spheres();
   gather_blocks();
-  max_spacing_m_ = 0;
+  max_spacing_m_ = max_extent_m_ = 0;
   for (const double spacing_m : spacing_m_) max_spacing_m_ = std::max(max_spacing_m_, spacing_m);
+  for (const double extent_m : extent_m_) max_extent_m_ = std::max(max_extent_m_, extent_m);
 }
 
 void TiledCloud::Spheres::add(const BoundingSphere& sphere) {
@@ -202,6 +209,56 @@ void TiledCloud::assign(const PointCloud& cloud) {
       add_tile(cloud, std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i)));
   }
   measure_spacing(cloud);
+  extent_m_.assign(x_.size(), 0);
+  finish();
+  merge();
+}
+
+// The points of a cube of a grid become one point if they are flat.
+void TiledCloud::merge() {
+  std::vector<double> usual = spacing_m_;
+  std::erase(usual, 0);
+  if (!(median_or_0(usual) <= kMaxMergedSpacing_m)) return;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> cubes;  // and the points in them
+  for (std::uint32_t i = 0; i < x_.size(); ++i)
+    if (x_[i] != kFarAway) cubes.emplace_back(cell_number(point(i), 1 / kMergedCube_m), i);
+  std::sort(cubes.begin(), cubes.end());
+  PointCloud fewer;
+  std::vector<double> spacing_m, extent_m;
+  const auto add = [&](const Vec3& p_W, const Vec3& n_W, double spacing, double extent) {
+    fewer.append(p_W, n_W), spacing_m.push_back(spacing), extent_m.push_back(extent);
+  };
+  std::vector<CloudPoint> points;
+  for (std::size_t first = 0, end = 0; first < cubes.size(); first = end) {
+    points.clear();
+    for (; end < cubes.size() && cubes[end].first == cubes[first].first; ++end)
+      points.push_back({point(cubes[end].second), normal(cubes[end].second)});
+    const double spacing = spacing_m_[cubes[first].second];
+    if (const auto one = merged_point(points, spacing, kFlat_m))
+      add(one->p_W, one->n_W, spacing, one->extent_m);
+    else
+      for (std::size_t k = first; k < end; ++k)
+        add(points[k - first].p_W, points[k - first].n_W, spacing_m_[cubes[k].second], 0);
+  }
+  if (kWorth * fewer.size() > cubes.size()) return;
+  merged_ = std::make_unique<TiledCloud>();
+  merged_->assign_merged(fewer, spacing_m, extent_m);
+}
+
+void TiledCloud::assign_merged(const PointCloud& cloud, std::span<const double> spacing_m,
+                               std::span<const double> extent_m) {
+  clear();
+  const std::vector<std::uint32_t> order = morton_order(cloud);
+  for (std::size_t i = 0; i < order.size(); i += kTilePoints) {
+    const auto first = static_cast<std::uint32_t>(x_.size());
+    const auto tile = std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i));
+    for (const std::uint32_t point : tile) {
+      add_point({cloud.point(point), cloud.normal(point), spacing_m[point]});
+      extent_m_.push_back(extent_m[point]);
+    }
+    finish_tile(first);
+    extent_m_.resize(x_.size(), 0);
+  }
   finish();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -65,7 +66,8 @@ class TiledCloud {
   const double* z() const { return z_.data(); }
   std::size_t padded_size() const { return x_.size(); }  // padding included
   PointColumns columns() const {
-    return {x_.data(), y_.data(), z_.data(), nx_.data(), ny_.data(), nz_.data(), spacing_m_.data()};
+    return {x_.data(),  y_.data(),  z_.data(),         nx_.data(),
+            ny_.data(), nz_.data(), spacing_m_.data(), extent_m_.data()};
   }
   // Bounding spheres of every tile, padded to whole rows, and of every group; a far-away one if it has no
   // point.
@@ -78,6 +80,12 @@ class TiledCloud {
   // the side of a square of the tile's area per point.
   double spacing_m(std::uint32_t i) const { return spacing_m_[i]; }
   double max_spacing_m() const { return max_spacing_m_; }
+  // Of what a point stands for around it: 0, or in a merged() cloud how far its points lie from it.
+  double max_extent_m() const { return max_extent_m_; }
+  // Where neighbours lie closer together than kMaxMergedSpacing_m: fewer points, each for those in a cube of
+  // a grid over the world that lie in one plane within kFlat_m, or for itself. Null where that saves little.
+  static constexpr double kFlat_m = 5e-6, kMergedCube_m = 2e-3, kMaxMergedSpacing_m = 6e-4;
+  const TiledCloud* merged() const { return merged_.get(); }
   int without_normal() const { return without_normal_; }
 
  private:
@@ -93,11 +101,14 @@ class TiledCloud {
   void gather_tile_spheres();
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);
+  void merge();
+  void assign_merged(const PointCloud& cloud, std::span<const double> spacing_m,
+                     std::span<const double> extent_m);
 
   std::vector<TileBlock> blocks_;
   std::vector<Tile> tiles_;
   std::vector<double> x_, y_, z_, nx_, ny_, nz_;
-  std::vector<double> spacing_m_;
+  std::vector<double> spacing_m_, extent_m_;
   struct Spheres {
     std::vector<double> x, y, z, radius_m;
 
@@ -106,7 +117,8 @@ class TiledCloud {
     SphereColumns columns() const { return {x.data(), y.data(), z.data(), radius_m.data()}; }
   };
   Spheres tile_spheres_, group_spheres_;
-  double max_spacing_m_ = 0;
+  double max_spacing_m_ = 0, max_extent_m_ = 0;
+  std::unique_ptr<TiledCloud> merged_;
   int without_normal_ = 0;
 };
 

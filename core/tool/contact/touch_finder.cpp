@@ -70,15 +70,16 @@ void TouchFinder::reserve(std::size_t padded_size) {
 }
 
 std::span<const std::uint32_t> TouchFinder::in_tool(const ToolPose& pose) const {
-  return find(pose, tool_->grid.size_m, voxels_.data(), static_cast<int>(Voxel::shell));
+  return find(*cloud_, pose, tool_->grid.size_m, voxels_.data(), static_cast<int>(Voxel::shell));
 }
 
-std::span<const std::uint32_t> TouchFinder::within(const ToolPose& pose, double distance_m) const {
-  return find(pose, distance_m, nearness_.data(), nearness(distance_m));
+std::span<const std::uint32_t> TouchFinder::within(const TiledCloud& cloud, const ToolPose& pose,
+                                                   double distance_m) const {
+  return find(cloud, pose, distance_m, nearness_.data(), nearness(distance_m));
 }
 
-std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double distance_m,
-                                                 const std::int8_t* table, int min) const {
+std::span<const std::uint32_t> TouchFinder::find(const TiledCloud& cloud, const ToolPose& pose,
+                                                 double distance_m, const std::int8_t* table, int min) const {
   const VoxelGrid& grid = tool_->grid;
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   CellTransform to_cells;
@@ -92,7 +93,7 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
     return (sphere.centre_W - pose.p_W).squaredNorm() > reach * reach;
   };
   std::size_t rows = 0;
-  for (const TileBlock& block : cloud_->blocks()) {
+  for (const TileBlock& block : cloud.blocks()) {
     if (beyond(block.sphere)) continue;
     for (std::uint32_t tile = 0; tile < block.count; tile += kLanes)
       rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
@@ -104,12 +105,12 @@ std::span<const std::uint32_t> TouchFinder::find(const ToolPose& pose, double di
   const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
   const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
                           distance_m / grid.size_m + 2, 1 / grid.size_m};
-  const std::size_t tiles = kernels_.tool.near_spheres(cloud_->tile_spheres(), rows_.data(), rows, to_cells,
+  const std::size_t tiles = kernels_.tool.near_spheres(cloud.tile_spheres(), rows_.data(), rows, to_cells,
                                                        nearness, code, tiles_.data());
-  const std::size_t groups = kernels_.tool.near_spheres(cloud_->group_spheres(), tiles_.data(), tiles,
-                                                        to_cells, nearness, code, groups_.data());
-  const std::size_t count = kernels_.tool.points_in_cells(
-      cloud_->x(), cloud_->y(), cloud_->z(), groups_.data(), groups, to_cells, cells, min, found_.data());
+  const std::size_t groups = kernels_.tool.near_spheres(cloud.group_spheres(), tiles_.data(), tiles, to_cells,
+                                                        nearness, code, groups_.data());
+  const std::size_t count = kernels_.tool.points_in_cells(cloud.x(), cloud.y(), cloud.z(), groups_.data(),
+                                                          groups, to_cells, cells, min, found_.data());
   return {found_.data(), count};
 }
 

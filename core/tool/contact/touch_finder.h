@@ -31,13 +31,18 @@ class TouchFinder {
   std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
   // All points whose field value is distance_m or less, and some that lie up to two voxels farther away.
   // pre: distance_m < kFieldMargin_m.
-  std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const;
+  std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const {
+    return within(*cloud_, pose, distance_m);
+  }
+  // The same for another cloud, which has no more points.
+  std::span<const std::uint32_t> within(const TiledCloud& cloud, const ToolPose& pose,
+                                        double distance_m) const;
 
   Voxel voxel(const Vec3& p_T) const;
 
  private:
-  std::span<const std::uint32_t> find(const ToolPose& pose, double distance_m, const std::int8_t* table,
-                                      int min) const;
+  std::span<const std::uint32_t> find(const TiledCloud& cloud, const ToolPose& pose, double distance_m,
+                                      const std::int8_t* table, int min) const;
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;

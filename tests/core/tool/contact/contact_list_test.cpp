@@ -127,5 +127,26 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
   }
 }
 
+// A box over a dense flat surface, with one edge lower: the deepest contact is as far as that edge is,
+// whether few points stand for many (look-ahead) or each for itself (continuous).
+TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
+  constexpr double kGap_m = 1e-4, kTilt_rad = 0.02;
+  PointCloud cloud;
+  for (int j = 0; j < 100; ++j)
+    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  ToolPose pose{Vec3::Zero(), rotation({0, 0, kTilt_rad})};
+  pose.p_W.y() = kGap_m + 0.005 * std::sin(kTilt_rad) + 0.003 * std::cos(kTilt_rad);
+  for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::continuous}) {
+    ToolParameters p;
+    p.contact_rule = rule;
+    ContactList list(kTool, p, scenes::kernels());
+    list.on_frame(formatted<TiledCloud>(cloud));
+    const NearContacts near = list.near(pose, 0);
+    EXPECT_NEAR(near.deepest_m, -kGap_m, 2e-5);
+    EXPECT_EQ(list.near_disks().size() > 500, rule == TouchRule::continuous);
+    for (const ToolContact& contact : near.contacts) EXPECT_GT((pose.q_WT * contact.n_T).y(), -0.1);
+  }
+}
+
 }  // namespace
 }  // namespace remote_touch::contact_list_test
