@@ -175,46 +175,48 @@ TEST(TiledCloud, OnlyTilesNearTheBallAreShownAndNothingIsAllocated) {
     if ((p - ball.centre_W).norm() > ball.radius_m || (p - ball.centre_W).norm() <= 0.03) continue;
     EXPECT_NE(std::find(points.begin(), points.end(), p), points.end());
   }
-  // A gently curved surface of points 0.3 mm apart, with a step that none may stand across.
-  PointCloud dense_cloud(double noise_m) {
-    PointCloud cloud;
-    for (int j = 0; j < 200; ++j)
-      for (int i = 0; i < 200; ++i) {
-        const double x = (i - 100) * 3e-4, z = (j - 100) * 3e-4, sign = (i * 7 + j * 3) % 2 == 0 ? 1 : -1;
-        cloud.append(Vec3(x, 0.5 * x * x + (z > 0.01 ? 2e-4 : 0) + sign * noise_m, z),
-                     Vec3(-x, 1, 0).normalized());
-      }
-    return cloud;
-  }
+}
 
-  TEST(TiledCloud, FewPointsStandForManyThatLieInOnePlane) {
-    TiledCloud tiled;
-    tiled.assign(dense_cloud(0));
-    const TiledCloud* merged = tiled.merged();
-    ASSERT_TRUE(merged);
-    int count = 0;
-    for (std::uint32_t k = 0; k < merged->padded_size(); ++k) count += merged->point(k).x() < 1 ? 1 : 0;
-    EXPECT_LT(20 * count, 40000);
-    for (std::uint32_t i = 0; i < tiled.padded_size(); ++i) {
-      if (!(tiled.point(i).x() < 1)) continue;
-      bool is_covered = false;
-      for (std::uint32_t k = 0; k < merged->padded_size() && !is_covered; ++k) {
-        const Vec3 offset = tiled.point(i) - merged->point(k);
-        is_covered = offset.norm() <= merged->columns().extent[k] + 1e-12 &&
-                     std::abs(offset.dot(merged->normal(k))) <= TiledCloud::kFlat_m;
-      }
-      ASSERT_TRUE(is_covered) << tiled.point(i).transpose();
+// A gently curved surface of points 0.3 mm apart, with a step that none may stand across.
+PointCloud dense_cloud(double noise_m) {
+  PointCloud cloud;
+  for (int j = 0; j < 200; ++j)
+    for (int i = 0; i < 200; ++i) {
+      const double x = (i - 100) * 3e-4, z = (j - 100) * 3e-4, sign = (i * 7 + j * 3) % 2 == 0 ? 1 : -1;
+      cloud.append(Vec3(x, 0.5 * x * x + (z > 0.01 ? 2e-4 : 0) + sign * noise_m, z),
+                   Vec3(-x, 1, 0).normalized());
     }
-    EXPECT_LE(merged->max_extent_m(), 0.5 * std::sqrt(3) * 2 * TiledCloud::kMergedCube_m);
-  }
+  return cloud;
+}
 
-  TEST(TiledCloud, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
-    TiledCloud tiled;
-    tiled.assign(dense_cloud(2 * TiledCloud::kFlat_m));
-    EXPECT_FALSE(tiled.merged());
-    tiled.assign(scenes::flat_grid(50, 0.002));
-    EXPECT_FALSE(tiled.merged());
+TEST(TiledCloud, FewPointsStandForManyThatLieInOnePlane) {
+  TiledCloud tiled;
+  tiled.assign(dense_cloud(0));
+  const TiledCloud* merged = tiled.merged();
+  ASSERT_TRUE(merged);
+  int count = 0;
+  for (std::uint32_t k = 0; k < merged->padded_size(); ++k) count += merged->point(k).x() < 1 ? 1 : 0;
+  EXPECT_LT(20 * count, 40000);
+  for (std::uint32_t i = 0; i < tiled.padded_size(); ++i) {
+    if (!(tiled.point(i).x() < 1)) continue;
+    bool is_covered = false;
+    for (std::uint32_t k = 0; k < merged->padded_size() && !is_covered; ++k) {
+      const Vec3 offset = tiled.point(i) - merged->point(k);
+      is_covered = offset.norm() <= merged->columns().extent[k] + 1e-12 &&
+                   std::abs(offset.dot(merged->normal(k))) <= TiledCloud::kFlat_m;
+    }
+    ASSERT_TRUE(is_covered) << tiled.point(i).transpose();
   }
+  EXPECT_LE(merged->max_extent_m(), 0.5 * std::sqrt(3) * 2 * TiledCloud::kMergedCube_m);
+}
+
+TEST(TiledCloud, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
+  TiledCloud tiled;
+  tiled.assign(dense_cloud(2 * TiledCloud::kFlat_m));
+  EXPECT_FALSE(tiled.merged());
+  tiled.assign(scenes::flat_grid(50, 0.002));
+  EXPECT_FALSE(tiled.merged());
+}
 
 }  // namespace
 }  // namespace remote_touch::tiled_cloud_test
