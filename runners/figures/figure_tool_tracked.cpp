@@ -21,7 +21,7 @@ struct TrackedMethod {
   const char *column, *label, *renderer;
 };
 constexpr TrackedMethod kTrackedTool{"tracked", "tracked sheets",
-                                  R"(renderer={"name": "tracked-tool", "tool_mesh": "slab-10"})"};
+                                     R"(renderer={"name": "tracked-tool", "tool_mesh": "slab-10"})"};
 // As they are by default, and with the velocity estimate that sweep tool-noise gives them.
 constexpr TrackedMethod kToolRivals[] = {
     {"voxels", "as printed",

@@ -19,9 +19,9 @@
 // motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
 // Contacts are kept ContinuousContacts::kGap_m away: while no frame has put points into the tool, a contact
-// within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do not
-// accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and not
-// of the tool, so that the spring is the same as with the other methods.
+// within twice that is a row J a >= d with the distance d that is missing, so that errors of second order do
+// not accumulate. M is that of a body of 1 kg with the gyration radius of the coupling about every axis, and
+// not of the tool, so that the spring is the same as with the other methods.
 //
 // New frames. In the source nothing but the hand moves. Points that a frame puts into the tool are contacts
 // of the present pose like any others: J a >= 0 lets the tool go out but does not take it out, and where it

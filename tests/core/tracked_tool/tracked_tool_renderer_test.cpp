@@ -174,8 +174,8 @@ TEST(TrackedTool, ForceAndTorqueHaveNoStepsOnAnEvenMotion) {
   }
 }
 
-// A floor and a wall, both noisy; both move. The tool stays at its distance from both, but for single frames in
-// which a point of the corner that is on neither sheet holds it, by up to 3.5 sigma.
+// A floor and a wall, both noisy; both move. The tool stays at its distance from both, but for single frames
+// in which a point of the corner that is on neither sheet holds it, by up to 3.5 sigma.
 TEST(TrackedTool, AFloorAndAWallAreTwoSheets) {
   const double sigma_m = 0.2 * kUnit_m;
   TrackedToolRenderer r = renderer();
