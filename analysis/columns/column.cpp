@@ -1,5 +1,6 @@
 #include "analysis/columns/column.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace remote_touch {
@@ -8,6 +9,13 @@ const std::vector<double>& numbers(const Table& table, const std::string& column
   for (const Column& candidate : table.columns)
     if (candidate.name == column) return std::get<std::vector<double>>(candidate.values);
   throw std::out_of_range(table.name + " has no column " + column);
+}
+
+double largest_of(std::span<const double> values) {
+  double largest = values.empty() ? std::nan("") : values[0];
+  for (const double value : values)
+    if (!(value <= largest)) largest = std::isnan(largest) ? largest : value;
+  return largest;
 }
 
 }  // namespace remote_touch

@@ -17,7 +17,7 @@ struct FieldAt {
 
 struct DiskLanes {
   Doubles3 p_T, n_T;
-  Doubles radius, lower;
+  Doubles radius, flat_slope, lower;
   FieldAt at;
   Flags has_normal;
 };
@@ -49,6 +49,7 @@ DiskLanes disks_of(const DiskColumns& disks, const std::uint32_t* number, std::s
   return {three(disks.p_T),
           n,
           of(disks.radius),
+          of(disks.flat_slope),
           of(disks.lower),
           {of(disks.distance), three(disks.gradient_T)},
           (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0)};
@@ -87,7 +88,7 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
 Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
   const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
-  active &= ~(steep < kFlatSlope);
+  active &= ~(steep < disk.flat_slope);
   if (!is_any(active)) return Flags{};
   const Doubles3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
   const Doubles ahead = dot(offset, direction_T), inside = disk.radius * disk.radius - dot(offset, offset);

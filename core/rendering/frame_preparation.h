@@ -10,26 +10,26 @@
 
 namespace remote_touch {
 
-// Form: any class with assign(const PointCloud&).
+// Form: any class with assign(const PointCloud&, settings...).
 template <class Form>
 struct PreparedForm final : FramePreparation {
   Form form;
 };
 
-template <class Form>
-std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& points,
-                                                        const Kernels& kernels) {
+template <class Form, class... Settings>
+std::shared_ptr<const PreparedForm<Form>> prepared_form(const NeighbourSearch& points, const Kernels& kernels,
+                                                        const Settings&... settings) {
   const auto made = std::make_shared<PreparedForm<Form>>();
   PointCloud buffer;
-  made->form.assign(points.every_point(kernels, buffer));
+  made->form.assign(points.every_point(kernels, buffer), settings...);
   return made;
 }
 
 // The form of the frame, built now unless it was prepared; only that allocates.
-template <class Form>
-std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels) {
+template <class Form, class... Settings>
+std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels, const Settings&... settings) {
   auto prepared = std::dynamic_pointer_cast<const PreparedForm<Form>>(frame.prepared);
-  if (!prepared) prepared = prepared_form<Form>(*frame.points, kernels);
+  if (!prepared) prepared = prepared_form<Form>(*frame.points, kernels, settings...);
   return {prepared, &prepared->form};
 }
 

@@ -36,6 +36,7 @@ std::string validate(const TrackedToolParameters& p) {
 TrackedToolRenderer::TrackedToolRenderer(const TrackedToolParameters& p,
                                          const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels)
     : kernels_(kernels),
+      merged_disk_m_(used_merged_disk_m(p.tool)),
       max_hold_frames_(p.sheet.max_missed_frames),
       tool_(p.tool, tool, kernels),
       patches_(p.sheet, p.sheet_unit_m, static_cast<std::size_t>(p.max_patches), *tool, kernels) {}
@@ -45,7 +46,7 @@ Parameters TrackedToolRenderer::live_parameters() {
 }
 
 void TrackedToolRenderer::prepare(Frame& frame) const {
-  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_);
+  frame.prepared = prepared_form<TiledCloud>(*frame.points, kernels_, merged_disk_m_);
 }
 
 void TrackedToolRenderer::reserve(std::size_t points) {
@@ -65,7 +66,7 @@ std::shared_ptr<const TiledCloud> TrackedToolRenderer::shown_points(const ToolPo
 
 void TrackedToolRenderer::on_frame(const Frame& frame) {
   if (!tool_.is_newer(frame)) return tool_.on_frame(frame, nullptr, {});
-  auto measured = form_of<TiledCloud>(frame, kernels_);
+  auto measured = form_of<TiledCloud>(frame, kernels_, merged_disk_m_);
   SheetPatches::Update update;
   ToolPose pose = tool_.pose();
   if (placed_)

@@ -49,6 +49,7 @@ class TrackedToolRenderer final : public Renderer {
   void requery(const ToolPose& pose, bool held);
 
   const Kernels& kernels_;
+  const double merged_disk_m_;
   const int max_hold_frames_;
   ToolRenderer tool_;
   SheetPatches patches_;

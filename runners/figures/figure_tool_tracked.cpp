@@ -109,6 +109,8 @@ ToolJump squared_jumps(const Trace& trace) {
 }
 
 constexpr double kJumpNoise[] = {0.3, 1, 3};  // r_c
+// A plate that is not held tells nothing.
+constexpr double kMinUpdates = 10;
 constexpr int kJumpSeeds[] = {101, 102};
 
 // A surface at rest, whose noise is drawn anew in every frame; one that rises at 0.1 m/s with the hand; and
@@ -151,8 +153,9 @@ std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& m
     to.force_N += each[i].force_N, to.torque_Nm += each[i].torque_Nm, to.updates += each[i].updates;
   }
   for (ToolJump& jump : rms) {
-    jump.force_N = std::sqrt(jump.force_N / jump.updates);
-    jump.torque_Nm = std::sqrt(jump.torque_Nm / jump.updates);
+    const double updates = jump.updates < kMinUpdates ? std::nan("") : jump.updates;
+    jump.force_N = std::sqrt(jump.force_N / updates);
+    jump.torque_Nm = std::sqrt(jump.torque_Nm / updates);
   }
   return rms;
 }
@@ -177,10 +180,9 @@ Table jump_table(const FigureContext& context, const JumpMotion& motion) {
 double largest_ratio(const Table& table, const std::string& what) {
   const auto &ours = numbers(table, "tracked" + what), &with = numbers(table, "look_ahead" + what),
              &without = numbers(table, "look_ahead_plain" + what);
-  double largest = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i)
-    largest = std::max(largest, ours[i] / std::fmin(with[i], without[i]));
-  return largest;
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / std::fmin(with[i], without[i]));
+  return largest_of(ratios);
 }
 
 // --- shapes that are not flat ---
@@ -233,10 +235,10 @@ Table shape_table(const FigureContext& context) {
 double largest_raised(const Table& table, const std::string& shape) {
   const auto& name = std::get<std::vector<std::string>>(table.columns[0].values);
   const auto& raised = numbers(table, "tracked");
-  double largest = 0;
+  std::vector<double> of_shape;
   for (std::size_t i = 0; i < name.size(); ++i)
-    if (name[i] == shape) largest = std::max(largest, std::abs(raised[i]));
-  return largest;
+    if (name[i] == shape) of_shape.push_back(std::abs(raised[i]));
+  return largest_of(of_shape);
 }
 
 std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& printed,

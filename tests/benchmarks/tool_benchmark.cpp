@@ -73,10 +73,10 @@ struct Stepper {
 
   Stepper(const ToolScene& scene, TouchRule rule_, const Kernels& kernels)
       : contacts(scene.tool, settings(rule_), kernels),
-        program(*scene.tool),
+        program(settings(rule_), *scene.tool),
         rule(rule_),
         reach_m(scene.tool->reach_m) {
-    contacts.on_frame(formatted<TiledCloud>(scene.cloud));
+    contacts.on_frame(formatted<TiledCloud>(scene.cloud, used_merged_disk_m(settings(rule_))));
   }
 
   // A millimetre down and along at most, as far as the points allow.

@@ -7,10 +7,10 @@
 
 namespace remote_touch {
 
-template <class Form>
-std::shared_ptr<const Form> formatted(const PointCloud& cloud) {
+template <class Form, class... Settings>
+std::shared_ptr<const Form> formatted(const PointCloud& cloud, const Settings&... settings) {
   const auto form = std::make_shared<Form>();
-  form->assign(cloud);
+  form->assign(cloud, settings...);
   return form;
 }
 

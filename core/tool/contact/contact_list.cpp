@@ -30,10 +30,8 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   max_disk_m_ = p_.disk_radius_ratio * points.max_spacing_m();
   reserve(points.padded_size());
   disks_.on_frame(points);
-  // A certificate is of points, and points without disks leave gaps.
-  const bool can_merge = p_.contact_rule == TouchRule::look_ahead && p_.disk_radius_ratio > 0;
-  const TiledCloud* merged = can_merge ? points.merged() : nullptr;
-  near_disks_ = merged ? &merged_disks_ : &disks_;
+  const TiledCloud* merged = used_merged_disk_m(p_) > 0 ? points.merged() : nullptr;
+  is_merged_ = merged != nullptr;
   max_near_disk_m_ = max_disk_m_;
   if (!merged) return;
   merged_disks_.on_frame(*merged);
@@ -41,7 +39,8 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
 }
 
 void ContactList::reserve(std::size_t padded_size) {
-  finder_.reserve(padded_size), disks_.reserve(padded_size), merged_disks_.reserve(padded_size);
+  finder_.reserve(padded_size), disks_.reserve(padded_size);
+  if (used_merged_disk_m(p_) > 0) merged_disks_.reserve(padded_size);
   contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
   near_.reserve(padded_size), nearest_.reserve(padded_size), others_.reserve(padded_size);
   chosen_.reserve(padded_size);
@@ -54,30 +53,29 @@ std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& cont
 }
 
 bool ContactList::is_worth_a_search(std::size_t disk) const {
-  return near_disks_->lower_m(disk) <= kSearch_m;
+  return near_disks().lower_m(disk) <= kSearch_m;
 }
 
 // No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
 double ContactList::bound_m(std::size_t disk) const {
-  const bool exact = is_worth_a_search(disk) && near_disks_->is_flat(disk);
-  return exact ? near_disks_->distance_m(disk) : near_disks_->lower_m(disk);
+  const bool exact = is_worth_a_search(disk) && near_disks().is_flat(disk);
+  return exact ? near_disks().distance_m(disk) : near_disks().lower_m(disk);
 }
 
 void ContactList::gather_near(double reach_m) {
-  near_.resize(near_disks_->size());
+  const NearDisks& disks = near_disks();
+  near_.resize(disks.size());
   std::size_t count = 0;
-  for (std::size_t i = 0; i < near_disks_->size();
-       ++i) {  // without a branch: which are near is hard to foresee
+  for (std::size_t i = 0; i < disks.size(); ++i) {  // without a branch: which are near is hard to foresee
     near_[count] = {bound_m(i), static_cast<std::uint32_t>(i), 0};
-    const bool is_near =
-        (near_disks_->lower_m(i) <= p_.look_ahead_m) & (near_disks_->distance_m(i) <= reach_m);
+    const bool is_near = (disks.lower_m(i) <= p_.look_ahead_m) & (disks.distance_m(i) <= reach_m);
     count += is_near ? 1 : 0;
   }
   near_.resize(count);
 }
 
 void ContactList::append_contacts(double side) {
-  near_disks_->append_contacts(chosen_, finder_, kernels_, kSearch_m, side, contacts_);
+  near_ones().append_contacts(chosen_, finder_, kernels_, kSearch_m, side, contacts_);
 }
 
 // The nearest disk of every cell of the tool, by their bounds.
@@ -87,7 +85,7 @@ void ContactList::gather_cells() {
   std::uint64_t last_key = 0;
   std::size_t last_cell = ContactThinning::kNoCell;
   for (NearDisk& near : near_) {
-    const std::uint64_t key = near_disks_->cell(near.disk);
+    const std::uint64_t key = near_disks().cell(near.disk);
     const std::size_t cell =
         key == last_key && last_cell != ContactThinning::kNoCell ? last_cell : thinning_.cell(key);
     last_key = key, last_cell = cell;
@@ -126,7 +124,7 @@ NearContacts ContactList::near(const ToolPose& pose, double side) {
   const double reach_m = std::min(p_.look_ahead_m + max_near_disk_m_, kMaxReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   contacts_.clear();
-  near_disks_->query(finder_, kernels_, pose, reach_m);
+  near_ones().query(finder_, kernels_, pose, reach_m);
   gather_near(reach_m);
   if (near_.size() > ContactThinning::kMaxCount) {
     gather_deepest(side);
@@ -193,6 +191,7 @@ Touched ContactList::touched_within(const ToolPose& pose, double reach_m) {
   clusters_.clear();
   disks_.query(finder_, kernels_, pose, reach_m);
   for (std::size_t i = 0; i < disks_.size(); ++i) {
+    if (disks_.distance_m(i) > reach_m) continue;  // which of these are kept depends on the poses before
     all.nearest_distance_m = std::min(all.nearest_distance_m, disks_.distance_m(i));
     const Voxel voxel = disks_.distance_m(i) <= voxels_m ? finder_.voxel(disks_.p_T(i)) : Voxel::free;
     if (voxel == Voxel::free && !(disks && is_touched(i))) continue;

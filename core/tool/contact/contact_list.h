@@ -42,7 +42,7 @@ class ContactList final : public NearContactSource {
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
   // Of the last call of near() or touched(); for TouchRule::continuous those of the points.
-  const NearDisks& near_disks() const { return *near_disks_; }
+  const NearDisks& near_disks() const { return is_merged_ ? merged_disks_ : disks_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().
@@ -53,6 +53,7 @@ class ContactList final : public NearContactSource {
   Touched touched(const ToolPose& pose);
 
  private:
+  NearDisks& near_ones() { return is_merged_ ? merged_disks_ : disks_; }
   bool is_worth_a_search(std::size_t disk) const;
   double bound_m(std::size_t disk) const;
   void gather_near(double reach_m);
@@ -68,7 +69,7 @@ class ContactList final : public NearContactSource {
   const Kernels& kernels_;
   TouchFinder finder_;
   NearDisks disks_, merged_disks_;
-  NearDisks* near_disks_ = &disks_;  // what near() looks at: the points, or fewer that stand for them
+  bool is_merged_ = false;  // near() looks at fewer points that stand for all
   double max_disk_m_ = 0, max_near_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;

@@ -13,6 +13,8 @@ struct SurfaceDisk {
   Vec3 p_T, n_T;
   double radius_m;
   FieldSample at;  // the field at its centre
+  double flat_slope =
+      disk_search::kFlatSlope;  // below this slope of the field in its plane it counts as flat
 
   bool has_normal() const { return n_T.allFinite(); }
 };

@@ -2,8 +2,8 @@
 // dissertation.
 #pragma once
 
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "core/geometry/vector.h"
 
@@ -11,16 +11,26 @@ namespace remote_touch {
 
 struct CloudPoint {
   Vec3 p_W, n_W;  // NaN: no normal
+  double spacing_m;
 };
 
-// In the middle of its points, with their mean normal; none of them is farther from it than extent_m.
+// Where extent_m is 0 a point of the cloud. Otherwise the disk that stands for all points in a cube of a grid
+// over the world: in their middle, with their mean normal. Then
+// - none of them is farther from the middle than extent_m;
+// - each of them, and the rim of a disk of one spacing around it, lies within kFlat_m of its plane;
+// - the cloud covers it: within extent_m of the middle no square of 1.5 spacings is without a point of this
+// or
+//   a neighbouring cube, so that it does not reach beyond an edge or over a hole.
 struct MergedPoint {
   Vec3 p_W, n_W;
-  double extent_m;
+  double spacing_m, extent_m;
 };
 
-// Every point, and the rim of a disk of one spacing around it, lies within flat_m of the plane of the result,
-// and the points leave no large gaps: their spacing is spacing_m. None where that is not so.
-std::optional<MergedPoint> merged_point(std::span<const CloudPoint> points, double spacing_m, double flat_m);
+inline constexpr double kFlat_m = 5e-6;
+// Points that are farther apart than this, most of them, are not merged.
+inline constexpr double kMaxMergedSpacing_m = 6e-4;
+
+// Empty where merging would not save half of the points. pre: cube_m > 0.
+std::vector<MergedPoint> merged_points(std::span<const CloudPoint> points, double cube_m);
 
 }  // namespace remote_touch

@@ -35,8 +35,8 @@ void NearDisks::on_frame(const TiledCloud& cloud) {
 void NearDisks::reserve(std::size_t padded_size) {
   for (Columns* columns : {&p_W_, &n_W_, &p_T_, &n_T_, &gradient_T_, &contact_r_T_, &contact_n_T_})
     for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(padded_size);
-  for (auto* column :
-       {&spacing_, &extent_, &radius_, &distance_, &slope_, &lower_, &contact_depth_, &contact_side_})
+  for (auto* column : {&spacing_, &extent_, &radius_, &distance_, &slope_, &flat_slope_, &lower_,
+                       &contact_depth_, &contact_side_})
     column->grow(padded_size);
   cell_.grow(padded_size);
   count_ = 0, is_known_ = false, searched_m_ = -1;
@@ -69,7 +69,7 @@ void NearDisks::search(const TouchFinder& finder, const ToolPose& pose, double r
 
 void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
                       double reach_m) {
-  if (is_known_ && pose == pose_ && reach_m <= reach_m_) return;
+  if (!cloud_ || (is_known_ && pose == pose_ && reach_m <= reach_m_)) return;
   const VoxelTool& tool = finder.tool();
   field_ = posed(tool, pose);
   if (!is_covered(finder, pose, reach_m)) search(finder, pose, reach_m);
@@ -87,6 +87,7 @@ DiskColumns NearDisks::columns() const {
           distance_.data(),
           {gradient_T_.x.data(), gradient_T_.y.data(), gradient_T_.z.data()},
           slope_.data(),
+          flat_slope_.data(),
           lower_.data(),
           cell_.data()};
 }

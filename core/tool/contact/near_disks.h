@@ -25,15 +25,14 @@ class NearDisks {
   // Allocates unless reserved. The cloud has to outlive the queries; it is the finder's, or fewer points.
   void on_frame(const TiledCloud& cloud);
   void reserve(std::size_t padded_size);  // for clouds of that size
-  // All disks whose centre is within reach_m, and some farther ones; in the order of the cloud's tiles. Which
-  // farther ones depends on the poses before.
-  // pre: reach_m <= kFieldMargin_m - 2e-4.
+  // All disks whose centre is within reach_m, and some farther ones, none without a cloud; in the order of
+  // the cloud's tiles. Which farther ones depends on the poses before. pre: reach_m <= kFieldMargin_m - 2e-4.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
 
   std::size_t size() const { return count_; }
   double lower_m(std::size_t i) const { return lower_[i]; }  // lower_bound_m()
-  // The disk has a normal and lies so flat in the field that no point of it is nearer than its centre.
-  bool is_flat(std::size_t i) const { return slope_[i] < disk_search::kFlatSlope; }
+  // The disk has a normal and lies so flat in the field that no point of it counts as nearer than its centre.
+  bool is_flat(std::size_t i) const { return slope_[i] < flat_slope_[i]; }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
   // cell_and_octant() of its centre and the direction against the gradient, in which a contact there would
@@ -45,7 +44,7 @@ class NearDisks {
                        const Kernels& kernels, double search_m, double side,
                        std::vector<ToolContact>& contacts);
   SurfaceDisk disk(std::size_t i) const {
-    return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}};
+    return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}, flat_slope_[i]};
   }
 
  private:
@@ -69,7 +68,7 @@ class NearDisks {
 
   PosedField field_{};
   Columns p_T_, n_T_, gradient_T_;
-  Buffer<double> radius_, distance_, slope_, lower_;
+  Buffer<double> radius_, distance_, slope_, flat_slope_, lower_;
   Buffer<std::uint64_t> cell_;
   Columns contact_r_T_, contact_n_T_;
   Buffer<double> contact_depth_, contact_side_;

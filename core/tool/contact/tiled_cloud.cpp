@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kSamePlace_m = 1e-6;  // closer points are one point twice, and tell no spacing
 constexpr std::uint32_t kTileSide_px = 8;
-constexpr std::size_t kWorth = 2;  // times fewer points, and a merged cloud is used
 const BoundingSphere kNoSphere{Vec3::Constant(kFarAway), 0};
 
 // The smallest sphere around the middle of the box of count items.
@@ -185,7 +184,7 @@ void TiledCloud::gather_blocks() {
   }
 }
 
-void TiledCloud::assign(const PointCloud& cloud) {
+void TiledCloud::assign(const PointCloud& cloud, double merged_cube_m) {
   clear();
   if (cloud.image) {
     // Blocks of 64 x 64 pixels one after the other, so that the tiles of a block lie together.
@@ -211,50 +210,30 @@ void TiledCloud::assign(const PointCloud& cloud) {
   measure_spacing(cloud);
   extent_m_.assign(x_.size(), 0);
   finish();
-  merge();
+  if (merged_cube_m > 0) merge(merged_cube_m);
 }
 
-// The points of a cube of a grid become one point if they are flat.
-void TiledCloud::merge() {
-  std::vector<double> usual = spacing_m_;
-  std::erase(usual, 0);
-  if (!(median_or_0(usual) <= kMaxMergedSpacing_m)) return;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> cubes;  // and the points in them
-  for (std::uint32_t i = 0; i < x_.size(); ++i)
-    if (x_[i] != kFarAway) cubes.emplace_back(cell_number(point(i), 1 / kMergedCube_m), i);
-  std::sort(cubes.begin(), cubes.end());
-  PointCloud fewer;
-  std::vector<double> spacing_m, extent_m;
-  const auto add = [&](const Vec3& p_W, const Vec3& n_W, double spacing, double extent) {
-    fewer.append(p_W, n_W), spacing_m.push_back(spacing), extent_m.push_back(extent);
-  };
+void TiledCloud::merge(double cube_m) {
   std::vector<CloudPoint> points;
-  for (std::size_t first = 0, end = 0; first < cubes.size(); first = end) {
-    points.clear();
-    for (; end < cubes.size() && cubes[end].first == cubes[first].first; ++end)
-      points.push_back({point(cubes[end].second), normal(cubes[end].second)});
-    const double spacing = spacing_m_[cubes[first].second];
-    if (const auto one = merged_point(points, spacing, kFlat_m))
-      add(one->p_W, one->n_W, spacing, one->extent_m);
-    else
-      for (std::size_t k = first; k < end; ++k)
-        add(points[k - first].p_W, points[k - first].n_W, spacing_m_[cubes[k].second], 0);
-  }
-  if (kWorth * fewer.size() > cubes.size()) return;
+  for (std::uint32_t i = 0; i < x_.size(); ++i)
+    if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});
+  const std::vector<MergedPoint> fewer = merged_points(points, cube_m);
+  if (fewer.empty()) return;
   merged_ = std::make_unique<TiledCloud>();
-  merged_->assign_merged(fewer, spacing_m, extent_m);
+  merged_->assign_merged(fewer);
 }
 
-void TiledCloud::assign_merged(const PointCloud& cloud, std::span<const double> spacing_m,
-                               std::span<const double> extent_m) {
+void TiledCloud::assign_merged(std::span<const MergedPoint> points) {
   clear();
+  PointCloud cloud;
+  for (const MergedPoint& point : points) cloud.append(point.p_W, point.n_W);
   const std::vector<std::uint32_t> order = morton_order(cloud);
   for (std::size_t i = 0; i < order.size(); i += kTilePoints) {
     const auto first = static_cast<std::uint32_t>(x_.size());
-    const auto tile = std::span(order).subspan(i, std::min<std::size_t>(kTilePoints, order.size() - i));
-    for (const std::uint32_t point : tile) {
-      add_point({cloud.point(point), cloud.normal(point), spacing_m[point]});
-      extent_m_.push_back(extent_m[point]);
+    for (std::size_t k = i; k < std::min<std::size_t>(i + kTilePoints, order.size()); ++k) {
+      const MergedPoint& point = points[order[k]];
+      add_point({point.p_W, point.n_W, point.spacing_m});
+      extent_m_.push_back(point.extent_m);
     }
     finish_tile(first);
     extent_m_.resize(x_.size(), 0);

@@ -9,6 +9,7 @@
 
 #include "core/cloud/point_cloud.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/tool/contact/merged_points.h"
 
 namespace remote_touch {
 
@@ -50,8 +51,9 @@ class PointChange {
 class TiledCloud {
  public:
   // The tiles of an organised cloud are 8 x 8 pixels, those of others up to 64 points along a space-filling
-  // curve. Points that are not finite are left out. Allocates.
-  void assign(const PointCloud& cloud);
+  // curve. Points that are not finite are left out. merged_cube_m: above 0, there is a merged() cloud where
+  // that is worth it. Allocates.
+  void assign(const PointCloud& cloud, double merged_cube_m = 0);
   // The tiles of another cloud that reach into a ball, their points changed, in the same order. Allocates
   // unless reserve() was called for as many points, or for the pixels of an image, sides rounded up to 8.
   void assign(const TiledCloud& all, const BoundingSphere& ball, const PointChange& change);
@@ -82,9 +84,7 @@ class TiledCloud {
   double max_spacing_m() const { return max_spacing_m_; }
   // Of what a point stands for around it: 0, or in a merged() cloud how far its points lie from it.
   double max_extent_m() const { return max_extent_m_; }
-  // Where neighbours lie closer together than kMaxMergedSpacing_m: fewer points, each for those in a cube of
-  // a grid over the world that lie in one plane within kFlat_m, or for itself. Null where that saves little.
-  static constexpr double kFlat_m = 5e-6, kMergedCube_m = 2e-3, kMaxMergedSpacing_m = 6e-4;
+  // Fewer points that stand for all, merged_points(). Null where there are none.
   const TiledCloud* merged() const { return merged_.get(); }
   int without_normal() const { return without_normal_; }
 
@@ -101,9 +101,8 @@ class TiledCloud {
   void gather_tile_spheres();
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);
-  void merge();
-  void assign_merged(const PointCloud& cloud, std::span<const double> spacing_m,
-                     std::span<const double> extent_m);
+  void merge(double cube_m);
+  void assign_merged(std::span<const MergedPoint> points);
 
   std::vector<TileBlock> blocks_;
   std::vector<Tile> tiles_;

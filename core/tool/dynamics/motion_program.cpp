@@ -12,6 +12,11 @@ constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
 
 }  // namespace
 
+MotionProgram::MotionProgram(const ToolParameters& parameters, const VoxelTool& tool)
+    : MotionProgram(parameters.motion_metric == MotionMetric::tool
+                        ? tool.inertia_m2
+                        : even_inertia_m2(parameters.gyration_radius_m)) {}
+
 MotionProgram::MotionProgram(const Eigen::Matrix3d& inertia_m2)
     : rigid_(kMaxContacts), elastic_(kMaxContacts + 1) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia_m2);

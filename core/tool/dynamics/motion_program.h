@@ -1,10 +1,13 @@
 // Gauss' least constraints for the tool, 6.2.3: the motion nearest to a desired one, in kinetic distance,
-// that the contacts allow. In tool axes, where the inertia is constant.
+// that the contacts allow. In tool axes, where the inertia is constant. At rest M times the displacement that
+// is left is a sum of contact normals; the wrench of a coupling (6.9) is one too only if M has its gyration
+// radius, MotionMetric::coupling. Then it is also the least elastic energy that the contacts allow.
 #pragma once
 
 #include <span>
 
 #include "core/solve/quadratic_program.h"
+#include "core/tool/dynamics/tool_parameters.h"
 #include "core/tool/dynamics/tool_pose.h"
 #include "core/tool/voxels/voxel_tool.h"
 
@@ -26,12 +29,18 @@ struct ConstrainedMotion {
   bool elastic = false;           // the constraints were infeasible and relaxed, all by the same slack
 };
 
+// Of a body of 1 kg with the same gyration radius about every axis.
+inline Eigen::Matrix3d even_inertia_m2(double gyration_radius_m) {
+  return Eigen::Matrix3d::Identity() * gyration_radius_m * gyration_radius_m;
+}
+
 class MotionProgram {
  public:
   static constexpr int kMaxContacts = 256;
 
-  explicit MotionProgram(const VoxelTool& tool) : MotionProgram(tool.inertia_m2) {}
-  // For a body of another inertia than the tool's, about its centre of mass, divided by the mass.
+  // M is that of motion_metric.
+  MotionProgram(const ToolParameters& parameters, const VoxelTool& tool);
+  // For a body of this inertia about its centre of mass, divided by the mass.
   explicit MotionProgram(const Eigen::Matrix3d& inertia_m2);
 
   // (6.4), (6.5) for a desired motion in tool axes; (6.7), (6.8) is the same with a desired motion of zero

@@ -18,6 +18,8 @@ Parameters parameters(ToolParameters& p) {
        "points (sphere-tree: regions) within this distance of the tool are constraints; not used with contact_rule = voxels"},
       {"disk_radius_ratio", &p.disk_radius_ratio, 0, 2,
        "each point is a disk; its radius is this value times the point spacing, so that corners of the tool do not sink between points; 0: points only; for contact_rule = look-ahead and continuous"},
+      {"merged_disk_m", &p.merged_disk_m, 0, 0.005,
+       "where points are less than 0.6 mm apart, one disk stands for the points of a cube of this size that cover a plane; parts of the tool smaller than the cube may get into the surface between the middles of disks; 0: none; for contact_rule = look-ahead"},
       {"frame_reach_m", &p.frame_reach_m, 0, 0.05,
        "for contact_rule = continuous: how far a surface that holds the tool may move in a frame; the tool is moved out by up to this, and back until a point stops it; a small detections_per_tick shortens it; 0: not moved out"},
       {"rest_threshold_m", &p.rest_threshold_m, 0, 1e-3, "the tick ends when a step is shorter than this"},
@@ -35,6 +37,8 @@ Parameters parameters(ToolParameters& p) {
        "maximum magnitude of the torque; larger torques are scaled down to it"},
       {"torque_rule", choice(p.torque_rule, {"inverse-jacobian", "printed"}), 0, 0,
        "inverse-jacobian: torque of an elastic energy; printed: (6.9) as printed, with the inertia of the tool"},
+      {"motion_metric", choice(p.motion_metric, {"tool", "coupling"}), 0, 0,
+       "M of (6.4), by which the nearest motion is chosen: tool: the tool's inertia, as printed; coupling: gyration_radius_m in all directions, so that force and torque on the hand are what the contacts can push; with the ratios of K equal"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
        "estimate the velocity of the cloud along the contact normal and move the tool with it, as (4.3), (4.13) do for the proxy; not in the dissertation",
        kLive},
@@ -47,12 +51,18 @@ Parameters parameters(ToolParameters& p) {
   };
 }
 
+double used_merged_disk_m(const ToolParameters& p) {
+  return p.contact_rule == TouchRule::look_ahead && p.disk_radius_ratio > 0 ? p.merged_disk_m : 0;
+}
+
 std::string validate(const ToolParameters& p) {
   if (10 * p.rest_threshold_m > p.max_step_m)
     return "rest_threshold_m = " + std::to_string(p.rest_threshold_m) +
            ": expected a tenth of max_step_m or less";
   if (p.contact_rule != TouchRule::voxels && p.look_ahead_m < p.max_step_m)
     return "look_ahead_m = " + std::to_string(p.look_ahead_m) + ": expected max_step_m or more";
+  if (p.motion_metric == MotionMetric::coupling && !(p.gyration_radius_m > 0))
+    return "gyration_radius_m = 0: expected more with motion_metric = coupling";
   return {};
 }
 

@@ -11,6 +11,7 @@ namespace remote_touch {
 // On the distance field; 6.2.3 to 6.2.5 as printed; or on the distance field, with certified steps.
 enum class TouchRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // of (6.9)
+enum class MotionMetric { tool, coupling };           // M of (6.4)
 enum class ToolForce { minus, plus, none };           // sign of the velocity term of (4.15), for a tool
 enum class ToolCommand { tool, hip };                 // what the slave robot follows, 5.2
 
@@ -22,6 +23,7 @@ struct ToolParameters {
   double exit_accuracy_m = 1e-4;  // epsilon_c
   double look_ahead_m = 2e-3;
   double disk_radius_ratio = 0.75;
+  double merged_disk_m = 2e-3;
   double frame_reach_m = 0.02;
   double rest_threshold_m = 1e-6;
   double stiffness_N_per_m = 600;  // K of (6.9) for a tool of 1 kg
@@ -31,6 +33,7 @@ struct ToolParameters {
   double max_force_N = 20;
   double max_torque_Nm = 1;
   TorqueRule torque_rule = TorqueRule::inverse_jacobian;
+  MotionMetric motion_metric = MotionMetric::tool;
   bool velocity_estimate = false;  // not in the dissertation
   double max_prediction_s = 0.1;
   ToolForce velocity_force = ToolForce::minus;
@@ -38,6 +41,9 @@ struct ToolParameters {
 };
 
 Parameters parameters(ToolParameters& p);
+// merged_disk_m under the rule that uses it, else 0: the certificate of the continuous rule is of points, and
+// points without disks would leave gaps.
+double used_merged_disk_m(const ToolParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ToolParameters& p);
 // Upper bound, over all poses, of how fast |force| grows with the displacement of the HIP.

@@ -51,8 +51,7 @@ GodObjectMotion::GodObjectMotion(const ToolGodObjectParameters& parameters, cons
       reach_m_(tool.reach_m),
       max_step_m_(parameters.max_step_m),
       near_(tool_parameters(parameters), tool),
-      program_(Eigen::Matrix3d(Eigen::Matrix3d::Identity() * parameters.coupling.gyration_radius_m *
-                               parameters.coupling.gyration_radius_m)) {
+      program_(even_inertia_m2(parameters.coupling.gyration_radius_m)) {
   touched_.reserve(static_cast<std::size_t>(MotionProgram::kMaxContacts));
 }
 

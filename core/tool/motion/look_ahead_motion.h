@@ -12,7 +12,7 @@ class LookAheadMotion {
  public:
   // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
   LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
-      : p_(parameters), reach_m_(reach_m), program_(tool) {}
+      : p_(parameters), reach_m_(reach_m), program_(parameters, tool) {}
   // As ToolMotion::move(). detections: what the tick has used of its budget before.
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated,
                         int detections = 0);

@@ -30,11 +30,11 @@ struct PreparedToolFrame final : FramePreparation {
 };
 
 std::shared_ptr<const PreparedToolFrame> prepared_tool_frame(const Frame& frame, const ToolMotion& rule,
-                                                             const Kernels& kernels) {
+                                                             double merged_disk_m, const Kernels& kernels) {
   const auto made = std::make_shared<PreparedToolFrame>();
   PointCloud buffer;
   const PointCloud& cloud = frame.points->every_point(kernels, buffer);
-  made->tiles.assign(cloud);
+  made->tiles.assign(cloud, merged_disk_m);
   made->for_rule = rule.prepared(cloud);
   return made;
 }
@@ -42,7 +42,7 @@ std::shared_ptr<const PreparedToolFrame> prepared_tool_frame(const Frame& frame,
 }  // namespace
 
 void ToolRenderer::prepare(Frame& frame) const {
-  frame.prepared = prepared_tool_frame(frame, *motion_, kernels_);
+  frame.prepared = prepared_tool_frame(frame, *motion_, used_merged_disk_m(p_), kernels_);
 }
 
 void ToolRenderer::reserve(std::size_t points) {
@@ -78,7 +78,7 @@ void ToolRenderer::on_frame(const Frame& frame, std::shared_ptr<const TiledCloud
 void ToolRenderer::on_frame(const Frame& frame) {
   if (!order_.take(frame)) return;
   auto prepared = std::dynamic_pointer_cast<const PreparedToolFrame>(frame.prepared);
-  if (!prepared) prepared = prepared_tool_frame(frame, *motion_, kernels_);
+  if (!prepared) prepared = prepared_tool_frame(frame, *motion_, used_merged_disk_m(p_), kernels_);
   take_points({prepared, &prepared->tiles});
   motion_->on_frame(prepared->for_rule);
   frame_arrived_s_ = frame.arrives_s;

@@ -9,7 +9,10 @@ namespace remote_touch {
 class VoxelMotion final : public ToolMotion {
  public:
   VoxelMotion(const ToolParameters& parameters, const VoxelTool& tool)
-      : p_(parameters), reach_m_(tool.reach_m), sub_step_m_(0.5 * tool.grid.size_m), program_(tool) {}
+      : p_(parameters),
+        reach_m_(tool.reach_m),
+        sub_step_m_(0.5 * tool.grid.size_m),
+        program_(parameters, tool) {}
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts, bool updated) override;
 
  private:

@@ -81,12 +81,16 @@ class Subject {
     run.view_matters = entry_.contact_model == ContactModel::oriented;
     run.fits_a_sheet = entry_.contact_model == ContactModel::sheet || run.view_matters;
     run.order_matters = entry_.contact_model == ContactModel::mesh;
-    run.has_spheres = is_tool() && entry_.contact_model == ContactModel::regions;
+    run.can_be_mirrored = !is_tool() || (entry_.contact_model != ContactModel::regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
   }
 
  private:
+  bool names_a_tool() const {
+    return std::any_of(assignments_.begin(), assignments_.end(),
+                       [](const std::string& assignment) { return assignment.starts_with("tool_mesh="); });
+  }
   // The number of that name; null without one.
   static double* stiffness(const Parameters& parameters) {
     for (const Parameter& p : parameters)

@@ -20,10 +20,12 @@ double difference(const Vec3& a, const Vec3& b) {
   return std::hypot(difference(a.x(), b.x()), difference(a.y(), b.y()), difference(a.z(), b.z()));
 }
 
-// Of a tool, radians for small angles.
+// Of a tool, radians for small angles. Infinite if an orientation is not finite, or only one has a tool.
 double rotation_between(const RenderOutput& a, const RenderOutput& b) {
-  if (!a.tool || !b.tool) return 0;
+  if (!a.tool && !b.tool) return 0;
+  if (!a.tool || !b.tool) return std::numeric_limits<double>::infinity();
   const Eigen::Vector4d &p = a.tool->orientation_W.coeffs(), &q = b.tool->orientation_W.coeffs();
+  if (!p.allFinite() || !q.allFinite()) return std::numeric_limits<double>::infinity();
   return 2 * std::min((p - q).norm(), (p + q).norm());  // q and -q are one rotation
 }
 

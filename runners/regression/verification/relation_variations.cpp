@@ -20,7 +20,7 @@ bool needs_its_images(const Variation& run) {
 }
 
 bool mirror_axis(Variation& run, int axis) {
-  if (run.fits_a_sheet || run.has_spheres) return false;
+  if (run.fits_a_sheet || !run.can_be_mirrored) return false;
   mirror(run, axis);
   return true;
 }

@@ -28,6 +28,18 @@ MetamorphicScene tool_plane(const Kernels& kernels) {
   return scene;
 }
 
+// Points so close together that one disk can stand for many: cubes of 2 mm along the world's axes.
+MetamorphicScene tool_dense() {
+  MetamorphicScene scene = resting_scene(
+      "tool-dense", "a plane at rest with points 0.5 mm apart, pressed with the middle of a bar",
+      {{0, {0.002, 0.022, -0.001}, {0, 0, 0}},
+       {80, {0.002, 0.004, -0.001}, {0.05, 0.1, 0.03}},
+       {320, {-0.003, 0.003, 0.002}, {0.1, 0.5, -0.04}}},
+      sheet_of({60, 60, 0.0005, 0, 0}, flat_surface));
+  place(scene, kSlightTilt, {0.03, 0.01, -0.02});
+  return scene;
+}
+
 MetamorphicScene tool_groove(const Kernels& kernels) {
   MetamorphicScene scene =
       resting_scene("tool-groove", "two walls that meet, a bar pressed between them and turned",
@@ -97,7 +109,7 @@ MetamorphicScene tool_held(const Kernels& kernels) {
 }  // namespace
 
 std::vector<MetamorphicScene> tool_scenes(const Kernels& kernels) {
-  return {tool_plane(kernels), tool_groove(kernels),  tool_touch_and_go(kernels),
+  return {tool_plane(kernels), tool_dense(),          tool_groove(kernels), tool_touch_and_go(kernels),
           tool_rise(kernels),  tool_regions(kernels), tool_held(kernels)};
 }
 

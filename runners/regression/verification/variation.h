@@ -22,10 +22,10 @@ struct Variation {
   // The renderer fits a sheet (ContactModel::sheet): the world's axes matter, for its cells, and the number
   // of frames, for its estimate of noise.
   bool fits_a_sheet = false;
-  bool view_matters = false;   // so does the layout of an image, for its camera
-  bool order_matters = false;  // the renderer depends on the points' rows and columns
-  bool has_spheres = false;    // the renderer's tool is made of spheres, which no mirror maps onto themselves
-  std::optional<double> stiffness_N_per_m = {};        // of the renderer, if it has a parameter of that name
+  bool view_matters = false;                     // so does the layout of an image, for its camera
+  bool order_matters = false;                    // the renderer depends on the points' rows and columns
+  bool can_be_mirrored = true;                   // false: a tool that is not known to be its own mirror image
+  std::optional<double> stiffness_N_per_m = {};  // of the renderer, if it has a parameter of that name
   std::optional<double> other_stiffness_N_per_m = {};  // replaces it in the varied run
 };
 

@@ -128,24 +128,50 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
 }
 
 // A box over a dense flat surface, with one edge lower: the deepest contact is as far as that edge is,
-// whether few points stand for many (look-ahead) or each for itself (continuous).
+// whether few points stand for many (look-ahead) or each for itself (continuous), wherever the edge is.
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
-  constexpr double kGap_m = 1e-4, kTilt_rad = 0.02;
+  constexpr double kGap_m = 1e-4;
   PointCloud cloud;
   for (int j = 0; j < 100; ++j)
     for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
-  ToolPose pose{Vec3::Zero(), rotation({0, 0, kTilt_rad})};
-  pose.p_W.y() = kGap_m + 0.005 * std::sin(kTilt_rad) + 0.003 * std::cos(kTilt_rad);
+  const auto points = formatted<TiledCloud>(cloud, ToolParameters{}.merged_disk_m);
   for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::continuous}) {
     ToolParameters p;
     p.contact_rule = rule;
     ContactList list(kTool, p, scenes::kernels());
-    list.on_frame(formatted<TiledCloud>(cloud));
-    const NearContacts near = list.near(pose, 0);
-    EXPECT_NEAR(near.deepest_m, -kGap_m, 2e-5);
+    list.on_frame(points);
+    for (const double tilt_rad : {0.004, 0.01, 0.02, 0.04, 0.06})
+      for (const double x_m : {0.0, 6e-4, 1.3e-3}) {
+        ToolPose pose{{x_m, 0, 0}, rotation({0, 0, tilt_rad})};
+        pose.p_W.y() = kGap_m + 0.005 * std::sin(tilt_rad) + 0.003 * std::cos(tilt_rad);
+        const NearContacts near = list.near(pose, 0);
+        EXPECT_NEAR(near.deepest_m, -kGap_m, 2e-5) << tilt_rad << " " << x_m;
+        for (const ToolContact& contact : near.contacts) EXPECT_GT((pose.q_WT * contact.n_T).y(), -0.1);
+      }
     EXPECT_EQ(list.near_disks().size() > 500, rule == TouchRule::continuous);
-    for (const ToolContact& contact : near.contacts) EXPECT_GT((pose.q_WT * contact.n_T).y(), -0.1);
   }
+}
+
+TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
+  PointCloud cloud;
+  for (int j = 0; j < 100; ++j)
+    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};
+  ToolParameters p;
+  for (const double merged_disk_m : {0.0, 0.002}) {
+    p.merged_disk_m = merged_disk_m;
+    ContactList list(kTool, p, scenes::kernels());
+    list.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+    list.near(pose, 0);
+    EXPECT_EQ(list.near_disks().size() > 500, merged_disk_m == 0);
+  }
+}
+
+TEST(ContactList, BeforeAFrameNothingIsNear) {
+  ContactList list(kTool, {}, scenes::kernels());
+  EXPECT_TRUE(list.near(kPose, 0).contacts.empty());
+  EXPECT_EQ(list.touched(kPose).points, 0);
+  EXPECT_TRUE(list.in_voxels(kPose).contacts.empty());
 }
 
 }  // namespace

@@ -177,44 +177,34 @@ TEST(TiledCloud, OnlyTilesNearTheBallAreShownAndNothingIsAllocated) {
   }
 }
 
-// A gently curved surface of points 0.3 mm apart, with a step that none may stand across.
-PointCloud dense_cloud(double noise_m) {
+TEST(TiledCloud, AMergedCloudIsMadeOnRequestAndHasWhatMergedPointsFinds) {
   PointCloud cloud;
-  for (int j = 0; j < 200; ++j)
-    for (int i = 0; i < 200; ++i) {
-      const double x = (i - 100) * 3e-4, z = (j - 100) * 3e-4, sign = (i * 7 + j * 3) % 2 == 0 ? 1 : -1;
-      cloud.append(Vec3(x, 0.5 * x * x + (z > 0.01 ? 2e-4 : 0) + sign * noise_m, z),
-                   Vec3(-x, 1, 0).normalized());
-    }
-  return cloud;
-}
-
-TEST(TiledCloud, FewPointsStandForManyThatLieInOnePlane) {
+  std::vector<CloudPoint> points;
+  for (int j = 0; j < 100; ++j)
+    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
   TiledCloud tiled;
-  tiled.assign(dense_cloud(0));
-  const TiledCloud* merged = tiled.merged();
-  ASSERT_TRUE(merged);
-  int count = 0;
-  for (std::uint32_t k = 0; k < merged->padded_size(); ++k) count += merged->point(k).x() < 1 ? 1 : 0;
-  EXPECT_LT(20 * count, 40000);
-  for (std::uint32_t i = 0; i < tiled.padded_size(); ++i) {
-    if (!(tiled.point(i).x() < 1)) continue;
-    bool is_covered = false;
-    for (std::uint32_t k = 0; k < merged->padded_size() && !is_covered; ++k) {
-      const Vec3 offset = tiled.point(i) - merged->point(k);
-      is_covered = offset.norm() <= merged->columns().extent[k] + 1e-12 &&
-                   std::abs(offset.dot(merged->normal(k))) <= TiledCloud::kFlat_m;
-    }
-    ASSERT_TRUE(is_covered) << tiled.point(i).transpose();
-  }
-  EXPECT_LE(merged->max_extent_m(), 0.5 * std::sqrt(3) * 2 * TiledCloud::kMergedCube_m);
-}
-
-TEST(TiledCloud, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
-  TiledCloud tiled;
-  tiled.assign(dense_cloud(2 * TiledCloud::kFlat_m));
+  tiled.assign(cloud);
   EXPECT_FALSE(tiled.merged());
-  tiled.assign(scenes::flat_grid(50, 0.002));
+  tiled.assign(cloud, 0.002);
+  ASSERT_TRUE(tiled.merged());
+  const TiledCloud& merged = *tiled.merged();
+  for (std::uint32_t i = 0; i < tiled.padded_size(); ++i)
+    if (tiled.x()[i] != kFarAway) points.push_back({tiled.point(i), tiled.normal(i), tiled.spacing_m(i)});
+  std::vector<Vec3> expected, found = points_of(merged);
+  double max_extent_m = 0;
+  for (const MergedPoint& point : merged_points(points, 0.002)) {
+    expected.push_back(point.p_W);
+    max_extent_m = std::max(max_extent_m, point.extent_m);
+  }
+  const auto before = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::sort(expected.begin(), expected.end(), before), std::sort(found.begin(), found.end(), before);
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(merged.max_extent_m(), max_extent_m);
+  for (std::uint32_t i = 0; i < merged.padded_size(); ++i)
+    EXPECT_TRUE(merged.x()[i] != kFarAway || merged.columns().extent[i] == 0);
+  tiled.assign(scenes::flat_grid(50, 0.002), 0.002);
   EXPECT_FALSE(tiled.merged());
 }
 

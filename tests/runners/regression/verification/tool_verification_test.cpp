@@ -23,6 +23,7 @@ struct Wrong {
 
 const Wrong kWrong[] = {
     {wrong_tool<ToolFault::silent>("silent"), {"touch"}},
+    {wrong_tool<ToolFault::has_no_pose>("has_no_pose"), {"repeat", "rigid-motion", "frame-rate"}},
     {wrong_tool<ToolFault::remembers_others>("remembers_others"), {"repeat"}},
     {wrong_tool<ToolFault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
     {wrong_tool<ToolFault::sees_first_point>("sees_first_point"), {"order", "search-all"}},
@@ -90,6 +91,20 @@ TEST(LongToolVerification, AWrongToolIsCaught) {
     for (const std::string& check : wrong.caught_by)
       EXPECT_TRUE(caught.contains(check)) << wrong.entry.name << " passes " << check;
   }
+}
+
+TEST(ToolVerification, AToolThatIsNamedIsNotMirrored) {
+  const RendererEntry& tool = find_entry(renderers(), "tool", "renderer");
+  const std::vector<MetamorphicScene> plane = telling_scene({});
+  const auto checks = [&](const std::vector<std::string>& assignments) {
+    Names names;
+    for (const CheckResult& result : verify_renderer(tool, assignments, scenes::kernels(), plane))
+      names.insert(result.check);
+    return names;
+  };
+  EXPECT_TRUE(checks({}).contains("mirror-x"));
+  EXPECT_FALSE(checks({"tool_mesh=block"}).contains("mirror-x"));
+  EXPECT_TRUE(checks({"tool_mesh=block"}).contains("rigid-motion"));
 }
 
 TEST(ToolVerification, ARightOneInTheSameClothesPasses) {

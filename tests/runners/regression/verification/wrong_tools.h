@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "core/kernels/isa.h"
@@ -28,6 +29,7 @@ enum class ToolFault {
   reads_the_clock,  // tires with the time of day
   drops_silently,   // a dropped frame is not told
   jolts_at_frames,  // every frame moves the tool further
+  has_no_pose,      // an orientation that is not finite
 };
 
 template <ToolFault kFault>
@@ -68,6 +70,9 @@ class WrongTool final : public Renderer {
     switch (kFault) {
       case ToolFault::none:
       case ToolFault::lies_flat:
+        break;
+      case ToolFault::has_no_pose:
+        out.tool->orientation_W.coeffs().setConstant(std::nan(""));
         break;
       case ToolFault::silent:
         out.force_N.setZero();
