@@ -26,7 +26,15 @@ ToolParameters settings(TouchRule rule) {
   return p;
 }
 const char* name_of(TouchRule rule) {
-  return rule == TouchRule::voxels ? "voxels" : "look-ahead";
+  switch (rule) {
+    case TouchRule::voxels:
+      return "voxels";
+    case TouchRule::continuous:
+      return "continuous";
+    case TouchRule::look_ahead:
+      break;
+  }
+  return "look-ahead";
 }
 
 // --- collision list ---
@@ -215,6 +223,11 @@ int main(int argc, char** argv) {
       add_ride(scene, rule);
     }
   }
+  const auto outer = generated_tool("husky", true);
+  const std::vector<ToolScene> outer_scenes = {tool_scene("2500", outer, 50, 2e-3),
+                                               tool_scene("40000", outer, 200, 1e-3),
+                                               tool_scene("111556_dense", outer, 334, 3e-4)};
+  for (const ToolScene& scene : outer_scenes) add_ride(scene, TouchRule::continuous);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

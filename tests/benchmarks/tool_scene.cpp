@@ -37,11 +37,13 @@ ToolPose pressed(const VoxelTool& tool, const PointCloud& cloud) {
 
 }  // namespace
 
-std::shared_ptr<const VoxelTool> generated_tool(const std::string& name) {
+std::shared_ptr<const VoxelTool> generated_tool(const std::string& name, bool outer_field) {
   const GeneratedTool* found = find_generated_tool(name);
   if (!found) std::abort();
   ToolReport report;
-  return std::make_shared<const VoxelTool>(make_voxel_tool(found->make(), {}, report));
+  VoxelToolSettings settings;
+  settings.outer_field = outer_field;
+  return std::make_shared<const VoxelTool>(make_voxel_tool(found->make(), settings, report));
 }
 
 ToolScene tool_scene(const std::string& name, std::shared_ptr<const VoxelTool> tool, int side,

@@ -13,7 +13,8 @@
 
 namespace remote_touch::benchmarks {
 
-std::shared_ptr<const VoxelTool> generated_tool(const std::string& name);
+// outer_field: for the continuous rule.
+std::shared_ptr<const VoxelTool> generated_tool(const std::string& name, bool outer_field = false);
 
 struct ToolScene {
   std::string name;
