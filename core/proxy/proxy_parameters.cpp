@@ -34,7 +34,7 @@ Parameters parameters(ProxyParameters& p) {
       {"free_root", choice(p.free_root, {"ahead", "smallest_magnitude"}), 0, 0,
        "root of (4.9), (5.9): ahead: only points in the direction of motion; smallest_magnitude: as printed"},
       {"contact_rule", choice(p.contact_rule, {"tangent_plane", "regions", "creases"}), 0, 0,
-       "motion in contact: tangent_plane: in the plane of the mean normal (4.6), (5.16); regions: as close to the HIP as all touching regions allow; creases: regions where a touching region lies more than 35 deg beside the mean normal, else tangent_plane"},
+       "motion in contact: tangent_plane: in the plane of the mean normal (4.6), (5.16); regions: as close to the HIP as all touching regions allow; creases: regions where the direction from a touching region is more than 17 deg off the mean normal, else tangent_plane"},
       {"exit_rule", choice(p.exit_rule, {"towards_hip", "out_of_contact"}), 0, 0,
        "for contact_rule = tangent_plane when the HIP is outside: towards_hip: straight to the HIP (4.7); out_of_contact: r2 - r1 along the normal (5.17)"},
       {"velocity_force", choice(p.velocity_force, {"minus", "plus", "none"}), 0, 0,

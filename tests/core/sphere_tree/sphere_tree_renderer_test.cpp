@@ -142,8 +142,9 @@ TEST(SphereTreeRenderer, RegionParametersAreThoseOfTheToolThatCount) {
   std::set<std::string> all, kept;
   for (const Parameter& parameter : parameters(p)) all.insert(parameter.name);
   for (const Parameter& parameter : region_parameters(p)) kept.insert(parameter.name);
-  for (const char* other : {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio",
-                            "merged_disk_m", "frame_reach_m", "velocity_estimate", "max_prediction_s", "velocity_force"}) {
+  for (const char* other :
+       {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio", "merged_disk_m",
+        "frame_reach_m", "velocity_estimate", "max_prediction_s", "velocity_force"}) {
     EXPECT_TRUE(all.erase(other)) << other;
   }
   EXPECT_EQ(kept, all);
