@@ -260,6 +260,11 @@ std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& pri
   return claims;
 }
 
+std::pair<double, double> place_of(std::size_t panel) {
+  const std::size_t row = panel / 4, column = panel % 4;
+  return {static_cast<double>(row), static_cast<double>(column)};
+}
+
 Panel jump_panel(const Table& table, const std::string& what, const std::string& y_label) {
   Panel panel{table.title, "noise (r_c)", y_label};
   panel.curves.push_back({table.name, "noise", "tracked" + what, CurveStyle::line, kTrackedTool.label});
@@ -308,8 +313,7 @@ Figure figure_tool_tracked(const FigureContext& context) {
     figure.panels.push_back(jump_panel(table, "_force", "force jump at frames, rms (N)"));
     figure.panels.push_back(jump_panel(table, "_torque", "torque jump at frames, rms (N m)"));
   }
-  for (std::size_t i = 0; i < figure.panels.size(); ++i)
-    figure.panels[i].place = {static_cast<double>(i / 4), static_cast<double>(i % 4)};
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].place = place_of(i);
   const Table shapes = shape_table(context);
   figure.claims = tracked_tool_claims(ours, printed, jumps, shapes);
   figure.tables.insert(figure.tables.end(), jumps.begin(), jumps.end());

@@ -42,7 +42,8 @@ class Cubes {
   template <class Visit>  // (point)
   void for_each_around(const Vec3& p_W, const Visit& visit) const {
     for (int i = 0; i < 27; ++i) {
-      const Vec3 there_W = p_W + cube_m_ * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+      const Vec3 there_W = p_W + cube_m_ * Vec3(x, y, z);
       const std::pair<std::uint64_t, std::uint32_t> begin{cell_number(there_W, 1 / cube_m_), 0};
       const auto at = std::lower_bound(numbers_.begin(), numbers_.end(), begin);
       if (at == numbers_.end() || at->first != begin.first) continue;

@@ -101,7 +101,7 @@ std::shared_ptr<const FramePreparation> VoxmapPenalty::prepared(const PointCloud
   return std::make_shared<const PreparedVoxmap>(cloud, p_.voxmap_voxel_m);
 }
 
-void VoxmapPenalty::on_frame(std::shared_ptr<const FramePreparation> prepared) {
+void VoxmapPenalty::on_frame(const std::shared_ptr<const FramePreparation>& prepared) {
   const auto made = std::dynamic_pointer_cast<const PreparedVoxmap>(prepared);
   map_ = made ? std::shared_ptr<const Voxmap>(made, &made->map) : nullptr;
 }

@@ -109,7 +109,7 @@ class VoxmapPenalty final : public PenaltyMotion {
       : PenaltyMotion(parameters, tool, 0.5 * parameters.voxmap_voxel_m),
         shell_(make_pointshell(tool, parameters.voxmap_voxel_m)) {}
   std::shared_ptr<const FramePreparation> prepared(const PointCloud& cloud) const override;
-  void on_frame(std::shared_ptr<const FramePreparation> prepared) override;
+  void on_frame(const std::shared_ptr<const FramePreparation>& prepared) override;
 
  private:
   Push push(const ToolPose& pose, const ContactList& contacts) const override;

@@ -35,7 +35,7 @@ class ToolMotion {
   // What the rule reads of a frame besides the tiles of its points, made in advance as by
   // Renderer::prepare(); and the newest one, for all that follows. Rules that read no more have none.
   virtual std::shared_ptr<const FramePreparation> prepared(const PointCloud& /*cloud*/) const { return {}; }
-  virtual void on_frame(std::shared_ptr<const FramePreparation> /*prepared*/) {}
+  virtual void on_frame(const std::shared_ptr<const FramePreparation>& /*prepared*/) {}
   // Moves the pose towards the device. updated: a frame came in since the last tick. Does not allocate.
   virtual ToolMotionReport move(ToolPose& pose, const ToolPose& device, ContactList& contacts,
                                 bool updated) = 0;
