@@ -11,11 +11,11 @@ const std::vector<double>& numbers(const Table& table, const std::string& column
   throw std::out_of_range(table.name + " has no column " + column);
 }
 
-double largest_of(std::span<const double> values) {
-  double largest = values.empty() ? std::nan("") : values[0];
+double max_of(std::span<const double> values) {
+  double max = values.empty() ? std::nan("") : values[0];
   for (const double value : values)
-    if (!(value <= largest)) largest = std::isnan(largest) ? largest : value;
-  return largest;
+    if (!(value <= max)) max = std::isnan(max) ? max : value;
+  return max;
 }
 
 }  // namespace remote_touch

@@ -8,7 +8,7 @@ inline constexpr int kLines = 2;            // one for an edge of the tool, two 
 inline constexpr int kCuts = 4;             // of a line
 inline constexpr double kFlatSlope = 0.05;  // largest slope of the field in which a disk counts as flat
 inline constexpr double kFlatDepth_m =
-    1e-5;                                // the same for one that stands for many points: rise over its radius
+    1e-5;                                // largest rise of the field over a disk of many points, likewise
 inline constexpr double kGrazing = 0.2;  // a disk at a smaller angle to the gradient is met at its edge
 inline constexpr double kStep_m = 2e-4;  // lower edges are climbed, not run into
 inline constexpr double kBlindGradient = 0.5;  // shorter, and the field is at a ridge: it has no direction

@@ -17,7 +17,7 @@ struct FieldAt {
 
 struct DiskLanes {
   Doubles3 p_T, n_T;
-  Doubles radius, flat_slope, lower;
+  Doubles radius, extent, lower;
   FieldAt at;
   Flags has_normal;
 };
@@ -49,7 +49,7 @@ DiskLanes disks_of(const DiskColumns& disks, const std::uint32_t* number, std::s
   return {three(disks.p_T),
           n,
           of(disks.radius),
-          of(disks.flat_slope),
+          of(disks.extent),
           of(disks.lower),
           {of(disks.distance), three(disks.gradient_T)},
           (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0)};
@@ -84,11 +84,15 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
           flags ? a.slope : b.slope};
 }
 
+inline Flags is_flat(const DiskLanes& disk, Doubles slope) {
+  return (slope < kFlatSlope) & ((disk.extent == 0) | (slope * disk.radius < kFlatDepth_m));
+}
+
 // One line of those lanes that are `active`. Returns where it went anywhere and did not end at the rim.
 Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
   const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
-  active &= ~(steep < disk.flat_slope);
+  active &= ~is_flat(disk, steep);
   if (!is_any(active)) return Flags{};
   const Doubles3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
   const Doubles ahead = dot(offset, direction_T), inside = disk.radius * disk.radius - dot(offset, offset);

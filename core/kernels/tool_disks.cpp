@@ -1,6 +1,5 @@
 // Surface disks near a tool, 6.2.2: their place, the trilinear distance field there and how much nearer any
 // place of a disk can be. The operations are those of voxel_tool.cpp and disk_contact.cpp, in their order.
-#include "core/kernels/disk_search.h"
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 
@@ -28,9 +27,9 @@ struct PointLanes {
   Doubles spacing, extent;
 };
 
-constexpr int kColumns = 15;
+constexpr int kColumns = 14;
 struct DiskLanes {
-  Doubles column[kColumns];  // p_T, n_T, radius, distance, gradient_T, slope, lower, flat_slope, cell
+  Doubles column[kColumns];  // p_T, n_T, radius, distance, gradient_T, slope, lower, cell
 };
 
 inline DiskLanes measured(const PointLanes& points, double fraction, double cells_per_m,
@@ -44,15 +43,12 @@ inline DiskLanes measured(const PointLanes& points, double fraction, double cell
   const Doubles slope = norm(g - dot(g, n) * n);
   const Flags has_normal = (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0);
   const Doubles lower = has_normal ? at.distance - radius * slope : at.distance;
-  const Doubles of_many = all(disk_search::kFlatDepth_m) / radius;
-  const Doubles usual = all(disk_search::kFlatSlope);
-  const Doubles flat_slope = (points.extent > 0) & (of_many < usual) ? of_many : usual;
   const Doubles none = all(__builtin_nan(""));
   const Flags cell =
       cell_along(p.x, cells_per_m) << 40 | cell_along(p.y, cells_per_m) << 20 | cell_along(p.z, cells_per_m);
   const Flags octant = is_positive(g.x) << 2 | is_positive(g.y) << 1 | is_positive(g.z);
   return {{p.x, p.y, p.z, n.x, n.y, n.z, radius, at.distance, g.x, g.y, g.z, has_normal ? slope : none,
-           at.is_known ? lower : none, flat_slope, (Doubles)(cell << 3 | octant)}};
+           at.is_known ? lower : none, (Doubles)(cell << 3 | octant)}};
 }
 
 // All but the cells, which are numbers of their own.
@@ -60,7 +56,6 @@ inline void gather_columns(const DiskColumns& out, double* (&column)[kColumns - 
   for (int axis = 0; axis < 3; ++axis)
     column[axis] = out.p_T[axis], column[3 + axis] = out.n_T[axis], column[8 + axis] = out.gradient_T[axis];
   column[6] = out.radius, column[7] = out.distance, column[11] = out.slope, column[12] = out.lower;
-  column[13] = out.flat_slope;
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ struct DiskColumns {
   double* radius;
   double* distance;
   double* gradient_T[3];
-  double* slope;        // of the field in the plane of the disk; NaN without a normal
-  double* flat_slope;   // below which it counts as flat
-  double* lower;        // bound of the distance of any place of the disk
-  std::uint64_t* cell;  // cell_and_octant() of p_T and the direction against the gradient
+  double* slope;         // of the field in the plane of the disk; NaN without a normal
+  double* lower;         // bound of the distance of any place of the disk
+  std::uint64_t* cell;   // cell_and_octant() of p_T and the direction against the gradient
+  const double* extent;  // that of its point: given
 };
 
 // Constraints (6.3), as ToolContact has them; m.

@@ -239,8 +239,8 @@ Panel slot_panel(const Table& table, std::pair<double, double> place) {
   return panel;
 }
 
-double largest(const Table& table, const std::string& column) {
-  return largest_of(numbers(table, column));
+double max_in(const Table& table, const std::string& column) {
+  return max_of(numbers(table, column));
 }
 
 Claim at_most(const std::string& claim, double measured, double limit, const std::string& unit) {
@@ -255,22 +255,22 @@ constexpr double kGapFraction = 0.02;
 
 std::vector<Claim> plane_claims(const Table& planes) {
   const double sinks = EvenSpring{}.stiffness_N_per_m / (EvenSpring{}.stiffness_N_per_m + 10 * 2400);
-  return {at_most("look-ahead on a tilted plane: deviation of the force", largest(planes, "look_ahead_force"),
+  return {at_most("look-ahead on a tilted plane: deviation of the force", max_in(planes, "look_ahead_force"),
                   1e-3, "1"),
           at_most("look-ahead on a tilted plane: angle to the exact force",
-                  largest(planes, "look_ahead_force_direction"), 0.01, "deg"),
+                  max_in(planes, "look_ahead_force_direction"), 0.01, "deg"),
           at_most("continuous rule on a tilted plane: deviation of the force",
-                  largest(planes, "continuous_force"), kGapFraction, "1"),
-          at_most("god-object on a tilted plane: deviation of the force", largest(planes, "god_object_force"),
+                  max_in(planes, "continuous_force"), kGapFraction, "1"),
+          at_most("god-object on a tilted plane: deviation of the force", max_in(planes, "god_object_force"),
                   kGapFraction, "1"),
           at_most("god-object on a tilted plane: angle to the exact force",
-                  largest(planes, "god_object_force_direction"), 0.01, "deg"),
-          at_most("printed rule on a tilted plane: deviation of the force", largest(planes, "voxels_force"),
+                  max_in(planes, "god_object_force_direction"), 0.01, "deg"),
+          at_most("printed rule on a tilted plane: deviation of the force", max_in(planes, "voxels_force"),
                   0.01, "1"),
           claim_between(kForcesFigure, "penalty on a level plane: the force is too small by k / (k + 10 k_p)",
                         "-", numbers(planes, "penalty_force").front(), 0.9 * sinks, 1.1 * sinks, "1"),
           at_least("voxmap on a tilted plane: its steps turn the force, by up to",
-                   largest(planes, "voxmap_force_direction"), 5, "deg")};
+                   max_in(planes, "voxmap_force_direction"), 5, "deg")};
 }
 
 // At a corner the torque has to be that of the force. The constrained motion (6.4) ends where the
@@ -278,17 +278,17 @@ std::vector<Claim> plane_claims(const Table& planes) {
 // displacement, and k r^2 times the angle. Both agree if M is that of the coupling.
 std::vector<Claim> block_claims(const Table& blocks, const Table& of_coupling) {
   return {at_most("god-object, M of the coupling, tilted block: deviation of the force",
-                  largest(blocks, "god_object_force"), kGapFraction, "1"),
+                  max_in(blocks, "god_object_force"), kGapFraction, "1"),
           at_most("god-object, M of the coupling, tilted block: deviation of the torque",
-                  largest(blocks, "god_object_torque"), kGapFraction, "1"),
+                  max_in(blocks, "god_object_torque"), kGapFraction, "1"),
           at_least("look-ahead, M of the tool, tilted block: deviation of the torque, up to",
-                   largest(blocks, "look_ahead_torque"), 1, "1"),
+                   max_in(blocks, "look_ahead_torque"), 1, "1"),
           at_least("printed rule, M of the tool, tilted block: deviation of the torque, up to",
-                   largest(blocks, "voxels_torque"), 1, "1"),
+                   max_in(blocks, "voxels_torque"), 1, "1"),
           at_most("look-ahead, M of the coupling, tilted block: deviation of the force",
-                  largest(of_coupling, "look_ahead_force"), 0.01, "1"),
+                  max_in(of_coupling, "look_ahead_force"), 0.01, "1"),
           at_most("look-ahead, M of the coupling, tilted block: deviation of the torque",
-                  largest(of_coupling, "look_ahead_torque"), 0.01, "1")};
+                  max_in(of_coupling, "look_ahead_torque"), 0.01, "1")};
 }
 
 std::vector<Claim> groove_and_slot_claims(const Table& grooves, const Table& slot) {
@@ -296,20 +296,20 @@ std::vector<Claim> groove_and_slot_claims(const Table& grooves, const Table& slo
     return std::abs(numbers(slot, column).back() - numbers(slot, "exact").back());
   };
   return {
-      at_most("look-ahead in a valley: deviation of the force", largest(grooves, "look_ahead_force"),
+      at_most("look-ahead in a valley: deviation of the force", max_in(grooves, "look_ahead_force"),
               kGapFraction, "1"),
-      at_most("god-object in a valley: deviation of the force", largest(grooves, "god_object_force"),
+      at_most("god-object in a valley: deviation of the force", max_in(grooves, "god_object_force"),
               2 * kGapFraction, "1"),
       at_most("look-ahead in a valley: angle to the exact force",
-              largest(grooves, "look_ahead_force_direction"), 0.5, "deg"),
+              max_in(grooves, "look_ahead_force_direction"), 0.5, "deg"),
       at_most("look-ahead in a valley: fraction of ticks without a force",
-              largest(grooves, "look_ahead_force_missing"), 0, "1"),
+              max_in(grooves, "look_ahead_force_missing"), 0, "1"),
       at_most("god-object in a valley: fraction of ticks without a force",
-              largest(grooves, "god_object_force_missing"), 0.02, "1"),
+              max_in(grooves, "god_object_force_missing"), 0.02, "1"),
       at_most("god-object in a valley: angle to the exact force",
-              largest(grooves, "god_object_force_direction"), 2, "deg"),
+              max_in(grooves, "god_object_force_direction"), 2, "deg"),
       at_least("voxmap in a valley: angle to the exact force, up to",
-               largest(grooves, "voxmap_force_direction"), 5, "deg"),
+               max_in(grooves, "voxmap_force_direction"), 5, "deg"),
       at_most("look-ahead in a slot: error of the torque at 32 degrees", missed_Nm("look_ahead"), 1e-3,
               "N m"),
       at_most("continuous rule in a slot: error of the torque at 32 degrees", missed_Nm("continuous"), 1e-3,

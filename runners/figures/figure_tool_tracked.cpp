@@ -175,12 +175,12 @@ Table jump_table(const FigureContext& context, const JumpMotion& motion) {
 }
 
 // The largest ratio to the smaller of the two of the look-ahead rule, with and without velocity estimate.
-double largest_ratio(const Table& table, const std::string& what) {
+double max_ratio(const Table& table, const std::string& what) {
   const auto &ours = numbers(table, "tracked" + what), &with = numbers(table, "look_ahead" + what),
              &without = numbers(table, "look_ahead_plain" + what);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < ours.size(); ++i) ratios.push_back(ours[i] / std::fmin(with[i], without[i]));
-  return largest_of(ratios);
+  return max_of(ratios);
 }
 
 // --- shapes that are not flat ---
@@ -230,13 +230,13 @@ Table shape_table(const FigureContext& context) {
   return table;
 }
 
-double largest_raised(const Table& table, const std::string& shape) {
+double max_raised(const Table& table, const std::string& shape) {
   const auto& name = std::get<std::vector<std::string>>(table.columns[0].values);
   const auto& raised = numbers(table, "tracked");
   std::vector<double> of_shape;
   for (std::size_t i = 0; i < name.size(); ++i)
     if (name[i] == shape) of_shape.push_back(std::abs(raised[i]));
-  return largest_of(of_shape);
+  return max_of(of_shape);
 }
 
 std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& printed,
@@ -254,9 +254,9 @@ std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& pri
       claims.push_back(claim_at_most(f,
                                      table.title + ": jumps at frames, largest ratio of" +
                                          (what[1] == 'f' ? " force" : " torque") + " to look-ahead's",
-                                     "-", largest_ratio(table, what), 1.0 / 3, "ratio"));
+                                     "-", max_ratio(table, what), 1.0 / 3, "ratio"));
   claims.push_back(claim_at_most(f, "noise up to 2 r_c holds a plate on a flat surface higher or lower by",
-                                 "-", largest_raised(shapes, "flat"), 0.1, "r_c"));
+                                 "-", max_raised(shapes, "flat"), 0.1, "r_c"));
   return claims;
 }
 

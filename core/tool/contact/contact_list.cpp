@@ -14,6 +14,12 @@ constexpr double kTouch_m = 1e-4;       // a disk closer to the tool than this i
 constexpr double kSearch_m = 3e-4;      // a disk closer than this has its nearest place searched
 constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
 
+// No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
+double bound_m(const NearDisks& disks, std::size_t i) {
+  const bool exact = disks.lower_m(i) <= kSearch_m && disks.is_flat(i);
+  return exact ? disks.distance_m(i) : disks.lower_m(i);
+}
+
 }  // namespace
 
 ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
@@ -52,22 +58,12 @@ std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& cont
   return contacts;
 }
 
-bool ContactList::is_worth_a_search(std::size_t disk) const {
-  return near_disks().lower_m(disk) <= kSearch_m;
-}
-
-// No place of the disk is nearer than this to a convex tool; where nothing is left to search, none as near.
-double ContactList::bound_m(std::size_t disk) const {
-  const bool exact = is_worth_a_search(disk) && near_disks().is_flat(disk);
-  return exact ? near_disks().distance_m(disk) : near_disks().lower_m(disk);
-}
-
 void ContactList::gather_near(double reach_m) {
   const NearDisks& disks = near_disks();
   near_.resize(disks.size());
   std::size_t count = 0;
   for (std::size_t i = 0; i < disks.size(); ++i) {  // without a branch: which are near is hard to foresee
-    near_[count] = {bound_m(i), static_cast<std::uint32_t>(i), 0};
+    near_[count] = {bound_m(disks, i), static_cast<std::uint32_t>(i), 0};
     const bool is_near = (disks.lower_m(i) <= p_.look_ahead_m) & (disks.distance_m(i) <= reach_m);
     count += is_near ? 1 : 0;
   }

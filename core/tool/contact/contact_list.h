@@ -54,8 +54,6 @@ class ContactList final : public NearContactSource {
 
  private:
   NearDisks& near_ones() { return is_merged_ ? merged_disks_ : disks_; }
-  bool is_worth_a_search(std::size_t disk) const;
-  double bound_m(std::size_t disk) const;
   void gather_near(double reach_m);
   void append_contacts(double side);
   void gather_cells();

@@ -24,7 +24,7 @@ Vec3 slope_in_plane(const SurfaceDisk& disk, const FieldSample& at) {
 bool slide(const VoxelTool& tool, const SurfaceDisk& disk, DiskPlace& place) {
   const Vec3 along = slope_in_plane(disk, place.at);
   const double steep = along.norm();
-  if (steep < disk.flat_slope) return false;
+  if (is_flat(steep, disk.radius_m, disk.extent_m)) return false;
   const Vec3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
   // to the rim: |offset + t way| = radius
   const double ahead = offset.dot(direction_T), inside = disk.radius_m * disk.radius_m - offset.squaredNorm();

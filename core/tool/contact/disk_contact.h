@@ -12,12 +12,16 @@ namespace remote_touch {
 struct SurfaceDisk {
   Vec3 p_T, n_T;
   double radius_m;
-  FieldSample at;  // the field at its centre
-  double flat_slope =
-      disk_search::kFlatSlope;  // below this slope of the field in its plane it counts as flat
+  FieldSample at;       // the field at its centre
+  double extent_m = 0;  // of the points that it stands for, merged_points.h; 0: of one point
 
   bool has_normal() const { return n_T.allFinite(); }
 };
+
+// Whether a field of this slope in the plane of a disk counts as flat: no place of the disk is searched then.
+inline bool is_flat(double slope, double radius_m, double extent_m) {
+  return slope < disk_search::kFlatSlope && (extent_m == 0 || slope * radius_m < disk_search::kFlatDepth_m);
+}
 
 // Lower bound of the distance from the disk to the tool, if the field is nowhere steeper than at the centre.
 double lower_bound_m(const SurfaceDisk& disk);

@@ -35,8 +35,8 @@ void NearDisks::on_frame(const TiledCloud& cloud) {
 void NearDisks::reserve(std::size_t padded_size) {
   for (Columns* columns : {&p_W_, &n_W_, &p_T_, &n_T_, &gradient_T_, &contact_r_T_, &contact_n_T_})
     for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(padded_size);
-  for (auto* column : {&spacing_, &extent_, &radius_, &distance_, &slope_, &flat_slope_, &lower_,
-                       &contact_depth_, &contact_side_})
+  for (auto* column :
+       {&spacing_, &extent_, &radius_, &distance_, &slope_, &lower_, &contact_depth_, &contact_side_})
     column->grow(padded_size);
   cell_.grow(padded_size);
   count_ = 0, is_known_ = false, searched_m_ = -1;
@@ -87,9 +87,9 @@ DiskColumns NearDisks::columns() const {
           distance_.data(),
           {gradient_T_.x.data(), gradient_T_.y.data(), gradient_T_.z.data()},
           slope_.data(),
-          flat_slope_.data(),
           lower_.data(),
-          cell_.data()};
+          cell_.data(),
+          extent_.data()};
 }
 
 void NearDisks::append_contacts(std::span<const std::uint32_t> numbers, const TouchFinder& finder,

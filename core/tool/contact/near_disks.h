@@ -32,7 +32,7 @@ class NearDisks {
   std::size_t size() const { return count_; }
   double lower_m(std::size_t i) const { return lower_[i]; }  // lower_bound_m()
   // The disk has a normal and lies so flat in the field that no point of it counts as nearer than its centre.
-  bool is_flat(std::size_t i) const { return slope_[i] < flat_slope_[i]; }
+  bool is_flat(std::size_t i) const { return remote_touch::is_flat(slope_[i], radius_[i], extent_[i]); }
   double distance_m(std::size_t i) const { return distance_[i]; }
   Vec3 p_T(std::size_t i) const { return p_T_.at(i); }
   // cell_and_octant() of its centre and the direction against the gradient, in which a contact there would
@@ -44,7 +44,7 @@ class NearDisks {
                        const Kernels& kernels, double search_m, double side,
                        std::vector<ToolContact>& contacts);
   SurfaceDisk disk(std::size_t i) const {
-    return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}, flat_slope_[i]};
+    return {p_T_.at(i), n_T_.at(i), radius_[i], {distance_[i], gradient_T_.at(i)}, extent_[i]};
   }
 
  private:
@@ -68,7 +68,7 @@ class NearDisks {
 
   PosedField field_{};
   Columns p_T_, n_T_, gradient_T_;
-  Buffer<double> radius_, distance_, slope_, flat_slope_, lower_;
+  Buffer<double> radius_, distance_, slope_, lower_;
   Buffer<std::uint64_t> cell_;
   Columns contact_r_T_, contact_n_T_;
   Buffer<double> contact_depth_, contact_side_;

@@ -214,6 +214,10 @@ void TiledCloud::assign(const PointCloud& cloud, double merged_cube_m) {
 }
 
 void TiledCloud::merge(double cube_m) {
+  const bool is_coarse = std::none_of(spacing_m_.begin(), spacing_m_.end(), [](double spacing_m) {
+    return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m;
+  });
+  if (is_coarse) return;  // no copies of points that are not merged anyhow
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});

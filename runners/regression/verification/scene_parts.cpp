@@ -41,21 +41,23 @@ Vec3 groove_surface(double u, double v) {
   return {0.766 * u, 0.643 * std::abs(u), v};
 }
 
-PointCloud sheet_of(const Grid& grid, const SceneSurface& surface) {
+PointCloud sheet_of(const Grid& grid, const SceneSurface& surface, bool with_normals) {
   PointCloud cloud;
   cloud.grid_columns = grid.columns;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const double u = grid.x(column), v = grid.z(row);
-      cloud.append(surface(u, v), normal_of(surface, u, v));
+      if (with_normals)
+        cloud.append(surface(u, v), normal_of(surface, u, v));
+      else
+        cloud.append(surface(u, v));
     }
   return cloud;
 }
 
 PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view, const Kernels& kernels,
                  bool with_normals) {
-  PointCloud cloud = sheet_of({70, 50, 0.0015, 0, 0}, surface);
-  if (!with_normals) cloud.nx.clear(), cloud.ny.clear(), cloud.nz.clear();
+  PointCloud cloud = sheet_of({70, 50, 0.0015, 0, 0}, surface, with_normals);
   const NoiseKey key{static_cast<std::uint64_t>(seed)};
   add_noise(cloud, noise_m, noise_stream(key, NoiseUse::point_position, static_cast<std::uint32_t>(view)),
             kernels);

@@ -30,8 +30,8 @@ Vec3 flat_surface(double u, double v);
 Vec3 bumpy_surface(double u, double v);
 Vec3 groove_surface(double u, double v);
 
-// With normals, y upwards; no noise.
-PointCloud sheet_of(const Grid& grid, const SceneSurface& surface);
+// Without noise. with_normals: y upwards.
+PointCloud sheet_of(const Grid& grid, const SceneSurface& surface, bool with_normals);
 // 105 mm x 75 mm, points 1.5 mm apart. with_normals: of the surface without noise, y upwards.
 PointCloud sheet(const SceneSurface& surface, double noise_m, int seed, int view, const Kernels& kernels,
                  bool with_normals = false);

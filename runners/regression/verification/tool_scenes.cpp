@@ -35,7 +35,7 @@ MetamorphicScene tool_dense() {
       {{0, {0.002, 0.022, -0.001}, {0, 0, 0}},
        {80, {0.002, 0.004, -0.001}, {0.05, 0.1, 0.03}},
        {320, {-0.003, 0.003, 0.002}, {0.1, 0.5, -0.04}}},
-      sheet_of({60, 60, 0.0005, 0, 0}, flat_surface));
+      sheet_of({60, 60, 0.0005, 0, 0}, flat_surface, true));
   place(scene, kSlightTilt, {0.03, 0.01, -0.02});
   return scene;
 }
