@@ -4,7 +4,7 @@ import json
 import os
 import sys
 
-commands = [test["command"][:2] for test in json.load(sys.stdin)["tests"]]
+commands = [(*test["command"], "")[:2] for test in json.load(sys.stdin)["tests"]]  # some are a program alone
 for program, chosen in dict.fromkeys((program, "" if os.path.basename(program).endswith("_tests") else chosen)
                                      for program, chosen in commands):
     print(program, chosen)
