@@ -38,7 +38,7 @@ Parameters parameters(ToolParameters& p) {
       {"torque_rule", choice(p.torque_rule, {"inverse-jacobian", "printed"}), 0, 0,
        "inverse-jacobian: torque of an elastic energy; printed: (6.9) as printed, with the inertia of the tool"},
       {"motion_metric", choice(p.motion_metric, {"tool", "coupling"}), 0, 0,
-       "M of (6.4), by which the nearest motion is chosen: tool: the tool's inertia, as printed; coupling: that of a body with gyration_radius_m about every axis, as the coupling has it, so that force and torque on the hand are what the contacts can push, while stiffness_ratio and rotational_stiffness_ratio are 1"},
+       "M of (6.4), which says which motion is nearest: tool: the inertia of the tool, as printed; coupling: that of a body with gyration_radius_m about every axis, so that the contacts can push the force and torque on the hand (where stiffness_ratio and rotational_stiffness_ratio are 1)"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,
        "estimate the velocity of the cloud along the contact normal and move the tool with it, as (4.3), (4.13) do for the proxy; not in the dissertation",
        kLive},
