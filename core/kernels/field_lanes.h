@@ -2,6 +2,7 @@
 // its order.
 #pragma once
 
+#include "core/kernels/disk_search.h"
 #include "core/kernels/double_lanes.h"
 #include "core/kernels/tool_kernels.h"
 
@@ -12,6 +13,8 @@ struct FieldLanes {
   Doubles distance;
   Doubles3 gradient_T;
   Flags is_known;  // false outside the grid, where the other members are those of its nearest place
+  Counts cell;     // its number, the first coordinate running fastest
+  Flags in_cell;   // false on the last planes of the grid, too
 };
 
 inline Doubles clamped(Doubles u, double cells) {
@@ -55,8 +58,9 @@ inline Counts smaller(Counts a, int b) {
 }
 
 inline FieldLanes sample(const PosedField& f, const Doubles3& p_T) {
-  const Doubles u = (p_T.x - f.origin_T[0]) / f.size, v = (p_T.y - f.origin_T[1]) / f.size,
-                w = (p_T.z - f.origin_T[2]) / f.size;
+  const Divisor size(f.size);
+  const Doubles u = (p_T.x - f.origin_T[0]) / size, v = (p_T.y - f.origin_T[1]) / size,
+                w = (p_T.z - f.origin_T[2]) / size;
   const Doubles in_u = clamped(u, f.cells[0]), in_v = clamped(v, f.cells[1]), in_w = clamped(w, f.cells[2]);
   const Counts a = smaller(toward_zero(in_u), f.cells[0] - 1), b = smaller(toward_zero(in_v), f.cells[1] - 1),
                c = smaller(toward_zero(in_w), f.cells[2] - 1);
@@ -72,9 +76,58 @@ inline FieldLanes sample(const PosedField& f, const Doubles3& p_T) {
   const Doubles v0 = v00 + y * (v10 - v00), v1 = v01 + y * (v11 - v01);
   const Doubles dx0 = d00 + y * (d10 - d00), dx1 = d01 + y * (d11 - d01);
   return {v0 + z * (v1 - v0),
-          {(dx0 + z * (dx1 - dx0)) / f.size, ((v10 - v00) + z * ((v11 - v01) - (v10 - v00))) / f.size,
-           (v1 - v0) / f.size},
-          (in_u == u) & (in_v == v) & (in_w == w)};
+          {(dx0 + z * (dx1 - dx0)) / size, ((v10 - v00) + z * ((v11 - v01) - (v10 - v00))) / size,
+           (v1 - v0) / size},
+          (in_u == u) & (in_v == v) & (in_w == w),
+          a + f.cells[0] * (b + f.cells[1] * c),
+          (in_u == u) & (in_v == v) & (in_w == w) & (u < f.cells[0]) & (v < f.cells[1]) & (w < f.cells[2])};
+}
+
+// From world axes into those of the tool.
+inline Doubles3 rotated(const double (&R)[3][3], const Doubles3& a) {
+  return {R[0][0] * a.x + (R[0][1] * a.y + R[0][2] * a.z), R[1][0] * a.x + (R[1][1] * a.y + R[1][2] * a.z),
+          R[2][0] * a.x + (R[2][1] * a.y + R[2][2] * a.z)};
+}
+
+// Points in the tool frame, and the field there.
+struct PlacesInField {
+  Doubles3 p_T;
+  FieldLanes at;
+};
+inline PlacesInField places(const PointColumns& points, std::size_t i, const PosedField& f) {
+  const Doubles3 way_W{load(points.x + i) - f.p_W[0], load(points.y + i) - f.p_W[1],
+                       load(points.z + i) - f.p_W[2]};
+  const Doubles3 p_T = rotated(f.R_TW, way_W);
+  return {p_T, sample(f, p_T)};
+}
+
+// A disk of points i .. in the tool frame: its normal, radius and slope of the field in its plane.
+struct DisksInField {
+  Doubles3 n_T;
+  Doubles radius, extent, slope, lower;  // slope: NaN without a normal
+};
+inline DisksInField disks_at(const PointColumns& points, std::size_t i, double fraction, const PosedField& f,
+                             const FieldLanes& at) {
+  const Doubles3 n = rotated(f.R_TW, {load(points.nx + i), load(points.ny + i), load(points.nz + i)});
+  const Doubles extent = load(points.extent + i), radius = fraction * load(points.spacing + i) + extent;
+  const Doubles3& g = at.gradient_T;
+  const Doubles slope = norm(g - dot(g, n) * n);
+  const Flags has_normal = (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0);
+  return {n, radius, extent, has_normal ? slope : all(__builtin_nan("")),
+          has_normal ? at.distance - radius * slope : at.distance};
+}
+
+// As cell_number() does it.
+inline Flags cell_along(Doubles x, double per_m) {
+  return (Flags)(x * per_m - kAlmostHalf + kRoundsToWhole) & 0xfffff;
+}
+inline Flags cell_number(const Doubles3& p, double per_m) {
+  return cell_along(p.x, per_m) << 40 | cell_along(p.y, per_m) << 20 | cell_along(p.z, per_m);
+}
+
+// As is_flat() of disk_contact.h; NaN is not.
+inline Flags is_flat(Doubles slope, Doubles radius, Doubles extent) {
+  return (slope < disk_search::kFlatSlope) & ((extent == 0) | (slope * radius < disk_search::kFlatDepth_m));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct FieldAt {
 
 struct DiskLanes {
   Doubles3 p_T, n_T;
-  Doubles radius, extent, lower;
+  Doubles radius, extent;
   FieldAt at;
   Flags has_normal;
 };
@@ -33,43 +33,51 @@ struct ContactLanes {
   Doubles depth, side;
 };
 
-// The last lanes of a list that is no multiple of their number repeat its last disk.
-DiskLanes disks_of(const DiskColumns& disks, const std::uint32_t* number, std::size_t count) {
+// Numbers of disks for all lanes: the last ones of a list that is no multiple of their number repeat its last
+// disk.
+struct Numbers {
   std::uint32_t at[kDoubles];
-  for (std::size_t lane = 0; lane < kDoubles; ++lane) at[lane] = number[lane < count ? lane : count - 1];
-  const auto of = [&](const double* column) {
-    double one[kDoubles];
-    for (std::size_t lane = 0; lane < kDoubles; ++lane) one[lane] = column[at[lane]];
-    return load(one);
-  };
-  const auto three = [&](double* const(&columns)[3]) {
-    return Doubles3{of(columns[0]), of(columns[1]), of(columns[2])};
-  };
-  const Doubles3 n = three(disks.n_T);
-  return {three(disks.p_T),
-          n,
-          of(disks.radius),
-          of(disks.extent),
-          of(disks.lower),
-          {of(disks.distance), three(disks.gradient_T)},
-          (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0)};
+
+  Numbers(const std::uint32_t* number, std::size_t count) {
+    for (std::size_t lane = 0; lane < kDoubles; ++lane) at[lane] = number[lane < count ? lane : count - 1];
+  }
+  Doubles of(const double* column) const {
+    Doubles a;
+    for (std::size_t lane = 0; lane < kDoubles; ++lane) a[lane] = column[at[lane]];
+    return a;
+  }
+  Doubles3 of(double* const (&columns)[3]) const { return {of(columns[0]), of(columns[1]), of(columns[2])}; }
+};
+
+inline Flags is_finite(const Doubles3& a) {
+  return (a.x - a.x == 0) & (a.y - a.y == 0) & (a.z - a.z == 0);
 }
 
-inline Doubles facing_side(const DiskLanes& disk, const Doubles3& gradient_T, Doubles steep) {
-  const Doubles facing = -dot(gradient_T, disk.n_T);
+inline DiskLanes disks_of(const DiskColumns& disks, const Numbers& numbers) {
+  const Doubles3 n = numbers.of(disks.n_T);
+  return {numbers.of(disks.p_T),
+          n,
+          numbers.of(disks.radius),
+          numbers.of(disks.extent),
+          {numbers.of(disks.distance), numbers.of(disks.gradient_T)},
+          is_finite(n)};
+}
+
+inline Doubles facing_side(const Doubles3& n_T, const Doubles3& gradient_T, Doubles steep) {
+  const Doubles facing = -dot(gradient_T, n_T);
   const Doubles side = facing < 0 ? all(-1) : all(1);
   return magnitude(facing) <= kGrazing * steep ? Doubles{} : side;
 }
 
 inline Doubles3 exit_direction(const Doubles3& gradient_T, Doubles steep) {
-  return chosen(steep > 0, -gradient_T / steep, {Doubles{}, all(1), Doubles{}});
+  return chosen(steep > 0, -gradient_T / Divisor(steep), {Doubles{}, all(1), Doubles{}});
 }
 
-ContactLanes far_contacts(const DiskLanes& disk) {
-  const Doubles steep = norm(disk.at.gradient_T);
-  const Doubles side = facing_side(disk, disk.at.gradient_T, steep);
-  return {disk.p_T, exit_direction(disk.at.gradient_T, steep), -disk.lower,
-          disk.has_normal ? side : Doubles{}};
+inline ContactLanes far_contacts(const DiskColumns& disks, const Numbers& numbers) {
+  const Doubles3 n = numbers.of(disks.n_T), gradient_T = numbers.of(disks.gradient_T);
+  const Doubles steep = norm(gradient_T);
+  return {numbers.of(disks.p_T), exit_direction(gradient_T, steep), -numbers.of(disks.lower),
+          is_finite(n) ? facing_side(n, gradient_T, steep) : Doubles{}};
 }
 
 struct EndLanes {
@@ -84,17 +92,13 @@ inline EndLanes chosen(Flags flags, const EndLanes& a, const EndLanes& b) {
           flags ? a.slope : b.slope};
 }
 
-inline Flags is_flat(const DiskLanes& disk, Doubles slope) {
-  return (slope < kFlatSlope) & ((disk.extent == 0) | (slope * disk.radius < kFlatDepth_m));
-}
-
 // One line of those lanes that are `active`. Returns where it went anywhere and did not end at the rim.
 Flags slide(const PosedField& field, const DiskLanes& disk, Flags active, PlaceLanes& place) {
   const Doubles3 along = place.at.gradient_T - dot(place.at.gradient_T, disk.n_T) * disk.n_T;
   const Doubles steep = norm(along);
-  active &= ~is_flat(disk, steep);
+  active &= ~is_flat(steep, disk.radius, disk.extent);
   if (!is_any(active)) return Flags{};
-  const Doubles3 start_T = place.p_T, direction_T = -along / steep, offset = start_T - disk.p_T;
+  const Doubles3 start_T = place.p_T, direction_T = -along / Divisor(steep), offset = start_T - disk.p_T;
   const Doubles ahead = dot(offset, direction_T), inside = disk.radius * disk.radius - dot(offset, offset);
   const auto end = [&](Doubles t, Flags looks) {
     const FieldLanes at = sample(field, start_T + t * direction_T);
@@ -147,7 +151,7 @@ ContactLanes near_contacts(const PosedField& field, const DiskLanes& disk, doubl
   const Flags is_inside = place.at.distance < 0;
   const Flags known = known_side != 0 ? is_inside : Flags{};
   const Flags is_blind = (place.at.distance < -field.size) & (steep < kBlindGradient);
-  const Doubles facing = facing_side(disk, place.at.gradient_T, steep);
+  const Doubles facing = facing_side(disk.n_T, place.at.gradient_T, steep);
   Doubles side = is_blind ? all(1) : facing;
   side = known ? all(known_side) : side;
   side = disk.has_normal ? side : Doubles{};
@@ -165,40 +169,43 @@ ContactLanes near_contacts(const PosedField& field, const DiskLanes& disk, doubl
 }
 
 // Of the disks number[from[0]], number[from[1]] ..; contacts have the places from[0], from[1] .. themselves.
-void put(const ContactLanes& contacts, const std::uint32_t* from, std::size_t count,
-         const ContactColumns& out) {
-  const auto scatter = [&](double* column, Doubles value) {
-    double one[kDoubles];
-    store(one, value);
-    for (std::size_t lane = 0; lane < kDoubles && lane < count; ++lane) column[from[lane]] = one[lane];
-  };
-  scatter(out.r_T[0], contacts.p_T.x), scatter(out.r_T[1], contacts.p_T.y),
-      scatter(out.r_T[2], contacts.p_T.z);
-  scatter(out.n_T[0], contacts.n_T.x), scatter(out.n_T[1], contacts.n_T.y),
-      scatter(out.n_T[2], contacts.n_T.z);
-  scatter(out.depth, contacts.depth), scatter(out.side, contacts.side);
+void put(const ContactLanes& contacts, const std::uint32_t* from, std::size_t count, ContactNumbers* out) {
+  double column[8][kDoubles];
+  const Doubles three[2][3] = {{contacts.p_T.x, contacts.p_T.y, contacts.p_T.z},
+                               {contacts.n_T.x, contacts.n_T.y, contacts.n_T.z}};
+  for (int k = 0; k < 6; ++k) store(column[k], three[k / 3][k % 3]);
+  store(column[6], contacts.depth), store(column[7], contacts.side);
+  for (std::size_t lane = 0; lane < kDoubles && lane < count; ++lane)
+    out[from[lane]] = {{column[0][lane], column[1][lane], column[2][lane]},
+                       {column[3][lane], column[4][lane], column[5][lane]},
+                       column[6][lane],
+                       column[7][lane]};
 }
 
 }  // namespace
 
 void disk_contacts(const DiskColumns& disks, const std::uint32_t* number, std::size_t count,
-                   const PosedField& field, double search_m, double known_side, const ContactColumns& out) {
-  constexpr std::size_t kChunk = 64;
+                   const PosedField& field, double search_m, double known_side, ContactNumbers* out) {
+  constexpr std::size_t kChunk = 512;
+  // Disks that are flat in the field are together, since none of them is searched.
+  enum Kind { kFar, kFlat, kSteep, kKinds };
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t size = count - first < kChunk ? count - first : kChunk;
-    std::uint32_t disk[2][kChunk], place[2][kChunk];  // far ones, near ones
-    std::size_t n[2] = {0, 0};
+    std::uint32_t disk[kKinds][kChunk], place[kKinds][kChunk];
+    std::size_t n[kKinds] = {};
     for (std::size_t k = first; k < first + size; ++k) {
-      const bool is_near = disks.lower[number[k]] <= search_m;
-      for (int kind = 0; kind < 2; ++kind)
-        disk[kind][n[kind]] = number[k], place[kind][n[kind]] = static_cast<std::uint32_t>(k),
-        n[kind] += is_near == (kind == 1) ? 1 : 0;
+      const std::uint32_t i = number[k];
+      const bool is_near = disks.lower[i] <= search_m, is_exact = disks.bound[i] == disks.distance[i];
+      const Kind kind = !is_near ? kFar : is_exact ? kFlat : kSteep;
+      disk[kind][n[kind]] = i, place[kind][n[kind]++] = static_cast<std::uint32_t>(k);
     }
-    for (std::size_t k = 0; k < n[0]; k += kDoubles)
-      put(far_contacts(disks_of(disks, disk[0] + k, n[0] - k)), place[0] + k, n[0] - k, out);
-    for (std::size_t k = 0; k < n[1]; k += kDoubles)
-      put(near_contacts(field, disks_of(disks, disk[1] + k, n[1] - k), known_side), place[1] + k, n[1] - k,
-          out);
+    for (int kind = kFar; kind < kKinds; ++kind)
+      for (std::size_t k = 0; k < n[kind]; k += kDoubles) {
+        const Numbers numbers(disk[kind] + k, n[kind] - k);
+        put(kind == kFar ? far_contacts(disks, numbers)
+                         : near_contacts(field, disks_of(disks, numbers), known_side),
+            place[kind] + k, n[kind] - k, out);
+      }
   }
 }
 

@@ -7,72 +7,61 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 namespace {
 
-// As cell_number() does it.
-inline Flags cell_along(Doubles x, double per_m) {
-  return (Flags)(x * per_m - kAlmostHalf + kRoundsToWhole) & 0xfffff;
-}
-
 // 1 or 0, from the sign of its opposite.
 inline Flags is_positive(Doubles x) {
   return (Flags)(0 - x) < 0 ? Flags{} + 1 : Flags{};
 }
 
-inline Doubles3 rotated(const double (&R)[3][3], const Doubles3& a) {
-  return {R[0][0] * a.x + (R[0][1] * a.y + R[0][2] * a.z), R[1][0] * a.x + (R[1][1] * a.y + R[1][2] * a.z),
-          R[2][0] * a.x + (R[2][1] * a.y + R[2][2] * a.z)};
-}
-
-struct PointLanes {
-  Doubles3 p_W, n_W;
-  Doubles spacing, extent;
-};
-
-constexpr int kColumns = 14;
-struct DiskLanes {
-  Doubles column[kColumns];  // p_T, n_T, radius, distance, gradient_T, slope, lower, cell
-};
-
-inline DiskLanes measured(const PointLanes& points, double fraction, double cells_per_m,
-                          const PosedField& f) {
-  const Doubles3 p =
-      rotated(f.R_TW, {points.p_W.x - f.p_W[0], points.p_W.y - f.p_W[1], points.p_W.z - f.p_W[2]});
-  const Doubles3 n = rotated(f.R_TW, points.n_W);
-  const Doubles radius = fraction * points.spacing + points.extent;
-  const FieldLanes at = sample(f, p);
-  const Doubles3& g = at.gradient_T;
-  const Doubles slope = norm(g - dot(g, n) * n);
-  const Flags has_normal = (n.x - n.x == 0) & (n.y - n.y == 0) & (n.z - n.z == 0);
-  const Doubles lower = has_normal ? at.distance - radius * slope : at.distance;
-  const Doubles none = all(__builtin_nan(""));
-  const Flags cell =
-      cell_along(p.x, cells_per_m) << 40 | cell_along(p.y, cells_per_m) << 20 | cell_along(p.z, cells_per_m);
+// Of those lanes that may be taken, those that are, to places `to` .. of the columns. Returns how many.
+inline std::size_t put_disks(const PlacesInField& places, const DisksInField& disks, Flags may,
+                             const DiskLimits& limits, double cells_per_m, const DiskColumns& out,
+                             std::size_t to) {
+  const Packing packing(may & ((disks.lower <= limits.lower) | ~places.at.is_known));
+  const std::size_t count = packing.count();
+  if (count == 0) return 0;
+  const Doubles3 &p = places.p_T, &n = disks.n_T, &g = places.at.gradient_T;
+  const auto put_three = [&](const Doubles3& a, double* const(&columns)[3]) {
+    packing.put(a.x, columns[0] + to), packing.put(a.y, columns[1] + to), packing.put(a.z, columns[2] + to);
+  };
+  put_three(p, out.p_T), put_three(n, out.n_T), put_three(g, out.gradient_T);
+  const Doubles distance = places.at.distance, lower = disks.lower;
+  packing.put(disks.radius, out.radius + to);
+  packing.put(disks.extent, out.extent + to);
+  packing.put(distance, out.distance + to);
+  packing.put(disks.slope, out.slope + to);
+  packing.put(places.at.is_known ? lower : all(__builtin_nan("")), out.lower + to);
+  const Flags is_exact = (lower <= limits.search) & is_flat(disks.slope, disks.radius, disks.extent);
+  packing.put(is_exact ? distance : lower, out.bound + to);
   const Flags octant = is_positive(g.x) << 2 | is_positive(g.y) << 1 | is_positive(g.z);
-  return {{p.x, p.y, p.z, n.x, n.y, n.z, radius, at.distance, g.x, g.y, g.z, has_normal ? slope : none,
-           at.is_known ? lower : none, (Doubles)(cell << 3 | octant)}};
-}
-
-// All but the cells, which are numbers of their own.
-inline void gather_columns(const DiskColumns& out, double* (&column)[kColumns - 1]) {
-  for (int axis = 0; axis < 3; ++axis)
-    column[axis] = out.p_T[axis], column[3 + axis] = out.n_T[axis], column[8 + axis] = out.gradient_T[axis];
-  column[6] = out.radius, column[7] = out.distance, column[11] = out.slope, column[12] = out.lower;
+  packing.put((Doubles)(cell_number(p, cells_per_m) << 3 | octant), out.cell + to);
+  return count;
 }
 
 }  // namespace
 
-void disks_in_field(const PointColumns& points, std::size_t count, double fraction, double cells_per_m,
-                    const PosedField& f, const DiskColumns& out) {
-  double* column[kColumns - 1];
-  gather_columns(out, column);
-  for (std::size_t i = 0; i < count; i += kDoubles) {
-    const DiskLanes disks = measured({{load(points.x + i), load(points.y + i), load(points.z + i)},
-                                      {load(points.nx + i), load(points.ny + i), load(points.nz + i)},
-                                      load(points.spacing + i),
-                                      load(points.extent + i)},
-                                     fraction, cells_per_m, f);
-    for (int c = 0; c < kColumns - 1; ++c) store(column[c] + i, disks.column[c]);
-    __builtin_memcpy(out.cell + i, &disks.column[kColumns - 1], sizeof(Doubles));
+std::size_t disks_in_field(const PointColumns& points, std::size_t count, double fraction, double cells_per_m,
+                           const PosedField& f, const DiskLimits& limits, double* nearest, bool is_new,
+                           const DiskColumns& out, std::size_t& outside_count) {
+  std::size_t found = 0;
+  outside_count = 0;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    double& of_group = nearest[i / kLanes];
+    if (!is_new && of_group > limits.passed) continue;
+    Doubles min = all(1e300);
+    for (std::size_t part = i; part < i + kLanes && part < count; part += kDoubles) {
+      const PlacesInField place = places(points, part, f);
+      const Flags is_point = lane_numbers() < static_cast<long>(count - part);
+      const Flags outside = is_point & ~place.at.is_known;
+      min = place.at.distance < min ? place.at.distance : min;
+      const Flags may = (is_point & (place.at.distance <= limits.reach)) | outside;
+      if (!is_any(may)) continue;
+      found += put_disks(place, disks_at(points, part, fraction, f, place.at), may, limits, cells_per_m, out,
+                         found);
+      outside_count += Packing(outside).count();
+    }
+    if (is_new) of_group = least(min);
   }
+  return found;
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -47,6 +47,14 @@ struct PointColumns {
   const double* extent;  // of what a point stands for around it; 0 for itself alone
 };
 
+// Which disks of points are wanted, m.
+struct DiskLimits {
+  double reach;   // their centres are no farther than this,
+  double lower;   // and their lower bounds no higher
+  double search;  // for DiskColumns::bound
+  double passed;  // no disk is wanted of groups of points that were farther away than this before
+};
+
 // The pose of a tool, and its distance field in m at the nodes of a grid, the first coordinate running
 // fastest; size is the edge of a cell, m.
 struct PosedField {
@@ -64,25 +72,44 @@ inline constexpr double kRoundsToWhole = 0x1.8p52;
 // integer.
 inline constexpr double kAlmostHalf = 0.5 - 0x1p-34;
 
-// Surface disks in the tool frame; capacity for as many as are requested, padded to kLanes. Lengths in m.
+// Surface disks in the tool frame; capacity for kLanes more than there are points. Lengths in m.
 struct DiskColumns {
   double* p_T[3];
   double* n_T[3];
   double* radius;
   double* distance;
   double* gradient_T[3];
-  double* slope;         // of the field in the plane of the disk; NaN without a normal
-  double* lower;         // bound of the distance of any place of the disk
-  std::uint64_t* cell;   // cell_and_octant() of p_T and the direction against the gradient
-  const double* extent;  // that of its point: given
+  double* slope;  // of the field in the plane of the disk; NaN without a normal
+  double* lower;  // bound of the distance of any place of the disk
+  double* bound;  // distance where lower is no more than `search` and the disk is flat in the field; or lower
+  double* cell;   // the bits of cell_and_octant() of p_T and the direction against the gradient
+  double* extent;  // that of its point
 };
 
-// Constraints (6.3), as ToolContact has them; m.
-struct ContactColumns {
-  double* r_T[3];
-  double* n_T[3];
-  double* depth;
-  double* side;
+// A constraint (6.3), as ToolContact has it; m.
+struct ContactNumbers {
+  double r_T[3], n_T[3];
+  double depth, side;
+};
+
+// What counts as touched, m.
+struct TouchLimits {
+  double reach;   // points farther away do not count at all
+  double voxels;  // points farther away are in no voxel of the tool
+  double touch;   // largest distance of a disk that is touched
+  double slope;   // no gradient of the field is longer, where that is `reach` or less
+  double passed;  // as in DiskLimits
+};
+
+// What of a cloud is touched. The lists have capacity for kLanes more than there are points.
+struct TouchedSummary {
+  double nearest;          // distance of a point, m; infinite if none is within reach
+  std::size_t points;      // that are touched
+  bool is_inside;          // one of them is in an interior voxel
+  std::uint64_t* cluster;  // cell_number() of all of them, each at least once
+  std::size_t clusters;    // length of that list
+  std::uint32_t* unclear;  // points that this does not tell of
+  std::size_t unclear_count;
 };
 
 struct ToolKernels {
@@ -97,15 +124,24 @@ struct ToolKernels {
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
                                  const CellTable&, int min, std::uint32_t* found);
-  // The disks around the first count points, of radius fraction x spacing + extent: bit for bit what
-  // sample_field() and lower_bound_m() give, but for places outside the grid, whose lower is NaN. The columns
-  // are padded.
-  void (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
-                         const PosedField&, const DiskColumns&);
+  // The disks around the first count points, of radius fraction x spacing + extent, those alone that the
+  // limits want, in the order of the points: bit for bit what sample_field() and lower_bound_m() give. Places
+  // outside the grid are all taken, with NaN as lower. nearest: of each group of kLanes points the least
+  // distance, or less; it is written if is_new, else read and compared with limits.passed. The columns of the
+  // points are padded. Returns how many disks there are, outside_count of them outside the grid.
+  std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
+                                const PosedField&, const DiskLimits&, double* nearest, bool is_new,
+                                const DiskColumns&, std::size_t& outside_count);
+  // Of the points of the groups: those in a voxel (1: shell, 2: interior), and those whose disks of radius
+  // fraction x spacing have their centres as near as limits.touch. Unclear are disks that only a search could
+  // show to be so near, and places outside the grid. nearest and is_new are as above, one for each group[i].
+  void (*touched_points)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
+                         double fraction, double clusters_per_m, const PosedField&, const CellTable& voxels,
+                         const TouchLimits&, double* nearest, bool is_new, TouchedSummary&);
   // The contacts of the disks number[0..count): bit for bit those of far_contact() if lower is more than
   // search, else those of near_contact() at nearest_place(); depth is NaN if that leaves the grid.
   void (*disk_contacts)(const DiskColumns&, const std::uint32_t* number, std::size_t count, const PosedField&,
-                        double search, double known_side, const ContactColumns&);
+                        double search, double known_side, ContactNumbers* contacts);
 };
 
 }  // namespace remote_touch

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "core/rendering/renderer.h"
 #include "core/tool/contact/contact_thinning.h"
 #include "core/tool/contact/disk_contact.h"
 #include "core/tool/contact/near_contacts.h"
 #include "core/tool/contact/near_disks.h"
 #include "core/tool/contact/touch_finder.h"
+#include "core/tool/contact/touched_points.h"
 #include "core/tool/dynamics/motion_program.h"
 #include "core/tool/dynamics/tool_parameters.h"
 
@@ -23,14 +23,6 @@ struct VoxelContacts {
   bool touched = false, collided = false;  // some point is in the tool; in its interior
 };
 
-// What a pose touches, every point counted.
-struct Touched {
-  ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
-  int points = 0;
-  int clusters = 0;               // 10 mm cells of the tool frame with such points
-  double nearest_distance_m = 0;  // smallest field value of a point; infinite beyond the look-ahead
-};
-
 // Lists are valid until the next call. If there are more contacts than the motion program takes, they are
 // thinned.
 class ContactList final : public NearContactSource {
@@ -41,8 +33,9 @@ class ContactList final : public NearContactSource {
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
-  // Of the last call of near() or touched(); for TouchRule::continuous those of the points.
-  const NearDisks& near_disks() const { return is_merged_ ? merged_disks_ : disks_; }
+  // Of the last call of near(): those that the look-ahead reaches; for TouchRule::continuous those of all
+  // points within reach of any disk.
+  const NearDisks& near_disks() const { return disks_; }
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().
@@ -53,33 +46,29 @@ class ContactList final : public NearContactSource {
   Touched touched(const ToolPose& pose);
 
  private:
-  NearDisks& near_ones() { return is_merged_ ? merged_disks_ : disks_; }
-  void gather_near(double reach_m);
+  void gather_near();
   void append_contacts(double side);
   void gather_cells();
   void gather_deepest(double side);
-  bool is_touched(std::size_t disk) const;
-  void add_cluster(const Vec3& p_T);
-  Touched touched_within(const ToolPose& pose, double reach_m);
   std::span<const ToolContact> thinned(std::vector<ToolContact>& contacts);
 
   const ToolParameters p_;
   const Kernels& kernels_;
   TouchFinder finder_;
-  NearDisks disks_, merged_disks_;
-  bool is_merged_ = false;  // near() looks at fewer points that stand for all
+  NearDisks disks_;  // of the points, or of fewer that stand for all
+  TouchedPoints touched_;
   double max_disk_m_ = 0, max_near_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
-  struct NearDisk {
+  std::vector<std::uint32_t> near_;   // disks within the look-ahead
+  std::vector<std::uint32_t> cells_;  // of each of these
+  struct Nearest {
     double bound_m;
-    std::uint32_t disk, cell;
+    std::uint32_t disk;
   };
-  std::vector<NearDisk> near_;     // within the look-ahead
-  std::vector<NearDisk> nearest_;  // of each cell, by their bounds
-  std::vector<NearDisk> others_;   // that can be deeper than the contact of the nearest
-  std::vector<std::uint32_t> chosen_;
-  std::vector<std::uint64_t> clusters_;
+  std::vector<Nearest> nearest_;       // of each cell, by their bounds
+  std::vector<std::uint32_t> others_;  // of near_, that can be deeper than the contact of the nearest
+  std::vector<std::uint32_t> chosen_;  // disks
 };
 
 }  // namespace remote_touch

@@ -29,7 +29,7 @@ std::uint64_t cell_and_octant(const Vec3& p_T, const Vec3& direction_T, double c
 
 // The slot of a key in this call, or an unused one; null in a crowded table.
 ContactThinning::Slot* ContactThinning::slot_of(std::uint64_t key) {
-  std::size_t at = (key * 0x9e3779b97f4a7c15u) >> 52;
+  std::size_t at = first_slot(key);
   for (int tries = 0; tries < kMaxTries; ++tries, at = (at + 1) % kMaxCells)
     if (slots_[at].stamp != stamp_ || slots_[at].key == key) return &slots_[at];
   return nullptr;
@@ -40,10 +40,10 @@ void ContactThinning::begin() {
   cells_ = 0;
 }
 
-std::size_t ContactThinning::cell(std::uint64_t cell_and_octant) {
-  Slot* slot = slot_of(cell_and_octant);
+std::size_t ContactThinning::find_cell(std::uint64_t key) {
+  Slot* slot = slot_of(key);
   if (!slot) return kNoCell;
-  if (slot->stamp != stamp_) *slot = {cell_and_octant, cells_++, stamp_};
+  if (slot->stamp != stamp_) *slot = {key, cells_++, stamp_};
   return slot->cell;
 }
 

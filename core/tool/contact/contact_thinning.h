@@ -20,7 +20,10 @@ class ContactThinning {
 
   void begin();
   // The number of cell_and_octant(): 0, 1, 2 .. in the order in which they are met after begin(); or kNoCell.
-  std::size_t cell(std::uint64_t cell_and_octant);
+  std::size_t cell(std::uint64_t cell_and_octant) {
+    const Slot& first = slots_[first_slot(cell_and_octant)];
+    return first.stamp == stamp_ && first.key == cell_and_octant ? first.cell : find_cell(cell_and_octant);
+  }
 
   // Keeps the deepest contact of every cell, in place, as long as there are more than the motion can take.
   // Cells of kCell_m at first: a step rotates the tool so little that two points 4 mm apart require the same
@@ -37,7 +40,9 @@ class ContactThinning {
     std::uint32_t cell = 0;
     std::uint32_t stamp = 0;  // of the begin() that it belongs to
   };
+  static std::size_t first_slot(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 52; }
   Slot* slot_of(std::uint64_t key);
+  std::size_t find_cell(std::uint64_t key);
 
   std::vector<Slot> slots_;
   std::uint32_t stamp_ = 0, cells_ = 0;

@@ -4,28 +4,9 @@
 #include <cmath>
 
 #include "core/tool/contact/contact_thinning.h"
+#include "core/tool/contact/posed_field.h"
 
 namespace remote_touch {
-
-namespace {
-
-constexpr double kMaxSearch_m = kFieldMargin_m - 1e-4;
-
-PosedField posed(const VoxelTool& tool, const ToolPose& pose) {
-  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
-  PosedField field;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int k = 0; k < 3; ++k) field.R_TW[axis][k] = R_TW(axis, k);
-    field.p_W[axis] = pose.p_W[axis];
-    field.origin_T[axis] = tool.grid.origin_T[axis];
-    field.cells[axis] = tool.grid.cells[static_cast<std::size_t>(axis)];
-  }
-  field.node = tool.distance_m.data();
-  field.size = tool.grid.size_m;
-  return field;
-}
-
-}  // namespace
 
 void NearDisks::on_frame(const TiledCloud& cloud) {
   cloud_ = &cloud;
@@ -33,97 +14,97 @@ void NearDisks::on_frame(const TiledCloud& cloud) {
 }
 
 void NearDisks::reserve(std::size_t padded_size) {
-  for (Columns* columns : {&p_W_, &n_W_, &p_T_, &n_T_, &gradient_T_, &contact_r_T_, &contact_n_T_})
-    for (auto* column : {&columns->x, &columns->y, &columns->z}) column->grow(padded_size);
-  for (auto* column :
-       {&spacing_, &extent_, &radius_, &distance_, &slope_, &lower_, &contact_depth_, &contact_side_})
-    column->grow(padded_size);
-  cell_.grow(padded_size);
+  points_.grow(padded_size), disks_.grow(padded_size + kLanes);
+  nearest_.grow(padded_size / kLanes + 1), contacts_.grow(padded_size);
   count_ = 0, is_known_ = false, searched_m_ = -1;
 }
 
-// No point that was left out can be within reach_m: the field there was larger than searched_m_, and has
-// changed by no more than its slope times the way of the point through it.
-bool NearDisks::is_covered(const TouchFinder& finder, const ToolPose& pose, double reach_m) const {
-  const double turn =
-      2 * (pose.q_WT * searched_at_.q_WT.conjugate()).vec().norm();  // 2 sin of half the angle
-  const double way_m = (pose.p_W - searched_at_.p_W).norm() + turn * finder.grid_reach_m();
-  return searched_m_ - finder.max_slope() * way_m > reach_m;
-}
-
 void NearDisks::search(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
-  searched_at_ = pose, searched_m_ = std::max(reach_m, std::min(reach_m + kSpare_m, kMaxSearch_m));
-  const std::span<const std::uint32_t> points = finder.within(*cloud_, pose, searched_m_);
+  searched_at_ = pose, searched_m_ = remote_touch::searched_m(reach_m, kSpare_m);
+  is_new_ = true;
+  const std::span<const std::uint32_t> found = finder.within(*cloud_, pose, searched_m_);
   const PointColumns all = cloud_->columns();
-  count_ = points.size();
-  for (std::size_t k = 0; k < count_; ++k) {
-    const std::uint32_t i = points[k];
-    p_W_.x[k] = all.x[i], p_W_.y[k] = all.y[i], p_W_.z[k] = all.z[i];
-    n_W_.x[k] = all.nx[i], n_W_.y[k] = all.ny[i], n_W_.z[k] = all.nz[i];
-    spacing_[k] = all.spacing[i], extent_[k] = all.extent[i];
+  const double* const from[kPointColumns] = {all.x,  all.y,  all.z,       all.nx,
+                                             all.ny, all.nz, all.spacing, all.extent};
+  point_count_ = found.size();
+  for (std::size_t column = 0; column < kPointColumns; ++column) {
+    double* to = points_[column];
+    for (std::size_t k = 0; k < point_count_; ++k) to[k] = from[column][found[k]];
+    for (std::size_t k = point_count_; k % kLanes != 0; ++k) to[k] = kFarAway;
   }
-  for (std::size_t k = count_; k % kLanes != 0; ++k)
-    for (Buffer<double>* column : {&p_W_.x, &p_W_.y, &p_W_.z, &n_W_.x, &n_W_.y, &n_W_.z, &spacing_, &extent_})
-      (*column)[k] = kFarAway;
 }
 
-void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
-                      double reach_m) {
-  if (!cloud_ || (is_known_ && pose == pose_ && reach_m <= reach_m_)) return;
+void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
+                      double max_lower_m) {
+  if (!cloud_ || (is_known_ && pose == pose_ && reach_m == reach_m_ && max_lower_m == max_lower_m_)) return;
   const VoxelTool& tool = finder.tool();
-  field_ = posed(tool, pose);
-  if (!is_covered(finder, pose, reach_m)) search(finder, pose, reach_m);
-  const PointColumns points{p_W_.x.data(), p_W_.y.data(), p_W_.z.data(),   n_W_.x.data(),
-                            n_W_.y.data(), n_W_.z.data(), spacing_.data(), extent_.data()};
-  kernels.tool.disks_in_field(points, count_, disk_radius_ratio_, cells_per_m_, field_, columns());
-  finish_outside(tool);
-  is_known_ = true, pose_ = pose, reach_m_ = reach_m;
+  field_ = posed_field(tool, pose);
+  // No point that was left out can be within reach_m: the field there was larger than searched_m_.
+  if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
+  const PointColumns points{points_[kX],  points_[kY],  points_[kZ],       points_[kNx],
+                            points_[kNy], points_[kNz], points_[kSpacing], points_[kPointExtent]};
+  const DiskLimits limits{reach_m, max_lower_m, kSearch_m,
+                          passed_m(reach_m, max_change_m(finder, searched_at_, pose))};
+  std::size_t outside_count = 0;
+  count_ = kernels.tool.disks_in_field(points, point_count_, disk_radius_ratio_, cells_per_m_, field_, limits,
+                                       nearest_.data(), is_new_, columns(), outside_count);
+  if (outside_count > 0) finish_outside(tool, limits);
+  is_new_ = false, is_known_ = true, pose_ = pose, reach_m_ = reach_m, max_lower_m_ = max_lower_m;
 }
 
 DiskColumns NearDisks::columns() const {
-  return {{p_T_.x.data(), p_T_.y.data(), p_T_.z.data()},
-          {n_T_.x.data(), n_T_.y.data(), n_T_.z.data()},
-          radius_.data(),
-          distance_.data(),
-          {gradient_T_.x.data(), gradient_T_.y.data(), gradient_T_.z.data()},
-          slope_.data(),
-          lower_.data(),
-          cell_.data(),
-          extent_.data()};
+  return {{disks_[kPlace], disks_[kPlace + 1], disks_[kPlace + 2]},
+          {disks_[kNormal], disks_[kNormal + 1], disks_[kNormal + 2]},
+          disks_[kRadius],
+          disks_[kDistance],
+          {disks_[kGradient], disks_[kGradient + 1], disks_[kGradient + 2]},
+          disks_[kSlope],
+          disks_[kLower],
+          disks_[kBound],
+          disks_[kCell],
+          disks_[kExtent]};
 }
 
 void NearDisks::append_contacts(std::span<const std::uint32_t> numbers, const TouchFinder& finder,
-                                const Kernels& kernels, double search_m, double side,
-                                std::vector<ToolContact>& contacts) {
-  kernels.tool.disk_contacts(columns(), numbers.data(), numbers.size(), field_, search_m, side,
-                             {{contact_r_T_.x.data(), contact_r_T_.y.data(), contact_r_T_.z.data()},
-                              {contact_n_T_.x.data(), contact_n_T_.y.data(), contact_n_T_.z.data()},
-                              contact_depth_.data(),
-                              contact_side_.data()});
+                                const Kernels& kernels, double side, std::vector<ToolContact>& contacts) {
+  kernels.tool.disk_contacts(columns(), numbers.data(), numbers.size(), field_, kSearch_m, side,
+                             contacts_.data());
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (std::isnan(contact_depth_[k])) {  // the search has left the grid
+    const ContactNumbers& made = contacts_[k];
+    if (std::isnan(made.depth)) {  // the search has left the grid
       const SurfaceDisk outside = disk(numbers[k]);
       contacts.push_back(near_contact(finder.tool(), outside, nearest_place(finder.tool(), outside), side));
     } else {
-      contacts.push_back({contact_r_T_.at(k), contact_n_T_.at(k), contact_depth_[k], contact_side_[k]});
+      contacts.push_back({Vec3(made.r_T), Vec3(made.n_T), made.depth, made.side});
     }
   }
 }
 
+void NearDisks::copy(std::size_t from, std::size_t to) {
+  for (std::size_t column = 0; column < kDiskColumns; ++column) disks_[column][to] = disks_[column][from];
+}
+
 // What the kernel leaves: a place less than a cell outside the grid.
-void NearDisks::finish_outside(const VoxelTool& tool) {
+void NearDisks::finish_outside(const VoxelTool& tool, const DiskLimits& limits) {
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (!std::isnan(lower_[i])) continue;
-    SurfaceDisk outside = disk(i);
-    outside.at = sample_field(tool, outside.p_T);
-    distance_[i] = outside.at.distance_m;
-    gradient_T_.x[i] = outside.at.gradient_T.x();
-    gradient_T_.y[i] = outside.at.gradient_T.y();
-    gradient_T_.z[i] = outside.at.gradient_T.z();
-    slope_[i] = std::nan("");
-    lower_[i] = lower_bound_m(outside);
-    cell_[i] = cell_and_octant(outside.p_T, -outside.at.gradient_T, cells_per_m_);
+    if (std::isnan(lower_m(i))) {
+      SurfaceDisk outside = disk(i);
+      outside.at = sample_field(tool, outside.p_T);
+      const double lower = lower_bound_m(outside);
+      if (!(outside.at.distance_m <= limits.reach && lower <= limits.lower)) continue;
+      disks_[kDistance][i] = outside.at.distance_m;
+      for (int axis = 0; axis < 3; ++axis)
+        disks_[kGradient + static_cast<std::size_t>(axis)][i] = outside.at.gradient_T[axis];
+      disks_[kSlope][i] = std::nan("");
+      disks_[kLower][i] = disks_[kBound][i] = lower;
+      disks_[kCell][i] =
+          std::bit_cast<double>(cell_and_octant(outside.p_T, -outside.at.gradient_T, cells_per_m_));
+    }
+    if (kept != i) copy(i, kept);
+    ++kept;
   }
+  count_ = kept;
 }
 
 }  // namespace remote_touch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/tool/voxels/outer_field.h"
@@ -42,6 +43,23 @@ std::vector<std::int8_t> nearness_of_cells(const VoxelTool& tool) {
   return table;
 }
 
+// Largest of the nodes of all cells that are not free: the trilinear field goes no higher, but for rounding.
+double max_voxel_m(const VoxelTool& tool) {
+  const std::size_t nx = static_cast<std::size_t>(tool.grid.cells[0]),
+                    ny = static_cast<std::size_t>(tool.grid.cells[1]),
+                    nz = static_cast<std::size_t>(tool.grid.cells[2]);
+  const std::size_t row = nx + 1, layer = row * (ny + 1);
+  float max = -std::numeric_limits<float>::infinity();
+  for (std::size_t cell = 0; cell < tool.voxels.size(); ++cell) {
+    if (tool.voxels[cell] == Voxel::free) continue;
+    const float* node =
+        &tool.distance_m[cell % nx + row * (cell / nx % ny) + layer * (cell / (nx * ny) % nz)];
+    for (const std::size_t corner : {std::size_t{0}, row, layer, layer + row})
+      max = std::max({max, node[corner], node[corner + 1]});
+  }
+  return static_cast<double>(max) + 1e-9;
+}
+
 double farthest_corner_m(const VoxelGrid& grid) {
   const Vec3 last_T = grid.origin_T + grid.size_m * Vec3(grid.cells[0], grid.cells[1], grid.cells[2]);
   return grid.origin_T.cwiseAbs().cwiseMax(last_T.cwiseAbs()).norm();
@@ -54,6 +72,7 @@ TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& k
       kernels_(kernels),
       max_slope_(remote_touch::max_slope(tool_->grid, tool_->distance_m, kFieldMargin_m)),
       grid_reach_m_(farthest_corner_m(tool_->grid)),
+      max_voxel_m_(remote_touch::max_voxel_m(*tool_)),
       nearness_(nearness_of_cells(*tool_)) {
   voxels_.reserve(tool_->voxels.size() + 3);
   for (const Voxel v : tool_->voxels) voxels_.push_back(static_cast<std::int8_t>(v));
@@ -70,16 +89,15 @@ void TouchFinder::reserve(std::size_t padded_size) {
 }
 
 std::span<const std::uint32_t> TouchFinder::in_tool(const ToolPose& pose) const {
-  return find(*cloud_, pose, tool_->grid.size_m, voxels_.data(), static_cast<int>(Voxel::shell));
+  return find(*cloud_, pose, tool_->grid.size_m, voxels_, static_cast<int>(Voxel::shell));
 }
 
 std::span<const std::uint32_t> TouchFinder::within(const TiledCloud& cloud, const ToolPose& pose,
                                                    double distance_m) const {
-  return find(cloud, pose, distance_m, nearness_.data(), nearness(distance_m));
+  return find(cloud, pose, distance_m, nearness_, nearness(distance_m));
 }
 
-std::span<const std::uint32_t> TouchFinder::find(const TiledCloud& cloud, const ToolPose& pose,
-                                                 double distance_m, const std::int8_t* table, int min) const {
+CellTransform TouchFinder::to_cells(const ToolPose& pose) const {
   const VoxelGrid& grid = tool_->grid;
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   CellTransform to_cells;
@@ -88,6 +106,11 @@ std::span<const std::uint32_t> TouchFinder::find(const TiledCloud& cloud, const 
     for (int k = 0; k < 3; ++k) to_cells.row[axis][k] = row[k];
     to_cells.row[axis][3] = -row.dot(pose.p_W) - grid.origin_T[axis] / grid.size_m;
   }
+  return to_cells;
+}
+
+std::span<const std::uint32_t> TouchFinder::groups_within(const TiledCloud& cloud, const ToolPose& pose,
+                                                          double distance_m) const {
   const auto beyond = [&](const BoundingSphere& sphere) {
     const double reach = tool_->reach_m + distance_m + sphere.radius_m;
     return (sphere.centre_W - pose.p_W).squaredNorm() > reach * reach;
@@ -99,18 +122,25 @@ std::span<const std::uint32_t> TouchFinder::find(const TiledCloud& cloud, const 
       rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
   }
   if (rows == 0) return {};
-  // From rows to tiles, groups and points. Two voxels: what the field far from the surface may be wrong by,
-  // and more.
-  const std::array<int, 3>& n = grid.cells;
-  const CellTable nearness{nearness_.data(), {n[0], n[1], n[2]}}, cells{table, {n[0], n[1], n[2]}};
-  const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / grid.size_m,
-                          distance_m / grid.size_m + 2, 1 / grid.size_m};
-  const std::size_t tiles = kernels_.tool.near_spheres(cloud.tile_spheres(), rows_.data(), rows, to_cells,
-                                                       nearness, code, tiles_.data());
-  const std::size_t groups = kernels_.tool.near_spheres(cloud.group_spheres(), tiles_.data(), tiles, to_cells,
-                                                        nearness, code, groups_.data());
-  const std::size_t count = kernels_.tool.points_in_cells(cloud.x(), cloud.y(), cloud.z(), groups_.data(),
-                                                          groups, to_cells, cells, min, found_.data());
+  // From rows to tiles and groups. Two voxels: what the field far from the surface may be wrong by, and more.
+  const double size_m = tool_->grid.size_m;
+  const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / size_m,
+                          distance_m / size_m + 2, 1 / size_m};
+  const CellTransform transform = to_cells(pose);
+  const std::size_t tiles = kernels_.tool.near_spheres(cloud.tile_spheres(), rows_.data(), rows, transform,
+                                                       table(nearness_), code, tiles_.data());
+  const std::size_t groups = kernels_.tool.near_spheres(cloud.group_spheres(), tiles_.data(), tiles,
+                                                        transform, table(nearness_), code, groups_.data());
+  return {groups_.data(), groups};
+}
+
+std::span<const std::uint32_t> TouchFinder::find(const TiledCloud& cloud, const ToolPose& pose,
+                                                 double distance_m, const std::vector<std::int8_t>& values,
+                                                 int min) const {
+  const std::span<const std::uint32_t> groups = groups_within(cloud, pose, distance_m);
+  const std::size_t count =
+      kernels_.tool.points_in_cells(cloud.x(), cloud.y(), cloud.z(), groups.data(), groups.size(),
+                                    to_cells(pose), table(values), min, found_.data());
   return {found_.data(), count};
 }
 

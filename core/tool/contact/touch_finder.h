@@ -26,6 +26,9 @@ class TouchFinder {
   // distance of any place in the grid from the tool's origin.
   double max_slope() const { return max_slope_; }
   double grid_reach_m() const { return grid_reach_m_; }
+  // Upper bound of the field in shell and interior voxels: they lie inside the surface, or about half a voxel
+  // outside.
+  double max_voxel_m() const { return max_voxel_m_; }
 
   // The points in shell or interior voxels.
   std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
@@ -38,15 +41,27 @@ class TouchFinder {
   std::span<const std::uint32_t> within(const TiledCloud& cloud, const ToolPose& pose,
                                         double distance_m) const;
 
+  // The groups of kLanes points of a cloud that hold all points whose field value is distance_m or less, and
+  // some others. Valid until the next call, like the lists. pre: as above.
+  std::span<const std::uint32_t> groups_within(const TiledCloud& cloud, const ToolPose& pose,
+                                               double distance_m) const;
+
   Voxel voxel(const Vec3& p_T) const;
+  // The voxels, for kernels.
+  CellTable voxels() const { return table(voxels_); }
 
  private:
+  CellTable table(const std::vector<std::int8_t>& values) const {
+    const auto& n = tool_->grid.cells;
+    return {values.data(), {n[0], n[1], n[2]}};
+  }
+  CellTransform to_cells(const ToolPose& pose) const;
   std::span<const std::uint32_t> find(const TiledCloud& cloud, const ToolPose& pose, double distance_m,
-                                      const std::int8_t* table, int min) const;
+                                      const std::vector<std::int8_t>& values, int min) const;
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
-  const double max_slope_, grid_reach_m_;
+  const double max_slope_, grid_reach_m_, max_voxel_m_;
   std::vector<std::int8_t> voxels_, nearness_;  // of every cell, and three readable bytes more
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "core/tool/contact/contact_list.h"
+#include "core/tool/contact/contact_thinning.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
@@ -43,29 +46,52 @@ bool same(const Vec3& a, const Vec3& b) {
   return a == b || (!a.allFinite() && !b.allFinite());
 }
 
+// The disks of a cloud that are wanted, one after the other.
+std::vector<SurfaceDisk> plain_disks(const TiledCloud& cloud, const ToolPose& pose, double reach_m,
+                                     double max_lower_m) {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
+  std::vector<SurfaceDisk> disks;
+  for (std::uint32_t i = 0; i < cloud.padded_size(); ++i) {
+    const Vec3 p_T = R_TW * (cloud.point(i) - pose.p_W);
+    if (p_T.norm() > 1) continue;  // padding
+    const SurfaceDisk disk{p_T, R_TW * cloud.normal(i), kFraction * cloud.spacing_m(i),
+                           sample_field(*kTool, p_T)};
+    if (disk.at.distance_m <= reach_m && lower_bound_m(disk) <= max_lower_m) disks.push_back(disk);
+  }
+  return disks;
+}
+
+// As a slide in the plane of the disk begins.
+bool is_exact(const SurfaceDisk& disk) {
+  const Vec3 along = disk.at.gradient_T - disk.at.gradient_T.dot(disk.n_T) * disk.n_T;
+  return lower_bound_m(disk) <= NearDisks::kSearch_m && is_flat(along.norm(), disk.radius_m, disk.extent_m);
+}
+
+::testing::AssertionResult are_same(const NearDisks& found, const std::vector<SurfaceDisk>& expected) {
+  if (found.size() != expected.size())
+    return ::testing::AssertionFailure() << found.size() << " disks instead of " << expected.size();
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const SurfaceDisk disk = found.disk(k), &plain = expected[k];
+    const double lower_m = lower_bound_m(plain);
+    const bool is_same = disk.p_T == plain.p_T && same(disk.n_T, plain.n_T) &&
+                         disk.radius_m == plain.radius_m && disk.at.distance_m == plain.at.distance_m &&
+                         disk.at.gradient_T == plain.at.gradient_T && found.lower_m(k) == lower_m &&
+                         found.bound_m(k) == (is_exact(plain) ? plain.at.distance_m : lower_m) &&
+                         found.cell(k) == cell_and_octant(plain.p_T, -plain.at.gradient_T, 1 / kCell_m);
+    if (!is_same) return ::testing::AssertionFailure() << "disk " << k << " is another one";
+  }
+  return ::testing::AssertionSuccess();
+}
+
 TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
   const PointCloud cloud = cloud_with_normals();
-  const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
-  for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
-    if (isa > best_isa()) continue;
-    const Look query(cloud, kernels_for(isa));
-    const auto points = query.finder.within(kPose, kReach_m + NearDisks::kSpare_m);
+  for (const Kernels* kernels : supported_kernels()) {
+    Look query(cloud, *kernels);
     const TiledCloud& tiled = query.finder.cloud();
-    ASSERT_EQ(query.disks.size(), points.size());
-    EXPECT_GT(points.size(), 1000u);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const std::uint32_t i = points[k];
-      const Vec3 p_T = R_TW * (tiled.point(i) - kPose.p_W);
-      const SurfaceDisk expected{p_T, R_TW * tiled.normal(i), kFraction * tiled.spacing_m(i),
-                                 sample_field(*kTool, p_T)};
-      const SurfaceDisk disk = query.disks.disk(k);
-      ASSERT_EQ(disk.p_T, p_T);
-      ASSERT_TRUE(same(disk.n_T, expected.n_T));
-      ASSERT_EQ(disk.radius_m, expected.radius_m);
-      ASSERT_EQ(disk.at.distance_m, expected.at.distance_m);
-      ASSERT_EQ(disk.at.gradient_T, expected.at.gradient_T);
-      ASSERT_EQ(query.disks.lower_m(k), lower_bound_m(expected));
-      ASSERT_EQ(query.disks.cell(k), cell_and_octant(p_T, -expected.at.gradient_T, 1 / kCell_m));
+    for (const double max_lower_m : {std::numeric_limits<double>::infinity(), 0.002, 0.0002}) {
+      query.disks.query(query.finder, *kernels, kPose, kReach_m, max_lower_m);
+      EXPECT_TRUE(are_same(query.disks, plain_disks(tiled, kPose, kReach_m, max_lower_m))) << kernels->isa;
+      EXPECT_GT(query.disks.size(), 100u);
     }
   }
 }
@@ -80,7 +106,7 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   finder.on_frame(formatted<TiledCloud>(cloud));
   NearDisks disks(kFraction, kCell_m);
   disks.on_frame(finder.cloud());
-  disks.query(finder, scenes::kernels(), {}, kFieldMargin_m + grid.size_m);
+  disks.query(finder, scenes::kernels(), {}, kFieldMargin_m + 3 * grid.size_m);
   EXPECT_EQ(disks.size(), cloud.size());
   for (std::size_t k = 0; k < disks.size(); ++k) {
     EXPECT_EQ(disks.distance_m(k), sample_field(*kTool, disks.p_T(k)).distance_m);
@@ -122,28 +148,33 @@ TEST(NearDisks, AnAnswerIsKeptForItsOwnQuestionOnly) {
   EXPECT_GT(within(query.disks, kReach_m), 0u);
 }
 
-// A walk of steps that are mostly so short that the points are kept: at every pose all points within reach
-// are there, as a loop over all points finds them.
+// A walk of steps that are mostly so short that the points are kept, and groups of them passed over: at every
+// pose the disks are those of a loop over all points, in frame after frame.
 TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
   constexpr double kShort_m = 2e-5;
-  const PointCloud cloud = cloud_with_normals();
-  Look query(cloud, scenes::kernels());
-  ToolPose pose = kPose;
-  int kept = 0;
-  for (int step = 0; step < 60; ++step) {
-    const double a = 0.7 * step, size = step % 20 == 19 ? 100 : 1;
-    Vector6 motion;
-    motion << std::sin(a), std::cos(1.3 * a), std::sin(2.1 * a), 30 * std::cos(a), 30 * std::sin(1.7 * a), 30;
-    pose = moved(pose, size * kShort_m * motion);
-    query.disks.query(query.finder, scenes::kernels(), pose, kReach_m);
-    const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
-    std::size_t expected = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      expected += sample_field(*kTool, R_TW * (cloud.point(i) - pose.p_W)).distance_m <= kReach_m ? 1 : 0;
-    ASSERT_EQ(within(query.disks, kReach_m), expected) << step;
-    kept += query.disks.size() != query.finder.within(pose, kReach_m + NearDisks::kSpare_m).size() ? 1 : 0;
+  for (const Kernels* kernels : supported_kernels()) {
+    Look query(cloud_with_normals(), *kernels);
+    ToolPose pose = kPose;
+    int kept = 0;
+    for (int step = 0; step < 60; ++step) {
+      const double a = 0.7 * step, size = step % 20 == 19 ? 100 : 1;
+      Vector6 motion;
+      motion << std::sin(a), std::cos(1.3 * a), std::sin(2.1 * a), 30 * std::cos(a), 30 * std::sin(1.7 * a),
+          30;
+      pose = moved(pose, size * kShort_m * motion);
+      if (step % 25 == 24) {
+        query.finder.on_frame(formatted<TiledCloud>(scenes::random_cloud(20000, 0.03, 100 + step)));
+        query.disks.on_frame(query.finder.cloud());
+      }
+      const double reach_m = step % 7 == 6 ? 0.5 * kReach_m : kReach_m,
+                   max_lower_m = step % 2 == 0 ? 0.002 : 1;
+      query.disks.query(query.finder, *kernels, pose, reach_m, max_lower_m);
+      ASSERT_TRUE(are_same(query.disks, plain_disks(query.finder.cloud(), pose, reach_m, max_lower_m)))
+          << step << " " << kernels->isa;
+      kept += query.disks.kept_points() != query.finder.within(pose, reach_m + NearDisks::kSpare_m).size();
+    }
+    EXPECT_GT(kept, 10) << "the points were searched anew at every step";
   }
-  EXPECT_GT(kept, 10) << "the points were searched anew at every step";
 }
 
 // A list that has looked at the pose already, and one that has not.

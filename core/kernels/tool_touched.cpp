@@ -1,0 +1,100 @@
+// What of a cloud a tool touches, 6.2.2, every point counted: the voxels that its points lie in, and the
+// distance of those that lie in none. The operations are those of voxel_tool.cpp and disk_contact.cpp, in
+// their order.
+#include "core/kernels/field_lanes.h"
+#include "core/kernels/level.h"
+
+namespace remote_touch::REMOTE_TOUCH_LEVEL {
+
+namespace {
+
+constexpr long kInterior = 2;  // as in Voxel
+
+// Voxels of cells, one by one.
+inline Flags voxels_at(const CellTable& table, Counts cell) {
+  Flags voxels;
+  for (int lane = 0; lane < kDoubles; ++lane) voxels[lane] = table.value[cell[lane]];
+  return voxels;
+}
+
+// Whether the disks of points can come as near as `touch`: in the plane of a normal n the field is no steeper
+// than its gradient times the larger of 1 and |1 - n.n|.
+inline Flags can_touch(const PointColumns& points, std::size_t i, double fraction, const TouchLimits& limits,
+                       Doubles distance) {
+  constexpr double kRounding = 1 + 1e-9;
+  const Doubles3 n{load(points.nx + i), load(points.ny + i), load(points.nz + i)};
+  const Doubles off = magnitude(1 - dot(n, n)), steep = off < 1 ? all(1) : off;
+  const Doubles radius = fraction * load(points.spacing + i) + load(points.extent + i);
+  return ~(distance > limits.touch + kRounding * limits.slope * (steep * radius));  // without a normal, too
+}
+
+class Summary {
+ public:
+  explicit Summary(TouchedSummary& out) : out_(out) {}
+
+  // Lanes of points first .. and the cells of the clusters that they are in.
+  void add(Flags touched, Flags cluster) {
+    const Packing all(touched);
+    if (all.count() == 0) return;
+    out_.points += all.count();
+    const Packing others(touched & (cluster != last_cluster_));  // neighbours mostly follow each other
+    if (others.count() == 0) return;
+    others.put((Doubles)cluster, reinterpret_cast<double*>(out_.cluster + out_.clusters));
+    out_.clusters += others.count();
+    last_cluster_ = static_cast<long>(out_.cluster[out_.clusters - 1]);
+  }
+  void add_unclear(Flags unclear, std::size_t first) {
+    if (!is_any(unclear)) return;
+    for (std::size_t lane = 0; lane < kDoubles; ++lane)
+      if (unclear[lane]) out_.unclear[out_.unclear_count++] = static_cast<std::uint32_t>(first + lane);
+  }
+
+ private:
+  TouchedSummary& out_;
+  long last_cluster_ = -1;
+};
+
+}  // namespace
+
+void touched_points(const PointColumns& points, const std::uint32_t* groups, std::size_t group_count,
+                    double fraction, double clusters_per_m, const PosedField& f, const CellTable& voxels,
+                    const TouchLimits& limits, double* nearest, bool is_new, TouchedSummary& out) {
+  constexpr double kInfinite = __builtin_inf();
+  out.points = out.clusters = out.unclear_count = 0;
+  Summary summary(out);
+  Doubles least_of_all = all(kInfinite);
+  Flags inside{};
+  for (std::size_t g = 0; g < group_count; ++g) {
+    if (!is_new && nearest[g] > limits.passed) continue;
+    Doubles least_of_group = all(kInfinite);
+    for (std::size_t i = kLanes * std::size_t{groups[g]}; i < kLanes * (std::size_t{groups[g]} + 1);
+         i += kDoubles) {
+      const PlacesInField place = places(points, i, f);
+      const Doubles distance = place.at.distance;
+      least_of_group = distance < least_of_group ? distance : least_of_group;
+      const Flags reached = distance <= limits.reach;
+      if (!is_any(reached)) continue;
+      const Flags known = reached & place.at.is_known;
+      const Doubles counted = known ? distance : all(kInfinite);
+      least_of_all = counted < least_of_all ? counted : least_of_all;
+      const Flags voxel =
+          known & place.at.in_cell & (distance <= limits.voxels) ? voxels_at(voxels, place.at.cell) : Flags{};
+      inside |= voxel == kInterior;
+      Flags touched = voxel != 0, unclear = reached & ~known;
+      const Flags may = known & ~touched & can_touch(points, i, fraction, limits, distance);
+      if (is_any(may)) {
+        const DisksInField disks = disks_at(points, i, fraction, f, place.at);
+        const Flags near = may & (disks.lower <= limits.touch);
+        touched |= near & (distance <= limits.touch);
+        unclear |= near & ~(distance <= limits.touch) & ~is_flat(disks.slope, disks.radius, disks.extent);
+      }
+      summary.add(touched, cell_number(place.p_T, clusters_per_m));
+      summary.add_unclear(unclear, i);
+    }
+    if (is_new) nearest[g] = least(least_of_group);
+  }
+  out.nearest = least(least_of_all);
+  out.is_inside = is_any(inside);
+}
+
+}  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -1,0 +1,36 @@
+// Columns of doubles of one length, in one piece of memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/search/gathered_points.h"
+
+namespace remote_touch {
+
+// Columns begin at whole cache lines, each at another place of its page: columns that are whole pages apart
+// would share the same few lines of a cache, and more of them than it has ways would push each other out.
+template <std::size_t kCount>
+class ColumnBlock {
+ public:
+  // What was in the columns is lost when they grow.
+  void grow(std::size_t size) {
+    if (size <= size_) return;
+    size_ = size;
+    stride_ = (size + kPage - 1) / kPage * kPage + kShift;
+    memory_.grow(kCount * stride_ + kLine);
+  }
+  double* operator[](std::size_t column) const {
+    const auto at = reinterpret_cast<std::uintptr_t>(memory_.data()) / sizeof(double);
+    return memory_.data() + (kLine - at % kLine) % kLine + column * stride_;
+  }
+
+ private:
+  static constexpr std::size_t kLine = 64 / sizeof(double), kPage = 4096 / sizeof(double);
+  static constexpr std::size_t kShift = 5 * kLine;  // 64 lines of a page, and 5 have no common factor
+
+  Buffer<double> memory_;
+  std::size_t size_ = 0, stride_ = 0;
+};
+
+}  // namespace remote_touch
