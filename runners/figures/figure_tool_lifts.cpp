@@ -4,8 +4,8 @@
 
 #include "core/geometry/rotation.h"
 #include "core/tool/dynamics/tool_parameters.h"
-#include "runners/figures/carried_limits.h"
 #include "runners/figures/figures.h"
+#include "runners/figures/tools/carried_limits.h"
 #include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/figures/carried_limits.h"
+#include "runners/figures/tools/carried_limits.h"
 
 namespace remote_touch {
 
