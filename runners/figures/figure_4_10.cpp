@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "runners/figures/proxy_picture.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 // Fig 5.9: the proxy keeps the distance of a forbidden region from a beating organ.
 #include "runners/figures/proxy_picture.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 
 #include "core/random/noise.h"
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 #include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include "analysis/measures/measures.h"
 #include "core/geometry/rotation.h"
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 #include "runners/second_implementation/second_implementation.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 #include "runners/figures/valve_task.h"
 
 namespace remote_touch {

@@ -1,11 +1,11 @@
 // Chapter 4's question for tools: up to which speed does a surface carry a plate that is pressed onto it, and
 // what do thickness, tilt, rotation and noise do to that? Simulated; not in the dissertation.
 #include <algorithm>
-#include <limits>
 
 #include "core/geometry/rotation.h"
 #include "core/tool/dynamics/tool_parameters.h"
 #include "runners/figures/figures.h"
+#include "runners/figures/tools/carried_limits.h"
 #include "runners/tool_files/tool_loading.h"
 
 namespace remote_touch {
@@ -14,15 +14,6 @@ namespace {
 
 const std::string kLiftFigure = "tool-lifts";
 constexpr double kLiftFrames_hz = 30, kThinPlate_m = 0.005, kPlateLength_m = 0.04;
-
-enum class Carrier { voxels, look_ahead, continuous };
-struct CarrierName {
-  Carrier rule;
-  const char *column, *label;
-};
-constexpr CarrierName kCarriers[] = {{Carrier::voxels, "voxels", "as printed"},
-                                     {Carrier::look_ahead, "look_ahead", "look-ahead"},
-                                     {Carrier::continuous, "continuous", "continuous"}};
 
 // What one frame may move a surface by against a plate: 6.2.4, with the shell on either side; all of the
 // plate, where the side of the last contact is known; how far a held tool is moved out.
@@ -36,41 +27,6 @@ double max_jump_m(Carrier rule, double thickness_m) {
       return std::max(thickness_m, ToolParameters{}.frame_reach_m);
   }
 }
-
-// A sweep whose axes are a parameter, a strength (a speed, an angle, an acceleration) and the rule, in the
-// order of kCarriers.
-class CarrySweep {
- public:
-  explicit CarrySweep(SweepResult result) : result_(std::move(result)) {}
-  std::size_t settings() const { return result_.axes.at(0).length(); }
-  const std::vector<double>& strengths() const {
-    return std::get<std::vector<double>>(result_.axes.at(1).values);
-  }
-  double setting(std::size_t i) const { return std::get<std::vector<double>>(result_.axes.at(0).values)[i]; }
-  double carried_fraction(std::size_t setting, std::size_t strength, Carrier rule) const {
-    const Tally lost = tally(result_, result_.measure("tool_popped_through"),
-                             result_.cell_at({setting, strength, static_cast<std::size_t>(rule)}));
-    return 1 - static_cast<double>(lost.events) / lost.runs;
-  }
-  // The largest strength up to which every run is carried, and the next one; infinite: none is lost.
-  struct Limit {
-    double carried = 0, lost = std::numeric_limits<double>::infinity();
-  };
-  Limit limit(std::size_t setting, Carrier rule) const {
-    Limit limit;
-    for (std::size_t i = 0; i < strengths().size(); ++i) {
-      if (carried_fraction(setting, i, rule) < 1) {
-        limit.lost = strengths()[i];
-        break;
-      }
-      limit.carried = strengths()[i];
-    }
-    return limit;
-  }
-
- private:
-  SweepResult result_;
-};
 
 // Limits over a setting, and bound(), what is derived for it; each rule in columns of its own.
 template <class Bound>
@@ -92,30 +48,6 @@ Table limit_table(const std::string& name, const std::string& title, const Carry
   return table;
 }
 
-Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
-                  std::pair<double, double> place) {
-  Panel panel{table.title, x_label, y_label};
-  for (const CarrierName& carrier : kCarriers) {
-    const std::string column = carrier.column, x = table.columns[0].name;
-    panel.curves.push_back(
-        {table.name, x, column + "_bound", CurveStyle::dashed, std::string(carrier.label) + ", derived"});
-    panel.curves.push_back({table.name, x, column + "_carried", CurveStyle::dots, carrier.label});
-  }
-  panel.place = place;
-  return panel;
-}
-
-// In how many rows a plate is lost below the bound of a rule, or carried above that of another.
-double rows_apart(const Table& table, Carrier rule, Carrier upper) {
-  const std::string column = kCarriers[static_cast<std::size_t>(rule)].column,
-                    other = kCarriers[static_cast<std::size_t>(upper)].column;
-  const auto &carried = numbers(table, column + "_carried"), &lost = numbers(table, column + "_lost"),
-             &low = numbers(table, column + "_bound"), &high = numbers(table, other + "_bound");
-  double apart = 0;
-  for (std::size_t i = 0; i < low.size(); ++i) apart += lost[i] < low[i] || carried[i] > high[i];
-  return apart;
-}
-
 Table lift_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-lifts")));
   return limit_table("lifts", "Speed up to which a plate is carried", sweep,
@@ -127,7 +59,7 @@ Table lift_limits(const FigureContext& context) {
 Table tilt_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-tilts")));
   std::vector<double> tilt;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) tilt.push_back(sweep.setting(i));
+  for (std::size_t i = 0; i < sweep.settings(); ++i) tilt.push_back(sweep.value(i, 0));
   return limit_table("tilts", "Speed of a tilted surface, plate of 5 mm", sweep,
                      {"tilt", "deg", "of the surface", tilt, 1, {}}, "m/s", [](Carrier rule, double deg) {
                        return kLiftFrames_hz * max_jump_m(rule, kThinPlate_m) /
@@ -140,7 +72,7 @@ Table tilt_limits(const FigureContext& context) {
 Table turn_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-turns")));
   std::vector<double> lever;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) lever.push_back(sweep.setting(i));
+  for (std::size_t i = 0; i < sweep.settings(); ++i) lever.push_back(sweep.value(i, 0));
   return limit_table("turns", "Angle of a surface that turns at 1 Hz, plate of 5 mm", sweep,
                      {"lever", "m", "from the axis to the middle of the plate", lever, 1, {}}, "deg",
                      [](Carrier rule, double lever_m) {
@@ -153,17 +85,20 @@ Table turn_limits(const FigureContext& context) {
 Table noise_limits(const FigureContext& context) {
   const CarrySweep sweep(context.sweep(Sweep::load("tool-noise")));
   std::vector<double> noise;
-  for (std::size_t i = 0; i < sweep.settings(); ++i) noise.push_back(sweep.setting(i));
+  for (std::size_t i = 0; i < sweep.settings(); ++i) noise.push_back(sweep.value(i, 0));
   return limit_table(
       "noise", "Acceleration with a velocity estimate, plate of 10 mm", sweep,
       {"noise", "m", "standard deviation of the noise on x, y and z", noise, 1, {}}, "m/s^2",
       [](Carrier rule, double) { return kLiftFrames_hz * kLiftFrames_hz * max_jump_m(rule, 0.01); });
 }
 
+// No run is lost below the bound of a rule, or carried above that of another.
 Claim claim_bounded(const Table& table, Carrier rule, Carrier upper, const std::string& claim) {
   const char* paper = rule == Carrier::voxels && table.name == "lifts" ? "v < f_c (h - 2w), 6.2.4" : "-";
   return claim_at_most(kLiftFigure, claim + ": number of settings where not", paper,
-                       rows_apart(table, rule, upper), 0, "1");
+                       rows_apart(table, column_of(rule) + "_carried", column_of(rule) + "_lost",
+                                  column_of(rule) + "_bound", column_of(upper) + "_bound"),
+                       0, "1");
 }
 
 std::vector<Claim> lift_claims(const Table& lifts, const Table& tilts, const Table& turns,

@@ -127,6 +127,7 @@ Figure figure_eq4_15(const FigureContext& context);
 Figure figure_proxy_rates(const FigureContext& context);
 Figure figure_tool_forces(const FigureContext& context);
 Figure figure_tool_lifts(const FigureContext& context);
+Figure figure_tool_shapes(const FigureContext& context);
 Figure figure_tool_tracked(const FigureContext& context);
 Figure figure_turbidity(const FigureContext& context);
 

@@ -2,7 +2,7 @@
 
 #include "core/tool/mesh/generated_tools.h"
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "core/geometry/rotation.h"
 #include "core/sphere_tree/region_tree.h"
 #include "runners/figures/fixture_run.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@ import time
 
 STAGES = ("unit", "program", "bits")  # in this order; "bits": the stored results
 SLOW_FIGURES = {"4.13", "4.13-replicated", "4.13-tracked", "bounds", "proxy-rates", "5.8", "5.8-recorded", "7.4", "7.5",
-                "7.5-guidance", "7.5-recorded", "latency", "tool-lifts", "tool-tracked"}  # more than 5 s each; not tried
+                "7.5-guidance", "7.5-recorded", "latency", "tool-lifts", "tool-shapes", "tool-tracked"}  # more than 5 s each; not tried
 # A mistake may ask for all memory or write without end.
 LIMITS = ("prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
 

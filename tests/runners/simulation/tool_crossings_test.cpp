@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
 #include "tests/runners/simulation/tool_audit.h"

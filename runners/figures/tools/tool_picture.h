@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/figures/figure.h"
+#include "analysis/trace/trace.h"
 #include "core/cloud/point_cloud.h"
 #include "core/tool/voxels/voxel_tool.h"
-#include "runners/figures/figures.h"
+#include "runners/experiment/experiment.h"
 
 namespace remote_touch {
 

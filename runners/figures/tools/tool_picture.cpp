@@ -1,4 +1,4 @@
-#include "runners/figures/tool_picture.h"
+#include "runners/figures/tools/tool_picture.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>

@@ -1,0 +1,63 @@
+// Up to which strength (a speed, an angle, an acceleration) a surface carries a tool, by each contact rule:
+// what figures tool-lifts and tool-shapes share.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/figures/figure.h"
+#include "analysis/sweeps/sweep_result.h"
+
+namespace remote_touch {
+
+enum class Carrier { voxels, look_ahead, continuous };
+struct CarrierName {
+  Carrier rule;
+  const char *column, *label;
+};
+inline constexpr CarrierName kCarriers[] = {{Carrier::voxels, "voxels", "as printed"},
+                                            {Carrier::look_ahead, "look_ahead", "look-ahead"},
+                                            {Carrier::continuous, "continuous", "continuous"}};
+inline std::string column_of(Carrier rule) {
+  return kCarriers[static_cast<std::size_t>(rule)].column;
+}
+
+// A sweep with the measure tool_popped_through. Its last axis is the rule, in the order of kCarriers, the one
+// before it a strength, rising; a setting is a combination of values of the axes before these.
+class CarrySweep {
+ public:
+  explicit CarrySweep(SweepResult result) : result_(std::move(result)) {}
+  std::size_t settings() const { return result_.cell_count() / (strengths().size() * std::size(kCarriers)); }
+  const std::vector<double>& strengths() const {
+    return std::get<std::vector<double>>(result_.axes.at(result_.axes.size() - 2).values);
+  }
+  // Value of a numeric axis.
+  double value(std::size_t setting, std::size_t axis) const;
+  Tally lost(std::size_t setting, std::size_t strength, Carrier rule) const;
+  struct Limit {
+    double carried = 0;  // the largest strength up to which every run is carried; 0: none
+    double lost = std::numeric_limits<double>::infinity();      // the next one; infinite: none is lost
+    double all_lost = std::numeric_limits<double>::infinity();  // from here on no run is carried
+  };
+  Limit limit(std::size_t setting, Carrier rule) const;
+
+ private:
+  std::size_t cell(std::size_t setting, std::size_t strength, Carrier rule) const {
+    return (setting * strengths().size() + strength) * std::size(kCarriers) + static_cast<std::size_t>(rule);
+  }
+
+  SweepResult result_;
+};
+
+// In how many rows a limit is not between two columns: a run is lost below `low`, or carried above `high`.
+double rows_apart(const Table& table, const std::string& carried, const std::string& lost,
+                  const std::string& low, const std::string& high);
+
+// Over the first column of a table: what is derived (columns *_bound), dashed, and up to where every run is
+// carried (columns *_carried), as dots.
+Panel limit_panel(const Table& table, const std::string& x_label, const std::string& y_label,
+                  std::pair<double, double> place);
+
+}  // namespace remote_touch
