@@ -65,8 +65,8 @@ Parameters parameters(DepthPipelineSettings& s) {
       {"normal_radius_m", &s.normal_radius_m, 1e-3, 1,
        "r_w of 6.2.1: neighbours at this distance or more have weight 0 (4.2) in a normal"},
       {"normal_step", &s.normal_step, 1, 7,
-       "a normal, 6.2.1, uses only every normal_step-th column and row of its window, from the centre; divides "
-       "half of normal_window - 1"},
+       "a normal, 6.2.1, uses only every normal_step-th column and row of its window, from the centre; "
+       "divides half of normal_window - 1"},
       {"normal_fit", choice(s.normal_fit, {"total-least-squares", "inverse-depth"}), 0, 0,
        "fit of a normal, 6.2.1; inverse-depth is faster and has weights (1 - q^2)^2 in place of (4.2)"},
   };
