@@ -37,7 +37,8 @@ struct DepthPipelineSettings {
   NormalFit normal_fit = NormalFit::total_least_squares;
 };
 
-// The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of 11 x 11.
+// The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
+// 11 x 11.
 inline constexpr DepthPipelineSettings kFastDepthPipeline{
     true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth};
 
