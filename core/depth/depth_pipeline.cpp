@@ -64,12 +64,21 @@ Parameters parameters(DepthPipelineSettings& s) {
        "width and height of the window of a normal in pixels, 6.2.1; odd"},
       {"normal_radius_m", &s.normal_radius_m, 1e-3, 1,
        "r_w of 6.2.1: neighbours at this distance or more have weight 0 (4.2) in a normal"},
+      {"normal_step", &s.normal_step, 1, 7,
+       "a normal, 6.2.1, uses only every normal_step-th column and row of its window, from the centre; "
+       "divides half of normal_window - 1"},
+      {"normal_fit", choice(s.normal_fit, {"total-least-squares", "inverse-depth"}), 0, 0,
+       "fit of a normal, 6.2.1; inverse-depth is faster and has weights (1 - q^2)^2 in place of (4.2)"},
   };
 }
 
 std::string validate(const DepthPipelineSettings& s) {
   const std::string filter = wrong_window("filter_window", s.filter_window);
-  return filter.empty() ? wrong_window("normal_window", s.normal_window) : filter;
+  const std::string normal = wrong_window("normal_window", s.normal_window);
+  if (!filter.empty() || !normal.empty()) return filter.empty() ? normal : filter;
+  if (half(s.normal_window) % s.normal_step == 0) return {};
+  return "normal_step = " + std::to_string(s.normal_step) + ": expected a divisor of " +
+         std::to_string(half(s.normal_window)) + ", half of normal_window - 1";
 }
 
 // What is to be done: the rectangle of an image, seen by a camera.
@@ -243,7 +252,10 @@ void DepthPipeline::normals_band(const Frame& frame, int first, int last, float*
   const PixelRays rays{rays_x_.data() + kBorder, rays_y_.data() + kBorder};
   const float step[2] = {static_cast<float>(1 / frame.camera.fx), static_cast<float>(1 / frame.camera.fy)};
   const PointPlanes points = planes(smooth_, 0), normals = planes(normals_, 0);
-  kernels_.depth.plane_normals({first, last, width, frame.normal_half, scratch}, points, rays, step, normals);
+  const RowBand band{first, last, width, frame.normal_half, scratch, settings_.normal_step};
+  const bool total = settings_.normal_fit == NormalFit::total_least_squares;
+  (total ? kernels_.depth.plane_normals : kernels_.depth.inverse_depth_normals)(band, points, rays, step,
+                                                                                normals);
   for (int row = first; row < last; ++row) {
     const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     const std::ptrdiff_t at = row * stride_;

@@ -23,13 +23,24 @@
 
 namespace remote_touch {
 
+// How a normal is found: the plane of total least squares, or the faster fit of the inverse depth, which is
+// an affine function of the pixel on every plane, with weights (1 - q^2)^2 for psi(q).
+enum class NormalFit { total_least_squares, inverse_depth };
+
 struct DepthPipelineSettings {
   bool filter = true;
   int filter_window = 9;
   double sigma_f_m = 0.025;
   int normal_window = 9;
   double normal_radius_m = 0.014;
+  int normal_step = 1;
+  NormalFit normal_fit = NormalFit::total_least_squares;
 };
+
+// The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
+// 11 x 11.
+inline constexpr DepthPipelineSettings kFastDepthPipeline{
+    true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth};
 
 Parameters parameters(DepthPipelineSettings& s);
 std::string validate(const DepthPipelineSettings& s);

@@ -30,7 +30,7 @@ inline Floats gaussian(Floats s) {
 template <int kHalf>
 void filter_row(const RowBand& band, int row, bool only_weights, const PointPlanes in, float* change) {
   const int half = kHalf ? kHalf : band.half, end = band.width + half;
-  const PairWeights weights(band.weights, band.width, half, row);
+  const PairWeights weights(band.weights, band.width, half, 1, row);
   for (int u = -half; u < end; u += kFloats) {
     const std::ptrdiff_t here = row * in.stride + u;
     const Point p0 = point(in, here);
@@ -64,8 +64,12 @@ void filter_row(const RowBand& band, int row, bool only_weights, const PointPlan
 }  // namespace
 
 void filter_depth(const RowBand& band, const PointPlanes& in, float* change) {
+  const auto work = band.half == 4   ? filter_row<4>
+                    : band.half == 2 ? filter_row<2>
+                    : band.half == 1 ? filter_row<1>
+                                     : filter_row<0>;
   for (int row = band.first - band.half; row < band.last; ++row)
-    (band.half == 4 ? filter_row<4> : filter_row<0>)(band, row, row < band.first, in, change);
+    work(band, row, row < band.first, in, change);
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -7,6 +7,7 @@ namespace remote_touch::REMOTE_TOUCH_LEVEL {
 Kernel<&DepthKernels::depth_to_points> depth_to_points;
 Kernel<&DepthKernels::filter_depth> filter_depth;
 Kernel<&DepthKernels::plane_normals> plane_normals;
+Kernel<&DepthKernels::inverse_depth_normals> inverse_depth_normals;
 Kernel<&DepthKernels::points_to_cloud> points_to_cloud;
 Kernel<&DepthKernels::normals_to_cloud> normals_to_cloud;
 
@@ -14,6 +15,7 @@ const DepthKernels kDepthKernels = {
     .depth_to_points = depth_to_points,
     .filter_depth = filter_depth,
     .plane_normals = plane_normals,
+    .inverse_depth_normals = inverse_depth_normals,
     .points_to_cloud = points_to_cloud,
     .normals_to_cloud = normals_to_cloud,
 };

@@ -32,12 +32,14 @@ struct RowBand {
   int width;
   int half;        // the window is 2 half + 1 pixels wide
   float* weights;  // scratch of weight_buffer_size(width, half) values
+  int step = 1;    // only every step-th column and row of the window, from its centre; divides half
 };
 
 inline constexpr int kMaxLanes = 16;
 
 // The weight of a pair of points is symmetric: it is computed at the upper point and kept for the lower one.
 // For pairs j rows apart, the weights of j + 1 rows are kept, each row with half more columns on either side.
+// A window of step 1 needs the most.
 constexpr std::ptrdiff_t weight_stride(int width, int half) {
   return (width + 4 * half + 2 * kMaxLanes) / kMaxLanes * kMaxLanes;
 }
@@ -70,7 +72,9 @@ struct CloudRow {
 };
 
 // A point with its two neighbours is a plane only if the middle eigenvalue of their covariance is above this
-// fraction of the sum of all three: a strip a hundredth as wide as long has no normal.
+// fraction of the sum of all three: a strip a hundredth as wide as long has no normal. For the fit of the
+// inverse depth likewise the product of both eigenvalues of the pixels' covariance, as a fraction of their
+// sum squared.
 inline constexpr float kThinnest = 1e-4f;
 
 // (7.2) takes squared distances in units of sigma_f^2 / (kFilterExponent / 2).
@@ -86,6 +90,9 @@ struct DepthKernels {
   // (1 / fx, 1 / fy).
   void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
                         const PointPlanes& normals);
+  // The same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q.
+  void (*inverse_depth_normals)(const RowBand&, const PointPlanes& points, const PixelRays&,
+                                const float step[2], const PointPlanes& normals);
   // One row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points that
   // the normals belong to.
   void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);

@@ -88,17 +88,20 @@ __attribute__((always_inline)) inline void for_each_step(int half, const Work& w
 }
 
 // Weights of the pairs of one row, as described in depth_kernels.h. A row of them holds those of pairs whose
-// lower point is `below` rows under the upper one and `across` columns to its right, at the column of the
-// upper one.
+// lower point is `below` steps of rows under the upper one and `across` steps of columns to its right, at the
+// column of the upper one.
 class PairWeights {
  public:
-  PairWeights(float* scratch, int width, int half, int row) : across_((width + 4 * half + 2 * 16) / 16 * 16) {
-    for (int below = 1, before = 0; below <= half; before += ++below) {
+  PairWeights(float* scratch, int width, int half, int step, int row)
+      : across_((width + 4 * half + 2 * 16) / 16 * 16) {
+    const int taps = half / step;
+    for (int below = 1, before = 0; below <= taps; before += step * below + 1, ++below) {
+      const int rows = step * below + 1;
       const auto at = [&](int upper_row) {
-        const int slot = before + (upper_row + 64 * (below + 1)) % (below + 1);
-        return scratch + (slot * (2 * half + 1) + half) * across_ + 2 * half;
+        const int slot = before + (upper_row + 64 * rows) % rows;
+        return scratch + (slot * (2 * taps + 1) + taps) * across_ + 2 * half;
       };
-      fresh_[below] = at(row), kept_[below] = at(row - below);
+      fresh_[below] = at(row), kept_[below] = at(row - step * below);
     }
   }
   // Weights of points in this row with others below.

@@ -98,17 +98,19 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
   return {plane ? n.x * factor : none, plane ? n.y * factor : none, plane ? n.z * factor : none};
 }
 
-template <int kHalf>
+// kTaps: pixels of the window that are used on each side of its centre, or 0 where that is not known.
+template <int kTaps, int kStep>
 void normals_of_row(const RowBand& band, int row, bool only_weights, const PointPlanes in,
                     const PixelRays& rays, const float step[2], const PointPlanes out) {
-  const int half = kHalf ? kHalf : band.half, end = band.width + half;
-  const PairWeights weights(band.weights, band.width, half, row);
+  const int stride = kTaps ? kStep : band.step, half = kTaps ? kTaps * kStep : band.half;
+  const int taps = kTaps ? kTaps : half / stride, end = band.width + half;
+  const PairWeights weights(band.weights, band.width, half, stride, row);
   for (int u = -half; u < end; u += kFloats) {
     const std::ptrdiff_t here = row * in.stride + u;
     const Floats x0 = load(in.x + here), y0 = load(in.y + here), z0 = load(in.z + here);
-    const auto depth = [&](int j, int i) { return load(in.z + here + j * in.stride + i) - z0; };
+    const auto depth = [&](int j, int i) { return load(in.z + here + stride * (j * in.stride + i)) - z0; };
     const auto weight = [&](int j, int i) {
-      const std::ptrdiff_t at = here + j * in.stride + i;
+      const std::ptrdiff_t at = here + stride * (j * in.stride + i);
       const Floats dx = load(in.x + at) - x0, dy = load(in.y + at) - y0, dz = load(in.z + at) - z0;
       return wendland(dx * dx + dy * dy + dz * dz);
     };
@@ -117,11 +119,11 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
       store(weights.fresh(j, i) + u, psi);
       return psi;
     };
-    const auto kept = [&](int j, int i) { return load(weights.kept(-j, -i) + u + i); };
+    const auto kept = [&](int j, int i) { return load(weights.kept(-j, -i) + u + stride * i); };
     if (only_weights) {
-      for (int j = 1; j <= half; ++j) {
+      for (int j = 1; j <= taps; ++j) {
         fresh(j, 0);
-        for_each_step<kHalf>(half, [&](int i) { fresh(j, -i), fresh(j, i); });
+        for_each_step<kTaps>(taps, [&](int i) { fresh(j, -i), fresh(j, i); });
       }
       continue;
     }
@@ -129,21 +131,21 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
     const auto add_row = [&](int j, Floats middle, const auto& psi) __attribute__((always_inline)) {
       const Floats dz = depth(j, 0), k0 = middle * dz;
       RowSums w{middle, {}, {}}, k{k0, {}, {}}, l{k0 * dz, {}, {}};
-      for_each_step<kHalf>(
-          half, [&](int i) __attribute__((always_inline)) {
-            const float across = static_cast<float>(i);
+      for_each_step<kTaps>(
+          taps, [&](int i) __attribute__((always_inline)) {
+            const float across = static_cast<float>(stride * i);
             const Floats left = psi(j, -i), right = psi(j, i);
             const Floats dz_left = depth(j, -i), dz_right = depth(j, i);
             const Floats k_left = left * dz_left, k_right = right * dz_right;
             w.add(across, left, right), k.add(across, k_left, k_right);
             l.add(across, k_left * dz_left, k_right * dz_right);
           });
-      const float down = static_cast<float>(j);
+      const float down = static_cast<float>(stride * j);
       add(sums[0], w, down), add(sums[1], k, down), add(sums[2], l, down);
     };
     add_row(0, Floats{} + 0.25f, weight);
-    for (int j = 1; j <= half; ++j) add_row(j, fresh(j, 0), fresh);
-    for (int j = 1; j <= half; ++j) add_row(-j, kept(-j, 0), kept);
+    for (int j = 1; j <= taps; ++j) add_row(j, fresh(j, 0), fresh);
+    for (int j = 1; j <= taps; ++j) add_row(-j, kept(-j, 0), kept);
     const Floats ray_x = load(rays.x + u), ray_y = Floats{} + rays.y[row];
     const Symmetric m = covariance(sums, z0, ray_x, ray_y, step[0], step[1]);
     const Normal n = smallest_eigenvector(m, z0, ray_x, ray_y);
@@ -156,9 +158,12 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
 
 void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2],
                    const PointPlanes& out) {
+  const auto known = [&](int half, int stride) { return band.half == half && band.step == stride; };
+  const auto work = known(4, 1)   ? normals_of_row<4, 1>
+                    : known(4, 2) ? normals_of_row<2, 2>
+                                  : normals_of_row<0, 0>;
   for (int row = band.first - band.half; row < band.last; ++row)
-    (band.half == 4 ? normals_of_row<4> : normals_of_row<0>)(band, row, row < band.first, in, rays, step,
-                                                             out);
+    work(band, row, row < band.first, in, rays, step, out);
 }
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -70,8 +70,17 @@ if(PCL_FOUND AND OpenCV_FOUND)
   add_executable(peer_depth_benchmark EXCLUDE_FROM_ALL
     benchmarks/checked_benchmark.cpp benchmarks/peer_depth_benchmark.cpp $<TARGET_OBJECTS:peer_depth>)
   target_link_libraries(peer_depth_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
+  # As fast as a user of this machine has them.
+  set_source_files_properties(benchmarks/published_normals.cpp PROPERTIES COMPILE_OPTIONS
+    "-O3;-march=native;-fno-math-errno;-fno-trapping-math")
+  target_sources(peer_depth_benchmark PRIVATE benchmarks/published_normals.cpp)
+  add_executable(depth_trade_benchmark EXCLUDE_FROM_ALL
+    benchmarks/checked_benchmark.cpp benchmarks/depth_trade_benchmark.cpp benchmarks/depth_trade_scene.cpp
+    benchmarks/published_normals.cpp $<TARGET_OBJECTS:peer_depth>)
+  target_link_libraries(depth_trade_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
 else()
   peers_missing(peer_depth_benchmark "libpcl-dev and libopencv-contrib-dev")
+  peers_missing(depth_trade_benchmark "libpcl-dev and libopencv-contrib-dev")
 endif()
 
 # The collision detection of others, likewise.

@@ -127,4 +127,31 @@ std::vector<Peer> filters_of_others(const OrganisedPoints& from) {
       {"opencv_bilateral_9", [=] { cv::bilateralFilter(depth, *smooth, 9, 0.025, 100); }, points_of_opencv}};
 }
 
+std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> prefilters(
+    const DepthOfCamera& depth) {
+  cv::setNumThreads(1);
+  const auto from = std::make_shared<DepthOfCamera>(depth);
+  std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> all;
+  for (const int window : {1, 3, 5, 7, 9, 13, 17}) {
+    const auto box = std::make_shared<BoxFilter>();
+    all.emplace_back(window == 1 ? "raw" : "box_" + std::to_string(window),
+                     [=](std::vector<float>& to) { box->run(*from, window, to); });
+  }
+  for (const int window : {5, 9})
+    all.emplace_back("bilateral_" + std::to_string(window), [=](std::vector<float>& to) {
+      to.resize(from->z_m.size());
+      const cv::Mat z(from->height, from->width, CV_32F, from->z_m.data());
+      cv::Mat smooth(from->height, from->width, CV_32F, to.data());
+      cv::bilateralFilter(z, smooth, window, 0.025, 100);
+    });
+  for (const int window : {3, 5})
+    all.emplace_back("median_" + std::to_string(window), [=](std::vector<float>& to) {
+      to.resize(from->z_m.size());
+      const cv::Mat z(from->height, from->width, CV_32F, from->z_m.data());
+      cv::Mat smooth(from->height, from->width, CV_32F, to.data());
+      cv::medianBlur(z, smooth, window);
+    });
+  return all;
+}
+
 }  // namespace remote_touch::peers

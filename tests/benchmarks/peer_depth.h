@@ -4,7 +4,10 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "tests/benchmarks/published_normals.h"
 
 namespace remote_touch::peers {
 
@@ -25,5 +28,8 @@ struct Peer {
 // One thread each.
 std::vector<Peer> normals_of_others(const OrganisedPoints& points);
 std::vector<Peer> filters_of_others(const OrganisedPoints& points);
+// Filters of depths by name, for those normals that are computed from a depth image; each writes its image.
+std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> prefilters(
+    const DepthOfCamera& depth);
 
 }  // namespace remote_touch::peers

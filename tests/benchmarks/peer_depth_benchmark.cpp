@@ -13,6 +13,7 @@
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peer_depth.h"
+#include "tests/benchmarks/peer_points.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {
@@ -33,10 +34,6 @@ void report(benchmark::State& state, const CameraIntrinsics& camera, const std::
     }
   state.counters["rms_" + unit] = std::sqrt(sum / count);
   state.counters["fraction"] = count / all;
-}
-
-double angle_deg(const Vec3& n, const Vec3& truth) {
-  return std::atan2(n.cross(truth).norm(), std::abs(n.dot(truth))) * 180 / 3.14159265358979323846;
 }
 
 Vec3 vector(const std::vector<float>& numbers, std::size_t i) {
@@ -73,14 +70,6 @@ void add_peers(const scenes::DepthScene& truth, const std::string& name, const s
         report(state, truth.camera, "mm",
                [&](std::size_t i) { return 1e3 * (vector(got, i).z() - truth.depth.z_m[i]); });
     });
-}
-
-peers::OrganisedPoints organised(const PointCloud& cloud) {
-  const CameraIntrinsics& camera = cloud.image->camera;
-  peers::OrganisedPoints points{camera.width, camera.height, camera.fx, camera.cx, camera.cy, {}};
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    for (const double x : {cloud.x[i], cloud.y[i], cloud.z[i]}) points.xyz.push_back(static_cast<float>(x));
-  return points;
 }
 
 }  // namespace

@@ -97,6 +97,19 @@ TEST(DepthPipeline, AgreesWithTheEquationsForEveryWindow) {
                         {true, window, 0.01, 18 - window, 0.008}, 0.02);
 }
 
+TEST(DepthPipeline, AgreesWithTheEquationsForEveryStepAndFit) {
+  for (const auto& [window, step] : {std::pair{3, 1}, {5, 2}, {9, 1}, {9, 2}, {9, 4}, {13, 3}, {15, 7}})
+    for (const NormalFit fit : {NormalFit::total_least_squares, NormalFit::inverse_depth})
+      expect_as_reference("normals " + std::to_string(window) + " by " + std::to_string(step) +
+                              (fit == NormalFit::inverse_depth ? ", inverse depth" : ""),
+                          with_holes(noisy_waves(70, 50), 0.1), {true, 5, 0.01, window, 0.02, step, fit},
+                          0.02);
+  for (const auto& scene :
+       {scenes::step(scenes::kinect(160, 120), 0.8, 0.025),
+        scenes::sphere(scenes::kinect(160, 120), {0.02, 0, 0.6}, 0.05), with_holes(noisy_waves(160, 120))})
+    expect_as_reference("fast", scene, kFastDepthPipeline, 0.02);
+}
+
 scenes::DepthScene recorded(const std::filesystem::path& path) {
   const PointCloud cloud = read_frame(index_recording(path), 0, kInfinity);
   const CameraIntrinsics& camera = cloud.image->camera;
@@ -108,6 +121,7 @@ TEST(DepthPipeline, AgreesWithTheEquationsOnRecordedFrames) {
     const std::filesystem::path path = data_root() / "rgbd" / name;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "recorded data are missing: " << path;
     expect_as_reference(name, recorded(path), {}, 0.015);
+    expect_as_reference(std::string(name) + ", fast", recorded(path), kFastDepthPipeline, 0.015);
     expect_as_reference(std::string(name) + ", sigma_f 0.01", recorded(path), {true, 9, 0.01, 9, 0.014},
                         0.01);
   }

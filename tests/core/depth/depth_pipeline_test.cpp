@@ -18,7 +18,9 @@ using namespace depth_cases;
 TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
   const scenes::DepthScene scene = with_holes(noisy_waves(333, 250), 0.05);
   for (const Settings& settings :
-       {Settings{}, Settings{true, 5, 0.02, 11, 0.01}, Settings{false, 9, 0.02, 9, 0.014}}) {
+       {Settings{}, Settings{true, 5, 0.02, 11, 0.01}, Settings{false, 9, 0.02, 9, 0.014},
+        Settings{true, 3, 0.02, 9, 0.014, 2}, Settings{true, 7, 0.02, 13, 0.02, 3}, kFastDepthPipeline,
+        Settings{true, 5, 0.02, 13, 0.02, 3, NormalFit::inverse_depth}}) {
     const PointCloud expected = processed(scene, settings);
     for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
       if (isa > best_isa()) continue;
@@ -41,25 +43,27 @@ TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
   for (std::size_t i = 0; i < pixels; ++i) scene.depth.z_m.push_back(scene.depth.z_m[pixels - 200 + i % 200]);
   scene.depth.z_m.resize(pixels);
   const RigidTransform X_WC = some_pose();
-  DepthPipeline pipeline({}, best());
-  const PointCloud whole = pipeline.process(scene.depth, scene.camera, X_WC);
-  PointCloud part;
-  for (const PixelRectangle& at :
-       {PixelRectangle{70, 50, 50, 50}, PixelRectangle{0, 0, 9, 150}, PixelRectangle{3, 2, 1, 1},
-        PixelRectangle{150, 140, 50, 10}, PixelRectangle{0, 0, 200, 150}, PixelRectangle{10, 10, 0, 5}}) {
-    pipeline.process(scene.depth, scene.camera, X_WC, at, part);
-    ASSERT_EQ(part.size(), static_cast<std::size_t>(at.width * at.height));
-    PointCloud expected;
-    for (int v = at.top; v < at.top + at.height; ++v)
-      for (int u = at.left; u < at.left + at.width; ++u) {
-        const std::size_t i = static_cast<std::size_t>(v * 200 + u);
-        expected.append(whole.point(i), whole.normal(i));
-      }
-    EXPECT_TRUE(same_bits(part, expected)) << at.left << " " << at.top;
-    ASSERT_TRUE(part.image);
-    const CameraIntrinsics& own = part.image->camera;
-    EXPECT_EQ(own.width * own.height, at.width * at.height);
-    EXPECT_EQ(unproject(own, 0, 0, 1).x(), unproject(scene.camera, at.left, at.top, 1).x());
+  for (const Settings& settings : {Settings{}, Settings{true, 5, 0.02, 13, 0.02, 3}, kFastDepthPipeline}) {
+    DepthPipeline pipeline(settings, best());
+    const PointCloud whole = pipeline.process(scene.depth, scene.camera, X_WC);
+    PointCloud part;
+    for (const PixelRectangle& at :
+         {PixelRectangle{70, 50, 50, 50}, PixelRectangle{0, 0, 9, 150}, PixelRectangle{3, 2, 1, 1},
+          PixelRectangle{150, 140, 50, 10}, PixelRectangle{0, 0, 200, 150}, PixelRectangle{10, 10, 0, 5}}) {
+      pipeline.process(scene.depth, scene.camera, X_WC, at, part);
+      ASSERT_EQ(part.size(), static_cast<std::size_t>(at.width * at.height));
+      PointCloud expected;
+      for (int v = at.top; v < at.top + at.height; ++v)
+        for (int u = at.left; u < at.left + at.width; ++u) {
+          const std::size_t i = static_cast<std::size_t>(v * 200 + u);
+          expected.append(whole.point(i), whole.normal(i));
+        }
+      EXPECT_TRUE(same_bits(part, expected)) << at.left << " " << at.top;
+      ASSERT_TRUE(part.image);
+      const CameraIntrinsics& own = part.image->camera;
+      EXPECT_EQ(own.width * own.height, at.width * at.height);
+      EXPECT_EQ(unproject(own, 0, 0, 1).x(), unproject(scene.camera, at.left, at.top, 1).x());
+    }
   }
 }
 
@@ -110,25 +114,28 @@ TEST(DepthPipeline, PointsOnALineHaveNoNormal) {
     for (int v = 0; v < 60; ++v)
       for (int u = 0; u < 80; ++u)
         if ((u - 40) * dv != (v - 30) * du) scene.depth.z_m[static_cast<std::size_t>(v * 80 + u)] = kNaN;
-    Settings settings;
-    settings.filter = false;  // a filter would bend the line
-    const PointCloud cloud = processed(scene, settings);
-    std::size_t points = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      points += !std::isnan(cloud.x[i]);
-      EXPECT_FALSE(has_normal(cloud, i)) << i;
+    for (Settings settings : {Settings{}, kFastDepthPipeline}) {
+      settings.filter = false;  // a filter would bend the line
+      const PointCloud cloud = processed(scene, settings);
+      std::size_t points = 0;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        points += !std::isnan(cloud.x[i]);
+        EXPECT_FALSE(has_normal(cloud, i)) << i;
+      }
+      EXPECT_GT(points, 25u);
     }
-    EXPECT_GT(points, 25u);
   }
 }
 
 TEST(DepthPipeline, NormalsOfAPlaneAndASphere) {
   const scenes::DepthScene plane = scenes::plane(scenes::kinect(160, 120), {0.4, -0.7, 1}, 0.7);
-  Settings settings;
-  settings.filter = false;
-  const PointCloud flat = processed(plane, settings);
-  for (std::size_t i = 0; i < flat.size(); ++i)
+  Settings settings, fast = kFastDepthPipeline;
+  settings.filter = fast.filter = false;
+  const PointCloud flat = processed(plane, settings), fast_flat = processed(plane, fast);
+  for (std::size_t i = 0; i < flat.size(); ++i) {
     ASSERT_LE(angle_deg(flat.normal(i), plane.normals[i]), 0.01) << i;
+    ASSERT_LE(angle_deg(fast_flat.normal(i), plane.normals[i]), 0.01) << i;
+  }
 
   // Within 45 degrees of the axis, away from the rim; the window's points are even on all sides of the centre
   // but for perspective and curvature.
@@ -244,6 +251,11 @@ TEST(DepthPipeline, RefusesWhatDoesNotFit) {
   even = {};
   even.normal_window = 10;
   EXPECT_EQ(validate(even), "normal_window = 10: expected odd numbers, 3 to 15");
+  Settings odd_step;
+  odd_step.normal_step = 3;
+  EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4, half of normal_window - 1");
+  EXPECT_THROW(DepthPipeline(odd_step, best()), std::invalid_argument);
+  EXPECT_EQ(validate(kFastDepthPipeline), "");
   EXPECT_EQ(validate(Settings{}), "");
   Settings settings;
   for (const Parameter& parameter : parameters(settings))

@@ -14,14 +14,15 @@ struct Points {
   CameraIntrinsics camera;
   std::vector<Vec3> p;
 
-  // work(p) for all points in the window around (u, v), that of the pixel itself included.
+  // work(p, i, j) for all points in the window around (u, v), i columns and j rows from it, that of the pixel
+  // itself included; of every step-th column and row.
   template <class Work>
-  void window(int u, int v, int size, const Work& work) const {
-    for (int j = v - size / 2; j <= v + size / 2; ++j)
-      for (int i = u - size / 2; i <= u + size / 2; ++i) {
-        if (i < 0 || i >= camera.width || j < 0 || j >= camera.height) continue;
-        const Vec3& point = p[static_cast<std::size_t>(j * camera.width + i)];
-        if (point.allFinite()) work(point);
+  void window(int u, int v, int size, int step, const Work& work) const {
+    for (int j = -(size / 2); j <= size / 2; j += step)
+      for (int i = -(size / 2); i <= size / 2; i += step) {
+        if (u + i < 0 || u + i >= camera.width || v + j < 0 || v + j >= camera.height) continue;
+        const Vec3& point = p[static_cast<std::size_t>((v + j) * camera.width + u + i)];
+        if (point.allFinite()) work(point, i, j);
       }
   }
 };
@@ -40,7 +41,7 @@ Points filtered(const DepthPipelineSettings& settings, const Points& raw) {
     const Vec3& p0 = raw.p[static_cast<std::size_t>(v * raw.camera.width + u)];
     if (!p0.allFinite()) return kNoValue;
     double sum = 0, total = 0;
-    raw.window(u, v, settings.filter_window, [&](const Vec3& p) {
+    raw.window(u, v, settings.filter_window, 1, [&](const Vec3& p, int, int) {
       const double phi = std::exp(-(p - p0).squaredNorm() / (2 * settings.sigma_f_m * settings.sigma_f_m));
       sum += p.z() * phi, total += phi;
     });
@@ -63,7 +64,7 @@ Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, 
   double total = 0;
   Vec3 mean = Vec3::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  points.window(u, v, settings.normal_window, [&](const Vec3& p) {
+  points.window(u, v, settings.normal_window, settings.normal_step, [&](const Vec3& p, int, int) {
     const Vec3 d = p - p0;
     const double psi = wendland(d.norm() / settings.normal_radius_m);
     total += psi, mean += psi * d, squares += psi * d * d.transpose();
@@ -79,6 +80,30 @@ Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, 
   return found;
 }
 
+// The plane A x + B y + C z = 1 through the neighbours (a z, b z, z), a and b affine in the pixel: least
+// squares of its equation in the pixels (i, j), which is 1 / z = A i + B j + C times z.
+Plane plane_of_inverse_depth(const DepthPipelineSettings& settings, const Points& points, int u, int v) {
+  const Vec3& p0 = points.p[static_cast<std::size_t>(v * points.camera.width + u)];
+  if (!p0.allFinite()) return {};
+  Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
+  Vec3 right = Vec3::Zero();
+  points.window(u, v, settings.normal_window, settings.normal_step, [&](const Vec3& p, int i, int j) {
+    const double q = (p - p0).norm() / settings.normal_radius_m, weight = q < 1 ? std::pow(1 - q * q, 2) : 0;
+    const Vec3 row = p.z() * Vec3(i, j, 1);
+    left += weight * row * row.transpose(), right += weight * row;
+  });
+  const Eigen::Vector2d mean = left.block<2, 1>(0, 2) / left(2, 2);
+  const Eigen::Matrix2d covariance = left.topLeftCorner<2, 2>() / left(2, 2) - mean * mean.transpose();
+  Plane found;
+  found.gap = 1, found.middle = covariance.determinant() / std::pow(covariance.trace(), 2);
+  if (!(found.middle > kThinnest)) return found;
+  const Vec3 solved = left.fullPivLu().solve(right);
+  const double x = solved.x() * points.camera.fx, y = solved.y() * points.camera.fy;
+  found.normal = -Vec3(x, y, solved.z() - x * p0.x() / p0.z() - y * p0.y() / p0.z()).normalized();
+  if (found.normal.dot(p0) > 0) found.normal = -found.normal;
+  return found;
+}
+
 }  // namespace
 
 ReferenceDepth reference_depth_pipeline(const DepthPipelineSettings& settings, const DepthImage& depth,
@@ -89,9 +114,10 @@ ReferenceDepth reference_depth_pipeline(const DepthPipelineSettings& settings, c
   });
   const Points points = settings.filter ? filtered(settings, raw) : raw;
   ReferenceDepth reference;
+  const auto fit = settings.normal_fit == NormalFit::inverse_depth ? plane_of_inverse_depth : plane;
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
-      const Plane found = plane(settings, points, u, v);
+      const Plane found = fit(settings, points, u, v);
       const Vec3& p = points.p[static_cast<std::size_t>(v * camera.width + u)];
       reference.cloud.append(X_WC * p, X_WC.linear() * found.normal);
       reference.gap.push_back(found.gap), reference.middle.push_back(found.middle);
