@@ -1,14 +1,14 @@
 #include <cstdio>
 
 #include "core/parameters/input_error.h"
+#include "runners/cache/cache_folder.h"
+#include "runners/cache/cache_size.h"
 #include "runners/cli/commands.h"
-#include "runners/tool_files/cache_size.h"
-#include "runners/tool_files/tool_cache.h"
 
 namespace remote_touch {
 
 int command_cache(const CommandLine&, const CacheRequest& request) {
-  const std::filesystem::path folder = tool_cache_folder();
+  const std::filesystem::path folder = cache_folder();
   if (folder.empty())
     throw InputError("REMOTE_TOUCH_CACHE", "is not set, nor is HOME: expected a folder for the cache");
   constexpr double kBytes_per_MB = 1e6;
