@@ -1,5 +1,5 @@
-// The levels of the kernels that the running machine has. A program may take kernels_for(best_isa()); which one
-// is the fastest is for a measurement to tell (runners/kernel_choice). All give the same bits.
+// The levels of the kernels that the running machine has. A program may take kernels_for(best_isa()); which
+// one is the fastest is for a measurement to tell (runners/kernel_choice). All give the same bits.
 #pragma once
 
 #include <span>
