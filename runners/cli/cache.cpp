@@ -1,14 +1,28 @@
 #include <cstdio>
 
+#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
+#include "runners/cache/cache_folder.h"
+#include "runners/cache/cache_size.h"
 #include "runners/cli/commands.h"
-#include "runners/tool_files/cache_size.h"
-#include "runners/tool_files/tool_cache.h"
+#include "runners/kernel_choice/kernel_choice.h"
 
 namespace remote_touch {
 
-int command_cache(const CommandLine&, const CacheRequest& request) {
-  const std::filesystem::path folder = tool_cache_folder();
+namespace {
+
+// Nothing where they were not measured: one level only, or always a forced one.
+void print_level_times(const std::filesystem::path& folder, const Kernels& in_use) {
+  const auto times = read_level_times(folder, level_times_key(), supported_kernels().size());
+  if (times)
+    std::printf("instruction set of the inner loops: %s in use; speed as measured: %s\n", in_use.isa,
+                speeds_text(*times).c_str());
+}
+
+}  // namespace
+
+int command_cache(const CommandLine& line, const CacheRequest& request) {
+  const std::filesystem::path folder = cache_folder();
   if (folder.empty())
     throw InputError("REMOTE_TOUCH_CACHE", "is not set, nor is HOME: expected a folder for the cache");
   constexpr double kBytes_per_MB = 1e6;
@@ -18,6 +32,7 @@ int command_cache(const CommandLine&, const CacheRequest& request) {
   std::printf("%s: %zu files, %.1f MB; the maximum is %.1f MB\n", folder.c_str(), size.files,
               static_cast<double>(size.bytes) / kBytes_per_MB,
               static_cast<double>(max_cache_bytes()) / kBytes_per_MB);
+  print_level_times(folder, *line.kernels);
   return kDone;
 }
 

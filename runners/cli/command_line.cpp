@@ -325,9 +325,10 @@ void add_live(Subcommands& commands) {
 }
 
 void add_cache(Subcommands& commands) {
-  auto [command, cache] =
-      commands.add("cache", "show the folder and size of the cache of tools that were computed from meshes",
-                   command_cache);
+  auto [command, cache] = commands.add(
+      "cache",
+      "show folder and size of the cache of tools and measured times, and the instruction set in use",
+      command_cache);
   command
       ->add_option("--max", cache->max_MB,
                    "remove what was used longest ago until at most so many MB are left; 0: everything")

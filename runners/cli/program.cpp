@@ -14,10 +14,11 @@
 #include <system_error>
 
 #include "analysis/storage/sha256.h"
-#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
+#include "runners/cache/cache_folder.h"
 #include "runners/cli/command_line.h"
 #include "runners/cli/last_resorts.h"
+#include "runners/kernel_choice/kernel_choice.h"
 #include "runners/provenance/provenance.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
@@ -40,15 +41,10 @@ void request_rearm(int) {
   rearm_requested = true;
 }
 
-// REMOTE_TOUCH_ISA lowers the instruction set of the kernels, to check that results do not depend on it.
+// REMOTE_TOUCH_ISA: the instruction set of the kernels, in place of the fastest one.
 const Kernels& chosen_kernels() {
-  const char* requested = std::getenv("REMOTE_TOUCH_ISA");
-  const Kernels& best = *supported_kernels().back();
-  if (requested == nullptr) return best;
-  for (const Kernels* kernels : supported_kernels())
-    if (kernels->isa == std::string(requested)) return *kernels;
-  throw InputError(std::string("REMOTE_TOUCH_ISA = ") + requested,
-                   std::string("expected x86-64 up to ") + best.isa + " on this machine");
+  const char* forced = std::getenv("REMOTE_TOUCH_ISA");
+  return choose_kernels(forced != nullptr ? forced : "", cache_folder());
 }
 
 // REMOTE_TOUCH_DATA: where recordings and meshes with relative names are, if not here.

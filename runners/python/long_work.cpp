@@ -11,6 +11,8 @@
 
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
+#include "runners/cache/cache_folder.h"
+#include "runners/kernel_choice/kernel_choice.h"
 
 namespace remote_touch {
 
@@ -117,18 +119,8 @@ void require_no_long_work(const char* subject) {
     throw InputError(subject, "a run or a sweep is going on: expected the call before or after it");
 }
 
-void choose_kernels(const std::string& isa) {
-  if (isa.empty()) {
-    kernels_in_use() = supported_kernels().back();
-    return;
-  }
-  for (const Kernels* kernels : supported_kernels())
-    if (kernels->isa == isa) {
-      kernels_in_use() = kernels;
-      return;
-    }
-  throw InputError("REMOTE_TOUCH_ISA = " + isa, std::string("expected x86-64 up to ") +
-                                                    supported_kernels().back()->isa + " on this machine");
+void choose_python_kernels(const std::string& forced) {
+  kernels_in_use() = &choose_kernels(forced, cache_folder());
 }
 
 const Kernels& chosen_python_kernels() {

@@ -27,9 +27,9 @@ void do_long_work(const pybind11::object& report, int threads,
 // Throws InputError while such work goes on: the catalog must not change then.
 void require_no_long_work(const char* subject);
 
-// The kernels that all calls use: of this x86-64 level; empty: the machine's best. Throws InputError for
-// another.
-void choose_kernels(const std::string& isa);
+// The kernels that all calls use: of the forced x86-64 level; empty: of the fastest one. Throws InputError if
+// the machine does not have that level.
+void choose_python_kernels(const std::string& forced);
 const Kernels& chosen_python_kernels();
 
 // The HDF5 library is not made for several threads: one call reads or writes at a time, and none while a

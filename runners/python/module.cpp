@@ -42,7 +42,8 @@ PYBIND11_MODULE(_core, module) {
   bind_sweeps(module);
   bind_scorecards(module);
   bind_results(module);
-  module.def("choose_kernels", &choose_kernels, py::arg("isa"), "The x86-64 level; empty: the best.");
+  module.def("choose_kernels", &choose_python_kernels, py::arg("isa"),
+             "The x86-64 level; empty: the fastest.");
   module.def("set_data_folder", &set_data_folder, py::arg("folder"), "Where recordings are.");
 }
 

@@ -1,6 +1,6 @@
 #include "runners/tool_files/spheres_cache.h"
 
-#include "runners/tool_files/cache_file.h"
+#include "runners/cache/cache_file.h"
 
 namespace remote_touch {
 

@@ -1,12 +1,9 @@
 #include "runners/tool_files/tool_cache.h"
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 
-#include "core/parameters/input_error.h"
 #include "core/tool/mesh/mesh_corners.h"
-#include "runners/tool_files/cache_file.h"
+#include "runners/cache/cache_file.h"
 
 namespace remote_touch {
 
@@ -46,31 +43,6 @@ bool is_sound(const VoxelTool& tool) {
 }
 
 }  // namespace
-
-// Asked here and not in runners/cli: a cache is no input, no result depends on it, and whatever makes tools,
-// a test too, is to find the same one.
-fs::path tool_cache_folder() {
-  const auto from = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return fs::path(value != nullptr ? value : "");
-  };
-  if (const fs::path own = from("REMOTE_TOUCH_CACHE"); !own.empty()) return own;
-  if (const fs::path caches = from("XDG_CACHE_HOME"); !caches.empty()) return caches / "remote-touch";
-  if (const fs::path home = from("HOME"); !home.empty()) return home / ".cache" / "remote-touch";
-  return {};
-}
-
-std::uintmax_t max_cache_bytes() {
-  constexpr double kDefault_MB = 512, kBytes_per_MB = 1e6, kMax_MB = 1e9;
-  const char* const set = std::getenv("REMOTE_TOUCH_CACHE_MB");
-  if (set == nullptr || *set == '\0') return static_cast<std::uintmax_t>(kDefault_MB * kBytes_per_MB);
-  const std::string text = set;
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kMax_MB))
-    throw InputError("REMOTE_TOUCH_CACHE_MB = " + text, "expected a number of megabytes");
-  return static_cast<std::uintmax_t>(value * kBytes_per_MB);
-}
 
 std::string sha256_of_mesh(const TriangleMesh& mesh) {
   CacheWriter pack;

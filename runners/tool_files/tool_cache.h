@@ -9,13 +9,6 @@
 
 namespace remote_touch {
 
-// The folder REMOTE_TOUCH_CACHE; else remote-touch in XDG_CACHE_HOME, or in ~/.cache. Empty: there is none.
-std::filesystem::path tool_cache_folder();
-
-// The greatest size of that folder: the environment variable REMOTE_TOUCH_CACHE_MB, else 512 MB. Throws
-// InputError.
-std::uintmax_t max_cache_bytes();
-
 // Part of the key: raise it whenever the result of make_voxel_tool() or of the generated tools changes.
 inline constexpr int kToolFormat = 2;
 

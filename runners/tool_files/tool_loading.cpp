@@ -4,6 +4,7 @@
 
 #include "analysis/storage/sha256.h"
 #include "core/tool/mesh/generated_tools.h"
+#include "runners/cache/cache_folder.h"
 #include "runners/tool_files/mesh_file.h"
 #include "runners/tool_files/spheres_cache.h"
 #include "runners/tool_files/tool_cache.h"
@@ -76,7 +77,7 @@ KeyedTool built_or_cached(const ToolSettings& s) {
   const std::string source =
       built_in != nullptr ? sha256_of_mesh(mesh)
                           : sha256_of_file(file) + file.extension().string() + " " + mesh_reader_version();
-  const fs::path folder = tool_cache_folder();
+  const fs::path folder = cache_folder();
   const std::string key = tool_key(source, settings);
   if (std::optional<StoredTool> stored = read_tool(folder, key)) return {key, *std::move(stored)};
   if (built_in == nullptr) mesh = read_mesh(file);
@@ -99,7 +100,7 @@ std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* r
 ToolOfSpheres load_tool_of_spheres(const ToolSettings& s, int max_leaves, std::string* report) {
   KeyedTool made = built_or_cached(s);
   const auto tool = std::make_shared<const VoxelTool>(std::move(made.stored.tool));
-  const fs::path folder = tool_cache_folder();
+  const fs::path folder = cache_folder();
   const std::string key = spheres_key(made.key, max_leaves);
   std::optional<ToolSpheres> spheres = read_spheres(folder, key);
   if (!spheres) {

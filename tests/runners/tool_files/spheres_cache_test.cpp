@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "runners/tool_files/cache_file.h"
+#include "runners/cache/cache_file.h"
 #include "runners/tool_files/tool_loading.h"
 #include "tests/support/test_files.h"
 

@@ -120,20 +120,6 @@ TEST_F(ToolCacheTest, ManyAtOnceGetTheSameAndLeaveOneFile) {
   only_file();
 }
 
-TEST_F(ToolCacheTest, TheFolderIsTakenFromTheEnvironment) {
-  EXPECT_EQ(tool_cache_folder(), folder_ / "cache");
-  ::unsetenv("REMOTE_TOUCH_CACHE");
-  const char* home = std::getenv("HOME");
-  const std::string kept = home != nullptr ? home : "";
-  ::unsetenv("XDG_CACHE_HOME"), ::setenv("HOME", "/h", 1);
-  EXPECT_EQ(tool_cache_folder(), "/h/.cache/remote-touch");
-  ::setenv("XDG_CACHE_HOME", "/x", 1);
-  EXPECT_EQ(tool_cache_folder(), "/x/remote-touch");
-  ::unsetenv("XDG_CACHE_HOME"), ::unsetenv("HOME");
-  EXPECT_EQ(tool_cache_folder(), "");
-  if (home != nullptr) ::setenv("HOME", kept.c_str(), 1);
-}
-
 TEST_F(ToolCacheTest, AMeshFileIsFoundBelowTheDataAndCountsByItsContent) {
   folder_.write("meshes/cube.obj", kCube);
   const ToolSettings cube{.mesh = "meshes/cube.obj", .size_m = 0.02, .voxel_m = 1e-3};

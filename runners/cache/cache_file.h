@@ -33,6 +33,7 @@ class CacheWriter final : public Packer {
 struct CacheKind {
   std::string name;
   int version;
+  std::size_t max_bytes = 0;  // of a file; 0: no maximum. A longer one is not read
 };
 
 // Whether the folder has a complete file of that kind and key, and take() read all its fields.
@@ -40,8 +41,8 @@ bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind,
                      const std::function<void(Unpacker&)>& take);
 
 // Writes to a temporary name and renames, so that other processes see the whole file or none; creates the
-// folder, and removes from it what makes it too large. Returns false if it cannot be written, which is not an
-// error. Throws InputError as max_cache_bytes().
+// folder, and removes from it what makes it too large (not for a file of a kind with a maximum: it is small).
+// Returns false if it cannot be written, which is not an error. Throws InputError as max_cache_bytes().
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

@@ -1,12 +1,16 @@
-#include "runners/tool_files/cache_size.h"
+#include "runners/cache/cache_size.h"
 
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
 #include <ctime>
 #include <string>
 #include <system_error>
 #include <vector>
+
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
@@ -23,7 +27,7 @@ struct CachedFile {
 };
 
 bool is_ours(const fs::path& file) {
-  return file.extension() == ".tool" || file.extension() == ".spheres";
+  return file.extension() == ".tool" || file.extension() == ".spheres" || file.extension() == ".levels";
 }
 
 bool is_abandoned(const CachedFile& file) {
@@ -50,6 +54,18 @@ bool removed(const CachedFile& file) {
 }
 
 }  // namespace
+
+std::uintmax_t max_cache_bytes() {
+  constexpr double kDefault_MB = 512, kBytes_per_MB = 1e6, kMax_MB = 1e9;
+  const char* const set = std::getenv("REMOTE_TOUCH_CACHE_MB");
+  if (set == nullptr || *set == '\0') return static_cast<std::uintmax_t>(kDefault_MB * kBytes_per_MB);
+  const std::string text = set;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= kMax_MB))
+    throw InputError("REMOTE_TOUCH_CACHE_MB = " + text, "expected a number of megabytes");
+  return static_cast<std::uintmax_t>(value * kBytes_per_MB);
+}
 
 CacheSize cache_size(const fs::path& folder) {
   CacheSize size;

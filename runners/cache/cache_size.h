@@ -11,6 +11,10 @@ struct CacheSize {
   std::uintmax_t bytes = 0;
 };
 
+// The greatest size of the cache folder: the environment variable REMOTE_TOUCH_CACHE_MB, else 512 MB. Throws
+// InputError.
+std::uintmax_t max_cache_bytes();
+
 CacheSize cache_size(const std::filesystem::path& folder);
 
 // Removes the files that were used longest ago, until so many bytes are left at most; also what killed

@@ -1,5 +1,5 @@
 // The folder of the cache is bounded: what was used longest ago goes first.
-#include "runners/tool_files/cache_size.h"
+#include "runners/cache/cache_size.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,7 @@
 #include <ctime>
 #include <string>
 
-#include "runners/tool_files/cache_file.h"
-#include "runners/tool_files/tool_cache.h"
+#include "runners/cache/cache_file.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::cache_size_test {
@@ -71,6 +70,22 @@ TEST_F(CacheSizeTest, ItStaysBelowItsMaximum) {
   ASSERT_TRUE(read_cache_file(folder_.path(), kind, "a", take));
   ASSERT_TRUE(write_cache_file(folder_.path(), kind, "c", put));
   EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "c.tool"}));
+}
+
+// A small file is written whatever the maximum says, and one that is longer than its kind can be is not read.
+TEST_F(CacheSizeTest, AKindCanHaveAMaximum) {
+  ::setenv("REMOTE_TOUCH_CACHE_MB", "wrong", 1);
+  const auto take = [](Unpacker& unpack) {
+    std::string text;
+    unpack.text(text);
+  };
+  const CacheKind kind{"levels", 1, 200};
+  for (const std::size_t length : {10u, 200u}) {
+    const auto put = [&](CacheWriter& pack) { pack.text(std::string(length, 'x')); };
+    ASSERT_TRUE(write_cache_file(folder_.path(), kind, "a", put));
+    EXPECT_EQ(read_cache_file(folder_.path(), kind, "a", take), length == 10);
+    EXPECT_TRUE(read_cache_file(folder_.path(), {"levels", 1}, "a", take));
+  }
 }
 
 TEST_F(CacheSizeTest, TheMaximumIsTakenFromTheEnvironment) {

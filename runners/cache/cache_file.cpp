@@ -1,4 +1,4 @@
-#include "runners/tool_files/cache_file.h"
+#include "runners/cache/cache_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -9,8 +9,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "runners/tool_files/cache_size.h"
-#include "runners/tool_files/tool_cache.h"
+#include "runners/cache/cache_size.h"
 
 namespace remote_touch {
 
@@ -27,11 +26,12 @@ std::string first_line(const CacheKind& kind) {
 // The bytes of a file, mapped rather than read: large tools are in memory once only.
 class MappedFile {
  public:
-  explicit MappedFile(const fs::path& path) {
+  MappedFile(const fs::path& path, std::size_t max_bytes) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     struct stat about {};
-    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
+    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0 &&
+        (max_bytes == 0 || static_cast<std::size_t>(about.st_size) <= max_bytes)) {
       size_ = static_cast<std::size_t>(about.st_size);
       data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file, 0);
       if (data_ == MAP_FAILED) data_ = nullptr, size_ = 0;
@@ -76,7 +76,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
                      const std::function<void(Unpacker&)>& take) {
   if (folder.empty()) return false;
   const fs::path path = folder / (key + "." + kind.name);
-  const MappedFile file(path);
+  const MappedFile file(path, kind.max_bytes);
   const std::string_view bytes = file.bytes();
   const std::string line = first_line(kind);
   if (bytes.size() < line.size() + kHash || !bytes.starts_with(line)) return false;
@@ -113,7 +113,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   bool good = ::close(file) == 0 && pack.good();
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;
   if (!good) ::unlink(temporary.c_str());
-  if (good) shrink_cache(folder, max_cache_bytes());
+  if (good && kind.max_bytes == 0) shrink_cache(folder, max_cache_bytes());
   return good;
 }
 

@@ -1,0 +1,14 @@
+// Small pieces of the work that takes most time: a step of the proxy, noise, disks of a tool, and a row of
+// the depth pipeline.
+#pragma once
+
+#include <vector>
+
+#include "runners/kernel_choice/level_timing.h"
+
+namespace remote_touch {
+
+// What the tasks read is made once; they share nothing and write to memory of their own.
+std::vector<KernelTask> representative_tasks();
+
+}  // namespace remote_touch
