@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/storage/file_digest.h"
+#include "core/depth/depth_pipeline.h"
 #include "runners/experiment/section_rules.h"
 #include "runners/experiment/sections.h"
 #include "runners/sessions/session_scene.h"
