@@ -20,12 +20,6 @@ int half(int window) {
   return window / 2;
 }
 
-std::string wrong_window(const char* name, int window) {
-  return window % 2 == 1
-             ? ""
-             : std::string(name) + " = " + std::to_string(window) + ": expected odd numbers, 3 to 15";
-}
-
 // A band's room for weights: as few as there are threads are in use, and these stay in the cache.
 class ScratchPool {
  public:
@@ -53,34 +47,6 @@ int band_count(int rows) {
 
 }  // namespace
 
-Parameters parameters(DepthPipelineSettings& s) {
-  return {
-      {"filter", &s.filter, 0, 1, "filter the depth image spatially (7.1)"},
-      {"filter_window", &s.filter_window, 3, 15,
-       "width and height of the filter window of (7.1) in pixels; odd"},
-      {"sigma_f_m", &s.sigma_f_m, 1e-4, 1,
-       "sigma_f of the filter weights (7.2); depth steps smaller than a few sigma_f are smoothed"},
-      {"normal_window", &s.normal_window, 3, 15,
-       "width and height of the window of a normal in pixels, 6.2.1; odd"},
-      {"normal_radius_m", &s.normal_radius_m, 1e-3, 1,
-       "r_w of 6.2.1: neighbours at this distance or more have weight 0 (4.2) in a normal"},
-      {"normal_step", &s.normal_step, 1, 7,
-       "a normal, 6.2.1, uses only every normal_step-th column and row of its window, from the centre; "
-       "divides half of normal_window - 1"},
-      {"normal_fit", choice(s.normal_fit, {"total-least-squares", "inverse-depth"}), 0, 0,
-       "fit of a normal, 6.2.1; inverse-depth is faster and has weights (1 - q^2)^2 in place of (4.2)"},
-  };
-}
-
-std::string validate(const DepthPipelineSettings& s) {
-  const std::string filter = wrong_window("filter_window", s.filter_window);
-  const std::string normal = wrong_window("normal_window", s.normal_window);
-  if (!filter.empty() || !normal.empty()) return filter.empty() ? normal : filter;
-  if (half(s.normal_window) % s.normal_step == 0) return {};
-  return "normal_step = " + std::to_string(s.normal_step) + ": expected a divisor of " +
-         std::to_string(half(s.normal_window)) + ", half of normal_window - 1";
-}
-
 // What is to be done: the rectangle of an image, seen by a camera.
 struct DepthPipeline::Frame {
   const double* depth_m;
@@ -101,24 +67,6 @@ struct DepthPipeline::Frame {
     return depth_m + static_cast<std::ptrdiff_t>(at.top + row) * camera.width + at.left + column;
   }
 };
-
-DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
-    : settings_(settings), kernels_(kernels) {
-  const std::string wrong = validate(settings);
-  if (!wrong.empty()) throw std::invalid_argument("DepthPipeline: " + wrong);
-}
-
-PointCloud DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
-                                  const RigidTransform& X_WC) {
-  PointCloud cloud;
-  process(depth, camera, X_WC, cloud);
-  return cloud;
-}
-
-void DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
-                            const RigidTransform& X_WC, PointCloud& cloud) {
-  process(depth, camera, X_WC, {0, 0, depth.width, depth.height}, cloud);
-}
 
 namespace {
 
@@ -141,35 +89,19 @@ DepthPipeline::Frame DepthPipeline::frame_of(const double* depth_m, const Camera
 
 void DepthPipeline::process(const DepthImage& depth, const CameraIntrinsics& camera,
                             const RigidTransform& X_WC, const PixelRectangle& at, PointCloud& cloud) {
-  const std::size_t pixels = static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height);
-  if (depth.width != camera.width || depth.height != camera.height || depth.z_m.size() != pixels)
-    throw std::invalid_argument("DepthPipeline: the depth image is not of the camera's size");
+  check_sizes(depth, camera);
   if (!fits(at.left, at.width, depth.width) || !fits(at.top, at.height, depth.height))
     throw std::invalid_argument("DepthPipeline: the rectangle is not in the image");
-  Frame frame = frame_of(depth.z_m.data(), camera, at, X_WC);
-  const std::size_t count = static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height);
-  for (std::vector<double>* column : {&cloud.x, &cloud.y, &cloud.z}) column->resize(count);
-  cloud.fixture_radius_m.clear(), cloud.stiffness_N_per_m.clear(), cloud.colour.clear();
   CameraIntrinsics own = camera;
   own.width = at.width, own.height = at.height, own.cx -= at.left, own.cy -= at.top;
-  cloud.image = ImageLayout{own, X_WC, 1e-6};  // as in cloud_from_depth
-  run(frame, cloud);
+  become_image(cloud, own, X_WC);
+  run(frame_of(depth.z_m.data(), camera, at, X_WC), cloud);
 }
 
-void DepthPipeline::process(PointCloud& cloud) {
-  if (!cloud.image) throw std::invalid_argument("DepthPipeline: the cloud has no image layout");
-  const ImageLayout& image = *cloud.image;
-  const int width = image.camera.width, height = image.camera.height;
-  if (cloud.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-    throw std::invalid_argument("DepthPipeline: the cloud is not of the camera's size");
-  const RigidTransform X_CW = image.X_WC.inverse();
-  depth_m_.resize(cloud.size());
-  const auto count = static_cast<std::ptrdiff_t>(cloud.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t i = 0; i < count; ++i)
-    depth_m_[i] = X_CW.linear().row(2).dot(cloud.point(i)) + X_CW.translation().z();
-  Frame frame = frame_of(depth_m_.data(), image.camera, {0, 0, width, height}, image.X_WC);
-  frame.keep_points = !settings_.filter;
+void DepthPipeline::process_frame(const DepthFrame& whole, PointCloud& cloud) {
+  Frame frame =
+      frame_of(whole.depth_m, whole.camera, {0, 0, whole.camera.width, whole.camera.height}, whole.X_WC);
+  frame.keep_points = whole.keep_points;
   run(frame, cloud);
 }
 

@@ -12,61 +12,31 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "core/cloud/camera.h"
-#include "core/cloud/point_cloud.h"
+#include "core/depth/depth_processor.h"
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/kernels.h"
-#include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
-// How a normal is found: the plane of total least squares, or the faster fit of the inverse depth, which is
-// an affine function of the pixel on every plane, with weights (1 - q^2)^2 for psi(q).
-enum class NormalFit { total_least_squares, inverse_depth };
-
-struct DepthPipelineSettings {
-  bool filter = true;
-  int filter_window = 9;
-  double sigma_f_m = 0.025;
-  int normal_window = 9;
-  double normal_radius_m = 0.014;
-  int normal_step = 1;
-  NormalFit normal_fit = NormalFit::total_least_squares;
-};
-
-// The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
-// 11 x 11.
-inline constexpr DepthPipelineSettings kFastDepthPipeline{
-    true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth};
-
-Parameters parameters(DepthPipelineSettings& s);
-std::string validate(const DepthPipelineSettings& s);
 
 struct PixelRectangle {
   int left = 0, top = 0;
   int width = 0, height = 0;
 };
 
-// Reuses its memory: after the first frame of a size nothing is allocated, if the caller passes the same
-// cloud again. Throws std::invalid_argument if sizes do not match, and for settings that validate() refuses.
-class DepthPipeline {
+// On the CPU, in the kernels of its instruction set.
+class DepthPipeline final : public DepthProcessor {
  public:
-  DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
+  DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
+      : DepthProcessor(settings), kernels_(kernels) {}
 
-  // X_WC is the registration of the camera in the base frame. cloud becomes points, normals and image layout,
-  // without other columns; NaN where there is no point, or no plane for a normal.
-  void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
-               PointCloud& cloud);
-  PointCloud process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC);
+  using DepthProcessor::process;
   // Only these pixels, at the cost of these: bit for bit as they are in the whole frame. The image layout is
   // that of a camera with these pixels alone. pre: the rectangle lies in the image.
   void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
                const PixelRectangle& rectangle, PointCloud& cloud);
-  // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
-  void process(PointCloud& cloud);
+  void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
 
   // 1 for each pixel of the last cloud that has a point, with or without a normal; else 0.
   const std::vector<std::uint8_t>& valid() const { return valid_; }
@@ -86,13 +56,12 @@ class DepthPipeline {
   void normals_band(const Frame& frame, int first, int last, float* scratch, PointCloud& cloud);
   PointPlanes planes(std::vector<float>& values, int column) const;
 
-  const DepthPipelineSettings settings_;
   const Kernels& kernels_;
   std::ptrdiff_t stride_ = 0;
   std::size_t plane_size_ = 0;
   // Planes with a border: points in units of the filter, points in units of the normals, normals.
   std::vector<float> raw_, smooth_, normals_, change_, rays_x_, rays_y_, scratch_;
-  std::vector<double> wide_rays_x_, wide_rays_y_, depth_m_;
+  std::vector<double> wide_rays_x_, wide_rays_y_;
   std::vector<std::uint8_t> valid_;
 };
 

@@ -10,6 +10,7 @@
 #include "runners/experiment/catalog.h"
 #include "runners/experiment/frame_stream.h"
 #include "runners/experiment/renderer_changes.h"
+#include "runners/opencl/depth_device.h"
 #include "runners/operator/simulated_hand.h"
 #include "runners/sessions/live_settings.h"
 #include "runners/sessions/safety_limits.h"
@@ -42,7 +43,7 @@ struct ExperimentConfiguration {
   RunSettings run;
   Part<ScenarioEntry> scenario;
   std::optional<SensorFaults> faults;
-  std::optional<DepthPipelineSettings> depth_pipeline;
+  std::optional<DepthDeviceSettings> depth_pipeline;
   std::vector<Part<FixtureEntry>> fixtures;
   std::optional<GuidanceSettings> guidance;
   std::vector<SequenceStep> sequence;

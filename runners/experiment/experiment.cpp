@@ -1,6 +1,7 @@
 #include "runners/experiment/experiment.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -72,11 +73,21 @@ FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitch
   return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches));
 }
 
+namespace {
+
+// A device that fails is told on standard error, whoever runs the experiment: results are the same without
+// it.
+void print_line(const std::string& line) {
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+}  // namespace
+
 FrameProcessing Experiment::build_processing(const Kernels& kernels,
                                              std::shared_ptr<const FixtureSwitches> switches) const {
   FrameProcessing processing{nullptr, build_fixtures(std::move(switches))};
   if (configuration_.depth_pipeline)
-    processing.depth = std::make_unique<DepthPipeline>(*configuration_.depth_pipeline, kernels);
+    processing.depth = make_depth_processor(*configuration_.depth_pipeline, kernels, print_line);
   return processing;
 }
 

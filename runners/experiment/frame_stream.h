@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/depth/depth_pipeline.h"
+#include "core/depth/depth_processor.h"
 #include "core/random/noise.h"
 #include "core/rendering/renderer.h"
 #include "core/virtual_fixtures/fixture_assignment.h"
@@ -23,7 +23,7 @@ struct Transport {
 
 // Processing of a frame's points before they are sent.
 struct FrameProcessing {
-  std::unique_ptr<DepthPipeline> depth;  // null: the points are sent as the scenario gives them
+  std::unique_ptr<DepthProcessor> depth;  // null: the points are sent as the scenario gives them
   FixtureAssignment fixtures;
 
   bool changes_points() const { return depth || !fixtures.empty(); }

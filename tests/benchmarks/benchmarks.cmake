@@ -32,6 +32,9 @@ add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
 
+add_executable(opencl_benchmark benchmarks/checked_benchmark.cpp benchmarks/opencl_benchmark.cpp)
+target_link_libraries(opencl_benchmark PRIVATE runners benchmark::benchmark)
+
 add_executable(plugin_benchmark benchmarks/checked_benchmark.cpp benchmarks/plugin_benchmark.cpp)
 target_link_libraries(plugin_benchmark PRIVATE runners benchmark::benchmark)
 target_compile_definitions(plugin_benchmark PRIVATE PLUGIN_RENDERERS="$<TARGET_FILE:plugin_renderers>")

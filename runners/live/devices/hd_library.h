@@ -2,7 +2,7 @@
 // matrices by columns; x to the right, y up, z towards the user.
 #pragma once
 
-#include "runners/live/devices/shared_library.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch {
 

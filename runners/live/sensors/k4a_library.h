@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "runners/live/devices/shared_library.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch::k4a {
 

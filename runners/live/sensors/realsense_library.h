@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "runners/live/devices/shared_library.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch::rs2 {
 

@@ -1,4 +1,4 @@
-#include "runners/live/devices/shared_library.h"
+#include "runners/libraries/shared_library.h"
 
 #include <dlfcn.h>
 

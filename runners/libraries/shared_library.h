@@ -1,4 +1,4 @@
-// A vendor's library, loaded when a device needs it: none is needed to build or to start the program.
+// A library of a vendor, loaded when a device needs it: none is needed to build or to start the program.
 #pragma once
 
 #include <string>

@@ -1,0 +1,264 @@
+// The depth pipeline of core/depth in OpenCL C 1.2: the operations of core/kernels/depth_rows.cpp,
+// depth_filter.cpp and plane_normals.cpp for each pixel, in the same order, so that the bits are the same. Who
+// changes one changes the other; tests/runners/opencl compares them.
+//
+// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes. The
+// planes of depths have a border of holes around them as well. Only of the depths there are planes: the point
+// is z (ray_x, ray_y, 1). Built with FILTER_HALF and NORMAL_HALF, half the windows' widths; with
+// DIVIDE_IN_DOUBLE where single division and root are not rounded correctly.
+//
+// Without vectors and without what C++ lacks: the test double of an OpenCL library compiles it as C++.
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#pragma OPENCL FP_CONTRACT OFF
+
+#define BORDER 7  // half of the largest window
+#define NOWHERE 1e12f
+#define THINNEST 1e-4f
+#define MAX_DEPTH_M 1000.0
+
+// Double has more than twice the digits of single, and two digits more: a quotient or a root that is rounded
+// to double first and to single then is the one that is rounded once.
+#ifdef DIVIDE_IN_DOUBLE
+float divided(float a, float b) { return (float)((double)a / (double)b); }
+float root(float a) { return (float)sqrt((double)a); }
+#else
+float divided(float a, float b) { return a / b; }
+float root(float a) { return sqrt(a); }
+#endif
+
+// As the processor's instructions choose where one is NaN.
+float smaller(float a, float b) { return a < b ? a : b; }
+float larger(float a, float b) { return a > b ? a : b; }
+int measured(double z_m) { return (z_m > 0) & (z_m < MAX_DEPTH_M); }
+
+size_t in_plane(size_t u, size_t v, size_t plane_stride) {
+  return (v + BORDER) * plane_stride + BORDER + u;
+}
+
+__kernel void depths_to_plane(__global const double* restrict depth_m, double scale,
+                              __global float* restrict z) {
+  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  const double depth = depth_m[v * stride + u];
+  z[in_plane(u, v, stride + 2 * BORDER)] = measured(depth) ? (float)(depth * scale) : NOWHERE;
+}
+
+// (7.2)
+float gaussian(float s) {
+  const float end = 0.9083625722727604f, centre = 0.4332450600460519f, lift = 0.9131807121233679f;
+  const float y = smaller(s, end), from_centre = y - centre;
+  const float p = (end - y) * (from_centre * from_centre + lift);
+  const float p2 = p * p, p4 = p2 * p2, p8 = p4 * p4;
+  return p8 * p8;
+}
+
+// (7.1): what the filter adds to each depth, in units of raw_z, and the plane of the filtered depths.
+__kernel void filter_depths(__global const double* restrict depth_m, __global const float* restrict ray_x,
+                            __global const float* restrict ray_y, __global const float* restrict raw_z,
+                            double change_unit_m, double smooth_scale, __global float* restrict change,
+                            __global float* restrict smooth_z) {
+  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  const size_t plane_stride = stride + 2 * BORDER, here = in_plane(u, v, plane_stride);
+  __global const float* const rays_x = ray_x + BORDER + u;
+  __global const float* const rays_y = ray_y + BORDER + v;
+  const float z0 = raw_z[here], x0 = z0 * rays_x[0], y0 = z0 * rays_y[0];
+  float sum = 0, total = 1;
+#define PAIR(J, I)                                                              \
+  {                                                                             \
+    const float z = raw_z[here + (J) * (ptrdiff_t)plane_stride + (I)];          \
+    const float dx = z * rays_x[I] - x0, dy = z * rays_y[J] - y0, dz = z - z0;  \
+    const float phi = gaussian(dx * dx + dy * dy + dz * dz);                    \
+    sum += phi * dz;                                                            \
+    total += phi;                                                               \
+  }
+  // The order of the sums is that of filter_row(): rows below, the row itself, rows above.
+#pragma unroll
+  for (int j = 1; j <= FILTER_HALF; ++j) {
+    PAIR(j, 0)
+#pragma unroll
+    for (int i = 1; i <= FILTER_HALF; ++i) {
+      PAIR(j, -i)
+      PAIR(j, i)
+    }
+  }
+#pragma unroll
+  for (int i = 1; i <= FILTER_HALF; ++i) {
+    PAIR(0, -i)
+    PAIR(0, i)
+  }
+#pragma unroll
+  for (int j = 1; j <= FILTER_HALF; ++j) {
+    PAIR(-j, 0)
+#pragma unroll
+    for (int i = 1; i <= FILTER_HALF; ++i) {
+      PAIR(-j, -i)
+      PAIR(-j, i)
+    }
+  }
+#undef PAIR
+  const float more = divided(sum, total);
+  const double depth = depth_m[v * stride + u];
+  change[v * stride + u] = more;
+  smooth_z[here] = measured(depth) ? (float)((depth + change_unit_m * more) * smooth_scale) : NOWHERE;
+}
+
+// The moments in sheared coordinates, as in plane_normals.cpp.
+typedef struct {
+  float one, i, j, ii, ij, jj;
+} Sums;
+typedef struct {
+  float one, i, ii;
+} RowSums;
+typedef struct {
+  float xx, xy, xz, yy, yz, zz;
+} Symmetric;
+
+// Wendland's psi / 4, (4.2).
+float wendland(float squared) {
+  const float u = larger(1.0f - root(squared), 0.0f);
+  const float u2 = u * u;
+  return (u2 * u2) * (1.25f - u);
+}
+
+void add_pair(RowSums* sums, float across, float left, float right) {
+  const float both = left + right;
+  sums->one += both;
+  sums->i += across * (right - left);
+  sums->ii += (across * across) * both;
+}
+
+void add_row(Sums* sums, const RowSums row, float j) {
+  sums->one += row.one;
+  sums->i += row.i;
+  sums->ii += row.ii;
+  sums->j += j * row.one;
+  sums->ij += j * row.i;
+  sums->jj += (j * j) * row.one;
+}
+
+float product(float of_w, float of_k, float of_l, float z) { return (of_w * z + 2.0f * of_k) * z + of_l; }
+
+Symmetric covariance(const Sums w, const Sums k, const Sums l, float z, float ray_x, float ray_y, float step_x,
+                     float step_y) {
+  const float each = divided(1.0f, w.one);
+  const float x = (w.i * z + k.i) * step_x * each, y = (w.j * z + k.j) * step_y * each, d = k.one * each;
+  const float xx = product(w.ii, k.ii, l.ii, z) * (step_x * step_x) * each - x * x;
+  const float xy = product(w.ij, k.ij, l.ij, z) * (step_x * step_y) * each - x * y;
+  const float yy = product(w.jj, k.jj, l.jj, z) * (step_y * step_y) * each - y * y;
+  const float xd = (k.i * z + l.i) * step_x * each - x * d, yd = (k.j * z + l.j) * step_y * each - y * d;
+  const float dd = l.one * each - d * d;
+  const float xz = xd + ray_x * dd, yz = yd + ray_y * dd;
+  const Symmetric m = {xx + ray_x * (xd + xz), xy + ray_x * yd + ray_y * xz, xz, yy + ray_y * (yd + yz), yz, dd};
+  return m;
+}
+
+Symmetric adjugate(const Symmetric m) {
+  const Symmetric a = {m.yy * m.zz - m.yz * m.yz, m.xz * m.yz - m.xy * m.zz, m.xy * m.yz - m.xz * m.yy,
+                       m.xx * m.zz - m.xz * m.xz, m.xy * m.xz - m.yz * m.xx, m.xx * m.yy - m.xy * m.xy};
+  return a;
+}
+
+typedef struct {
+  float x, y, z;
+  int is_plane;
+} Normal;
+
+// The eigenvector of the smallest eigenvalue, towards the sensor.
+Normal smallest_eigenvector(Symmetric m, float z, float ray_x, float ray_y) {
+  const float scale = divided(1.0f, m.xx + m.yy + m.zz);
+  m.xx *= scale;
+  m.xy *= scale;
+  m.xz *= scale;
+  m.yy *= scale;
+  m.yz *= scale;
+  m.zz *= scale;
+  const Symmetric a = adjugate(m);
+  const float c1 = a.xx + a.yy + a.zz, c0 = m.xx * a.xx + m.xy * a.xy + m.xz * a.xz;
+  float t = 0;
+#pragma unroll
+  for (int step = 0; step < 4; ++step) {
+    const float f = ((t - 1.0f) * t + c1) * t - c0, slope = (3.0f * t - 2.0f) * t + c1;
+    const float bend = 6.0f * t - 2.0f;
+    t -= divided(3.0f * f, slope + root(larger(4.0f * (slope * slope) - 6.0f * (f * bend), 0.0f)));
+  }
+  const Symmetric less = {m.xx - t, m.xy, m.xz, m.yy - t, m.yz, m.zz - t};
+  const Symmetric b = adjugate(less);
+  const int x_max = (b.xx >= b.yy) & (b.xx >= b.zz), y_max = b.yy >= b.zz;
+  Normal n;
+  n.x = x_max ? b.xx : y_max ? b.xy : b.xz;
+  n.y = x_max ? b.xy : y_max ? b.yy : b.yz;
+  n.z = x_max ? b.xz : y_max ? b.yz : b.zz;
+  const float length = root(n.x * n.x + n.y * n.y + n.z * n.z);
+  const float away = n.x * ray_x + n.y * ray_y + n.z;
+  const float factor = divided(away > 0.0f ? -1.0f : 1.0f, length);
+  n.x *= factor;
+  n.y *= factor;
+  n.z *= factor;
+  n.is_plane = (z < 0.5f * NOWHERE) & (c1 > THINNEST);
+  return n;
+}
+
+// One NaN for all: which one an operation gives differs between devices.
+double or_none(int is_there, double value) { return is_there ? value : as_double(0x7ff8000000000000UL); }
+
+// Normals of the points of plane z, whose unit is the radius, into three columns of the cloud one after
+// another; X_WC is a row-major 3 x 4 matrix.
+__kernel void plane_normals(__global const float* restrict ray_x, __global const float* restrict ray_y,
+                            __global const float* restrict z_plane, float step_x, float step_y,
+                            __constant double* X, __global double* restrict normals) {
+  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  const size_t plane_stride = stride + 2 * BORDER, here = in_plane(u, v, plane_stride);
+  __global const float* const rays_x = ray_x + BORDER + u;
+  __global const float* const rays_y = ray_y + BORDER + v;
+  const float z0 = z_plane[here], x0 = z0 * rays_x[0], y0 = z0 * rays_y[0];
+  Sums w_sums = {0, 0, 0, 0, 0, 0}, k_sums = {0, 0, 0, 0, 0, 0}, l_sums = {0, 0, 0, 0, 0, 0};
+  // The order of the rows is that of normals_of_row(): the row itself, rows below, rows above.
+#pragma unroll
+  for (int row = 0; row <= 2 * NORMAL_HALF; ++row) {
+    const int j = row <= NORMAL_HALF ? row : NORMAL_HALF - row;
+    __global const float* const in = z_plane + here + j * (ptrdiff_t)plane_stride;
+#define WEIGH(I, DZ, PSI)                                              \
+  const float z_##PSI = in[I], DZ = z_##PSI - z0;                      \
+  const float dx_##PSI = z_##PSI * rays_x[I] - x0, dy_##PSI = z_##PSI * rays_y[j] - y0; \
+  const float PSI = wendland(dx_##PSI * dx_##PSI + dy_##PSI * dy_##PSI + DZ * DZ);
+    WEIGH(0, dz, there)
+    const float middle = row == 0 ? 0.25f : there, k0 = middle * dz;
+    RowSums w = {middle, 0, 0}, k = {k0, 0, 0}, l = {k0 * dz, 0, 0};
+#pragma unroll
+    for (int i = 1; i <= NORMAL_HALF; ++i) {
+      WEIGH(-i, dz_left, left)
+      WEIGH(i, dz_right, right)
+      const float across = (float)i, k_left = left * dz_left, k_right = right * dz_right;
+      add_pair(&w, across, left, right);
+      add_pair(&k, across, k_left, k_right);
+      add_pair(&l, across, k_left * dz_left, k_right * dz_right);
+    }
+#undef WEIGH
+    add_row(&w_sums, w, (float)j);
+    add_row(&k_sums, k, (float)j);
+    add_row(&l_sums, l, (float)j);
+  }
+  const Symmetric m = covariance(w_sums, k_sums, l_sums, z0, rays_x[0], rays_y[0], step_x, step_y);
+  const Normal n = smallest_eigenvector(m, z0, rays_x[0], rays_y[0]);
+  // The length is 1 to single precision; one of Newton's steps makes it so to double.
+  const double x = n.x, y = n.y, along = n.z, one = 1.5 - 0.5 * (x * x + y * y + along * along);
+  const size_t to = v * stride + u, column = stride * get_global_size(1);
+  normals[to] = or_none(n.is_plane, (X[0] * x + X[1] * y + X[2] * along) * one);
+  normals[to + column] = or_none(n.is_plane, (X[4] * x + X[5] * y + X[6] * along) * one);
+  normals[to + 2 * column] = or_none(n.is_plane, (X[8] * x + X[9] * y + X[10] * along) * one);
+}
+
+// Points in the base frame into three columns of the cloud. is_filtered: change is added to the depths.
+__kernel void place_points(__global const double* restrict depth_m, __global const float* restrict change,
+                           int is_filtered, double change_unit_m, __global const double* restrict wide_ray_x,
+                           __global const double* restrict wide_ray_y, __constant double* X,
+                           __global double* restrict points) {
+  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  const size_t here = v * stride + u, column = stride * get_global_size(1);
+  const double depth = depth_m[here];
+  const double z = is_filtered ? depth + change_unit_m * change[here] : depth;
+  const double x = wide_ray_x[u] * z, y = wide_ray_y[v] * z;
+  const int is_there = measured(depth);
+  points[here] = or_none(is_there, X[0] * x + X[1] * y + X[2] * z + X[3]);
+  points[here + column] = or_none(is_there, X[4] * x + X[5] * y + X[6] * z + X[7]);
+  points[here + 2 * column] = or_none(is_there, X[8] * x + X[9] * y + X[10] * z + X[11]);
+}

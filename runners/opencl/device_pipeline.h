@@ -1,0 +1,48 @@
+// The depth pipeline on an OpenCL device, beside one on the CPU that takes over when the device fails.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/depth/depth_pipeline.h"
+#include "runners/opencl/deadline_thread.h"
+
+namespace remote_touch {
+
+class DeviceFrames;
+struct DeviceFrame;
+struct OpenClDevice;
+
+// Called once, with one line, when the CPU takes over.
+using DepthReport = std::function<void(const std::string& line)>;
+
+class DevicePipeline final : public DepthProcessor {
+ public:
+  static constexpr std::chrono::milliseconds kFrameLimit{2000};
+  static constexpr std::chrono::milliseconds kBuildLimit{120000};  // of kernels, and of the first frame
+
+  // Builds the kernels, and processes a small frame for their first call. Throws OpenClError if that fails.
+  DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
+                 DepthReport report);
+
+  // A frame in which the device fails, or takes longer than kFrameLimit, is processed on the CPU, and so is
+  // every frame after it.
+  void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
+
+  bool uses_device() const { return frames_ != nullptr; }
+
+ private:
+  bool on_device(const DepthFrame& frame, PointCloud& cloud);
+  void give_up(const std::string& why);
+
+  const std::string name_;
+  const DepthReport report_;
+  DepthPipeline cpu_;
+  std::shared_ptr<DeviceFrames> frames_;  // null: given up
+  std::shared_ptr<DeviceFrame> frame_;
+  std::unique_ptr<DeadlineThread> thread_;
+};
+
+}  // namespace remote_touch

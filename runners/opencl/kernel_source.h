@@ -1,0 +1,8 @@
+// depth_pipeline.cl, compiled into the program.
+#pragma once
+
+namespace remote_touch {
+
+extern const char* const kDepthKernelSource;
+
+}  // namespace remote_touch

@@ -1,0 +1,73 @@
+// The functions of OpenCL 1.2 that the depth pipeline calls, loaded when a device is asked for: the program
+// needs no OpenCL to be built with, but its headers, and none to start. Inside of this room only.
+#pragma once
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "runners/libraries/shared_library.h"
+
+namespace remote_touch {
+
+// A call of OpenCL failed: "clFinish: CL_OUT_OF_RESOURCES (-5)".
+class OpenClError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Each is null until the constructor found it, and is named as in the library.
+#define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \
+  each(GetPlatformIDs) each(GetPlatformInfo) each(GetDeviceIDs) each(GetDeviceInfo) each(CreateContext)     \
+      each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
+          each(BuildProgram) each(GetProgramBuildInfo) each(ReleaseProgram) each(CreateKernel)              \
+              each(SetKernelArg) each(ReleaseKernel) each(CreateBuffer) each(ReleaseMemObject)              \
+                  each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueReadBufferRect)         \
+                      each(EnqueueNDRangeKernel) each(Finish)
+
+class OpenClLibrary {
+ public:
+  // Throws InputError where there is no library, or not the right one.
+  OpenClLibrary();
+
+#define REMOTE_TOUCH_DECLARE(name) decltype(&::cl##name) name = nullptr;
+  REMOTE_TOUCH_OPENCL_FUNCTIONS(REMOTE_TOUCH_DECLARE)
+#undef REMOTE_TOUCH_DECLARE
+
+ private:
+  SharedLibrary library_;
+};
+
+// The one of this process. Throws as the constructor, each time until it is there.
+const OpenClLibrary& opencl_library();
+
+// Throws OpenClError unless the code is that of success.
+void require(cl_int code, const char* function);
+
+// An object of OpenCL, released with its owner.
+template <class Object>
+class OpenClObject {
+ public:
+  using Release = cl_int(CL_API_CALL*)(Object);
+  OpenClObject() = default;
+  OpenClObject(Object object, Release release) : object_(object), release_(release) {}
+  OpenClObject(OpenClObject&& other) noexcept
+      : object_(std::exchange(other.object_, nullptr)), release_(other.release_) {}
+  OpenClObject& operator=(OpenClObject&& other) noexcept {
+    std::swap(object_, other.object_), std::swap(release_, other.release_);
+    return *this;
+  }
+  ~OpenClObject() {
+    if (object_ != nullptr) release_(object_);
+  }
+  Object get() const { return object_; }
+
+ private:
+  Object object_ = nullptr;
+  Release release_ = nullptr;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,72 @@
+// The bits of a real OpenCL device beside those of the CPU. Debian's pocl is one on every processor.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/parameters/input_error.h"
+#include "runners/opencl/depth_device.h"
+#include "runners/opencl/opencl_devices.h"
+#include "tests/core/depth/depth_cases.h"
+
+namespace remote_touch::device_bits_test {
+namespace {
+
+using namespace depth_cases;
+
+class DeviceBits : public testing::Test {
+ protected:
+  void SetUp() override {
+    unsetenv("REMOTE_TOUCH_LIBOPENCL");
+    try {
+      devices_ = opencl_devices(opencl_library());
+    } catch (const InputError&) {
+    }
+    if (devices_.empty()) GTEST_SKIP() << "no OpenCL device: scripts/install tests has pocl";
+  }
+  // One frame as an image and as a cloud, on the device and on the CPU.
+  void expect_same(const Settings& settings, const scenes::DepthScene& scene, const RigidTransform& X_WC) {
+    for (const OpenClDevice& device : devices_) {
+      if (!device.inexact_because.empty() || !device.unfit_because.empty()) continue;
+      DevicePipeline on_device(device, settings, best(), [](const std::string& line) { FAIL() << line; });
+      DepthPipeline on_cpu(settings, best());
+      EXPECT_TRUE(same_bits(on_device.process(scene.depth, scene.camera, X_WC),
+                            on_cpu.process(scene.depth, scene.camera, X_WC)));
+      PointCloud a = cloud_from_depth(scene.depth, scene.camera, X_WC), b = a;
+      on_device.process(a), on_cpu.process(b);
+      EXPECT_TRUE(same_bits(a, b));
+      EXPECT_TRUE(on_device.uses_device());
+    }
+  }
+  std::vector<OpenClDevice> devices_;
+};
+
+scenes::DepthScene with_holes(int width, int height) {
+  scenes::DepthScene scene = noisy_waves(width, height);
+  scenes::add_holes(scene.depth, 0.1, 3, kNoDepth);
+  return scene;
+}
+
+TEST_F(DeviceBits, AreThoseOfTheCpuForOddSizesAndHoles) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {7, 3}, {64, 48}, {65, 5}, {161, 121}})
+    expect_same({}, with_holes(width, height), some_pose());
+}
+
+// Its compiler takes seconds for each: opencl_double_test.cpp has the others.
+TEST_F(DeviceBits, AreThoseOfTheCpuForOtherWindows) {
+  for (const int window : {5, 11}) {
+    Settings settings;
+    settings.filter_window = window, settings.normal_window = 16 - window;
+    settings.sigma_f_m = 0.006;
+    expect_same(settings, with_holes(83, 37), some_pose());
+  }
+}
+
+TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
+  Settings settings;
+  settings.filter = false;
+  expect_same(settings, with_holes(83, 37), kIdentity);
+  expect_same(settings, with_holes(83, 37), some_pose());
+}
+
+}  // namespace
+}  // namespace remote_touch::device_bits_test

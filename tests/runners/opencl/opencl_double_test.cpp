@@ -1,0 +1,166 @@
+// A device that fails, hangs or computes other bits, with a test double of the OpenCL library. A program of
+// its own: a library is loaded once for a process.
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "core/parameters/input_error.h"
+#include "runners/opencl/depth_device.h"
+#include "runners/opencl/opencl_devices.h"
+#include "tests/core/depth/depth_cases.h"
+#include "tests/doubles/opencl_double.h"
+
+namespace remote_touch::opencl_double_test {
+namespace {
+
+using namespace depth_cases;
+
+OpenClDouble& library() {
+  static OpenClDouble& one = *[] {
+    void* const loaded = dlopen(REMOTE_TOUCH_DOUBLE_OPENCL, RTLD_NOW | RTLD_LOCAL);
+    EXPECT_NE(loaded, nullptr) << dlerror();
+    return reinterpret_cast<OpenClDouble* (*)()>(dlsym(loaded, "opencl_double"))();
+  }();
+  return one;
+}
+
+class OpenClDoubleTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
+    library().reset();
+  }
+  std::unique_ptr<DevicePipeline> opened() {
+    return std::make_unique<DevicePipeline>(opencl_devices(opencl_library()).at(0), Settings{}, best(),
+                                            [this](const std::string& line) { told_.push_back(line); });
+  }
+  std::string refusal(const std::string& device, bool exact = true) {
+    DepthDeviceSettings settings;
+    settings.device = device, settings.exact = exact;
+    try {
+      make_depth_processor(settings, best(), nullptr);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  PointCloud processed_by(DepthProcessor& processor) {
+    return processor.process(scene_.depth, scene_.camera, some_pose());
+  }
+  const scenes::DepthScene scene_ = noisy_waves(70, 30);
+  const PointCloud expected_ = processed(scene_, {}, some_pose());
+  std::vector<std::string> told_;
+};
+
+TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpu) {
+  const auto pipeline = opened();
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  EXPECT_TRUE(pipeline->uses_device());
+  EXPECT_TRUE(told_.empty());
+}
+
+// The same source as on a device, compiled as C++.
+TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
+  scenes::DepthScene scene = noisy_waves(83, 37);
+  scenes::add_holes(scene.depth, 0.1, 3, kNoDepth);
+  for (int window = 3; window <= 15; window += 2)
+    for (const bool filter : {true, false}) {
+      Settings settings{filter, window, 0.006, 18 - window, 0.014};
+      DevicePipeline pipeline(opencl_devices(opencl_library()).at(0), settings, best(), nullptr);
+      EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, some_pose()),
+                            processed(scene, settings, some_pose())));
+      EXPECT_TRUE(pipeline.uses_device());
+    }
+}
+
+// Each function that a frame calls, from its first and from a later call of the frame on.
+TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
+  for (const char* function :
+       {"clCreateBuffer", "clEnqueueWriteBuffer", "clEnqueueWriteBufferRect", "clSetKernelArg",
+        "clEnqueueNDRangeKernel", "clEnqueueReadBufferRect", "clFinish"})
+    for (const int call : {1, 3}) {
+      SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
+      library().reset(), told_.clear();
+      const auto pipeline = opened();
+      library().failing = function, library().failing_call = call, library().code = CL_OUT_OF_RESOURCES;
+      for (int frame = 0; frame < 4; ++frame) EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+      EXPECT_FALSE(pipeline->uses_device());
+      ASSERT_EQ(told_.size(), 1u);
+      EXPECT_NE(told_[0].find(std::string(function) + ": CL_OUT_OF_RESOURCES (-5)"), std::string::npos)
+          << told_[0];
+      EXPECT_NE(told_[0].find("the CPU processes this frame and all later ones"), std::string::npos);
+    }
+}
+
+TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
+  auto pipeline = opened();
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(took.count(), 2);
+  EXPECT_LT(took.count(), 4);  // a busy machine
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_NE(told_[0].find("no answer within 2 s"), std::string::npos) << told_[0];
+  pipeline.reset();  // does not wait for the driver
+  library().let_go = true;
+  for (int i = 0; i < 2000 && library().objects > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(library().objects, 0);  // its thread tidies up when the driver lets it go
+}
+
+TEST_F(OpenClDoubleTest, ADeviceThatCannotBeOpenedIsRefusedWithTheReason) {
+  for (const char* function : {"clGetPlatformIDs", "clGetPlatformInfo", "clGetDeviceIDs", "clGetDeviceInfo",
+                               "clCreateContext", "clCreateCommandQueue", "clCreateProgramWithSource",
+                               "clBuildProgram", "clCreateKernel", "clFinish"}) {
+    library().reset();
+    library().failing = function, library().failing_call = 1;
+    EXPECT_NE(refusal("opencl").find(std::string(function) + ": CL_OUT_OF_RESOURCES"), std::string::npos)
+        << refusal("opencl");
+    EXPECT_TRUE(refusal("auto").empty());  // then the CPU does it
+  }
+  library().failing = "clBuildProgram", library().code = CL_BUILD_PROGRAM_FAILURE;
+  EXPECT_NE(refusal("opencl").find("clBuildProgram: error: of the double"), std::string::npos);
+}
+
+TEST_F(OpenClDoubleTest, NormalsThatOnlyTheCpuComputesAreRefusedForADevice) {
+  for (const auto& [step, fit] : {std::pair{2, NormalFit::total_least_squares}, {1, NormalFit::inverse_depth}}) {
+    DepthDeviceSettings settings;
+    settings.normal_step = step, settings.normal_fit = fit;
+    for (const char* device : {"cpu", "auto"}) {
+      settings.device = device;
+      EXPECT_EQ(validate(settings), "") << device;
+    }
+    settings.device = "opencl";
+    EXPECT_EQ(validate(settings),
+              "device = opencl: expected cpu with normal_step > 1 or normal_fit = inverse-depth");
+  }
+}
+
+TEST_F(OpenClDoubleTest, ADeviceWithOtherBitsIsRefusedUnlessItIsAllowed) {
+  library().is_imprecise = true;
+  EXPECT_NE(refusal("opencl:0:0").find("flushes subnormal numbers to zero in single precision"),
+            std::string::npos)
+      << refusal("opencl:0:0");
+  EXPECT_TRUE(refusal("opencl:0:0", false).empty());
+  library().reset();
+  library().is_wrong = true;
+  const std::string told = refusal("opencl");
+  EXPECT_NE(told.find("gave other bits than the CPU in a trial frame"), std::string::npos) << told;
+  EXPECT_NE(told.find("exact = false allows it"), std::string::npos) << told;
+  EXPECT_TRUE(refusal("opencl", false).empty());
+  EXPECT_NE(refusal("opencl:0:1").find("there is no such device"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace remote_touch::opencl_double_test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
