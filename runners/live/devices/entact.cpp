@@ -4,9 +4,9 @@
 #include <atomic>
 
 #include "core/parameters/input_error.h"
+#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/gated_device.h"
 #include "runners/live/devices/known_fault.h"
-#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/vendor_axes.h"
 
 namespace remote_touch {

@@ -129,7 +129,8 @@ TEST_F(OpenClDoubleTest, ADeviceThatCannotBeOpenedIsRefusedWithTheReason) {
 }
 
 TEST_F(OpenClDoubleTest, NormalsThatOnlyTheCpuComputesAreRefusedForADevice) {
-  for (const auto& [step, fit] : {std::pair{2, NormalFit::total_least_squares}, {1, NormalFit::inverse_depth}}) {
+  for (const auto& [step, fit] :
+       {std::pair{2, NormalFit::total_least_squares}, {1, NormalFit::inverse_depth}}) {
     DepthDeviceSettings settings;
     settings.normal_step = step, settings.normal_fit = fit;
     for (const char* device : {"cpu", "auto"}) {
