@@ -312,7 +312,7 @@ void add_live(Subcommands& commands) {
   command->add_option(
       "--report", live->report,
       "write timing and counts to this HDF5 file (a figure for scripts/plot); also on SIGUSR1");
-  commands.add("devices", "list sensors and haptic devices: compiled in or not, found or why not",
+  commands.add("devices", "list sensors, haptic devices and OpenCL devices: what was found, or why not",
                command_devices);
   auto [other, jitter] =
       commands.add("jitter", "measure the timing of the haptic loop on this machine", command_jitter);

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/parameters/input_error.h"
 #include "runners/opencl/depth_device.h"
 #include "runners/opencl/opencl_devices.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/core/depth/depth_cases.h"
+#include "tests/support/recorded_data.h"
 
 namespace remote_touch::device_bits_test {
 namespace {
@@ -66,6 +69,16 @@ TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
   settings.filter = false;
   expect_same(settings, with_holes(83, 37), kIdentity);
   expect_same(settings, with_holes(83, 37), some_pose());
+}
+
+TEST_F(DeviceBits, AreThoseOfTheCpuOnRecordedFrames) {
+  for (const char* name : {"visp_organ_table", "sr305_hand_flex", "pcd_single/mosd_boxes_learn3.pcd"}) {
+    const std::filesystem::path path = data_root() / "rgbd" / name;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "recorded data are missing: " << path;
+    const PointCloud cloud = read_frame(index_recording(path), 0, kInfinity);
+    const CameraIntrinsics& camera = cloud.image->camera;
+    expect_same({}, {camera, {camera.width, camera.height, cloud.z}, {}}, some_pose());
+  }
 }
 
 }  // namespace
