@@ -6,10 +6,6 @@ namespace remote_touch {
 
 namespace {
 
-int half(int window) {
-  return window / 2;
-}
-
 std::string wrong_window(const char* name, int window) {
   return window % 2 == 1
              ? ""
@@ -41,9 +37,9 @@ std::string validate(const DepthPipelineSettings& s) {
   const std::string filter = wrong_window("filter_window", s.filter_window);
   const std::string normal = wrong_window("normal_window", s.normal_window);
   if (!filter.empty() || !normal.empty()) return filter.empty() ? normal : filter;
-  if (half(s.normal_window) % s.normal_step == 0) return {};
+  if (s.normal_window / 2 % s.normal_step == 0) return {};
   return "normal_step = " + std::to_string(s.normal_step) + ": expected a divisor of " +
-         std::to_string(half(s.normal_window)) + ", half of normal_window - 1";
+         std::to_string(s.normal_window / 2) + ", half of normal_window - 1";
 }
 
 DepthProcessor::DepthProcessor(const DepthPipelineSettings& settings) : settings_(settings) {

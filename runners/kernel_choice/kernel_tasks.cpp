@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/kernels/depth_kernels.h"
+#include "core/kernels/lanes.h"
 #include "core/kernels/noise_kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/kernels/tool_kernels.h"
@@ -54,11 +55,11 @@ struct Noise {
 
 // Disks on a plane through a ball of 10 mm, whose distance field has nodes 2 mm apart.
 struct ToolDisks {
-  static constexpr std::size_t kPoints = 256, kAlong = 16, kNodes = 17, kColumns = 13;
+  static constexpr std::size_t kPoints = 256, kAlong = 16, kNodes = 17, kColumns = 16;
   std::vector<float> node;
   std::array<std::vector<double>, 8> point;
   mutable std::array<std::vector<double>, kColumns> disk;
-  mutable std::vector<std::uint64_t> cell = std::vector<std::uint64_t>(kPoints);
+  mutable std::vector<double> nearest = std::vector<double>(kPoints / kLanes);
 
   ToolDisks() {
     for (std::size_t i = 0; i < kNodes * kNodes * kNodes; ++i) {
@@ -67,7 +68,7 @@ struct ToolDisks {
       node.push_back(static_cast<float>(std::sqrt(x * x + y * y + z * z) - 0.01));
     }
     for (std::vector<double>& column : point) column.resize(kPoints);
-    for (std::vector<double>& column : disk) column.resize(kPoints);
+    for (std::vector<double>& column : disk) column.resize(kPoints + kLanes);
     for (std::size_t i = 0; i < kPoints; ++i) {
       const std::size_t row = i / kAlong;
       point[0][i] = 1e-3 * (static_cast<double>(i % kAlong) - 7.7);
@@ -88,8 +89,12 @@ struct ToolDisks {
     DiskColumns out{};
     three(0, out.p_T), three(3, out.n_T), three(6, out.gradient_T);
     out.radius = disk[9].data(), out.distance = disk[10].data(), out.slope = disk[11].data();
-    out.lower = disk[12].data(), out.cell = cell.data(), out.extent = point[7].data();
-    kernels.tool.disks_in_field(points, kPoints, 0.5, 1000, field, out);
+    out.lower = disk[12].data(), out.bound = disk[13].data(), out.cell = disk[14].data();
+    out.extent = disk[15].data();
+    constexpr DiskLimits kLimits{4e-3, 2e-3, 3e-4, 4e-3};  // as of a look-ahead of 2 mm
+    std::size_t outside_count = 0;
+    kernels.tool.disks_in_field(points, kPoints, 0.5, 1000, field, kLimits, nearest.data(), true, out,
+                                outside_count);
   }
 };
 
