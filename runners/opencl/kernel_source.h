@@ -1,4 +1,4 @@
-// depth_pipeline.cl, compiled into the program.
+// depth_kernels.cl, compiled into the program.
 #pragma once
 
 namespace remote_touch {

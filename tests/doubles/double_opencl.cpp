@@ -38,7 +38,7 @@ using std::sqrt;
 #define restrict __restrict
 #define FILTER_HALF filter_half
 #define NORMAL_HALF normal_half
-#include "runners/opencl/depth_pipeline.cl"
+#include "runners/opencl/depth_kernels.cl"
 #undef restrict
 }  // namespace kernels
 
