@@ -110,6 +110,7 @@ bool carries_unit(const std::string& name) {
                                               "max_lightness",
                                               "filter_window",
                                               "normal_window",
+                                              "normal_step",
                                               "device_scale",
                                               "detections_per_tick",
                                               "disk_radius_ratio",
