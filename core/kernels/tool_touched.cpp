@@ -13,7 +13,8 @@ constexpr long kInterior = 2;  // as in Voxel
 // Voxels of cells, one by one.
 inline Flags voxels_at(const CellTable& table, Counts cell) {
   Flags voxels;
-  for (int lane = 0; lane < kDoubles; ++lane) voxels[lane] = table.value[cell[lane]];
+  for (int lane = 0; lane < kDoubles; ++lane)
+    voxels[lane] = static_cast<std::uint8_t>(table.value[cell[lane]]);  // 0 to 2
   return voxels;
 }
 
