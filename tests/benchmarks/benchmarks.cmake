@@ -54,7 +54,7 @@ find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)
 find_package(PCL QUIET COMPONENTS common search kdtree)
 if(PCL_FOUND AND NANOFLANN_INCLUDE_DIR)
   add_executable(peer_search_benchmark EXCLUDE_FROM_ALL
-    benchmarks/peer_search_benchmark.cpp benchmarks/naive_proxy.cpp)
+    benchmarks/peers/peer_search_benchmark.cpp benchmarks/naive_proxy.cpp)
   target_include_directories(peer_search_benchmark SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${NANOFLANN_INCLUDE_DIR})
   target_link_libraries(peer_search_benchmark PRIVATE runners benchmark::benchmark ${PCL_LIBRARIES})
 else()
@@ -65,25 +65,25 @@ endif()
 find_package(PCL QUIET COMPONENTS common search kdtree features filters)
 find_package(OpenCV QUIET COMPONENTS core imgproc rgbd)
 if(PCL_FOUND AND OpenCV_FOUND)
-  add_library(peer_depth OBJECT EXCLUDE_FROM_ALL benchmarks/peer_depth.cpp)
+  add_library(peer_depth OBJECT EXCLUDE_FROM_ALL benchmarks/peers/peer_depth.cpp)
   target_include_directories(peer_depth PRIVATE ${PROJECT_SOURCE_DIR})
   target_include_directories(peer_depth SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${OpenCV_INCLUDE_DIRS})
   target_link_libraries(peer_depth PRIVATE Eigen3::Eigen OpenMP::OpenMP_CXX)
   target_compile_options(peer_depth PRIVATE -O3)
   add_executable(peer_depth_benchmark EXCLUDE_FROM_ALL
-    benchmarks/checked_benchmark.cpp benchmarks/peer_depth_benchmark.cpp $<TARGET_OBJECTS:peer_depth>)
+    benchmarks/checked_benchmark.cpp benchmarks/peers/peer_depth_benchmark.cpp $<TARGET_OBJECTS:peer_depth>)
   target_link_libraries(peer_depth_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
   # As fast as a user of this machine has them.
-  set_source_files_properties(benchmarks/published_normals.cpp PROPERTIES COMPILE_OPTIONS
+  set_source_files_properties(benchmarks/peers/published_normals.cpp PROPERTIES COMPILE_OPTIONS
     "-O3;-march=native;-fno-math-errno;-fno-trapping-math")
-  target_sources(peer_depth_benchmark PRIVATE benchmarks/published_normals.cpp)
+  target_sources(peer_depth_benchmark PRIVATE benchmarks/peers/published_normals.cpp)
   add_executable(depth_trade_benchmark EXCLUDE_FROM_ALL
-    benchmarks/checked_benchmark.cpp benchmarks/depth_trade_benchmark.cpp benchmarks/depth_trade_scene.cpp
-    benchmarks/published_normals.cpp $<TARGET_OBJECTS:peer_depth>)
+    benchmarks/checked_benchmark.cpp benchmarks/peers/depth_trade_benchmark.cpp benchmarks/peers/depth_trade_scene.cpp
+    benchmarks/peers/published_normals.cpp $<TARGET_OBJECTS:peer_depth>)
   target_link_libraries(depth_trade_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
 else()
-  peers_missing(peer_depth_benchmark "libpcl-dev and libopencv-contrib-dev")
-  peers_missing(depth_trade_benchmark "libpcl-dev and libopencv-contrib-dev")
+  peers_missing(peer_depth_benchmark "libpcl-dev, libopencv-dev and libopencv-contrib-dev")
+  peers_missing(depth_trade_benchmark "libpcl-dev, libopencv-dev and libopencv-contrib-dev")
 endif()
 
 # The collision detection of others, likewise.
@@ -91,14 +91,14 @@ find_package(Bullet QUIET)
 find_package(fcl QUIET)
 find_package(octomap QUIET)
 if(BULLET_FOUND AND fcl_FOUND AND octomap_FOUND)
-  add_library(peer_tool OBJECT EXCLUDE_FROM_ALL benchmarks/peer_tool.cpp)
+  add_library(peer_tool OBJECT EXCLUDE_FROM_ALL benchmarks/peers/peer_tool.cpp)
   target_include_directories(peer_tool PRIVATE ${PROJECT_SOURCE_DIR})
   target_include_directories(peer_tool SYSTEM PRIVATE ${BULLET_INCLUDE_DIRS})
   target_link_libraries(peer_tool PRIVATE fcl)
   target_compile_options(peer_tool PRIVATE -O3)
   add_executable(peer_tool_benchmark EXCLUDE_FROM_ALL
-    benchmarks/checked_benchmark.cpp benchmarks/peer_tool_benchmark.cpp benchmarks/tool_scene.cpp
-    benchmarks/voxmap_pointshell.cpp $<TARGET_OBJECTS:peer_tool>)
+    benchmarks/checked_benchmark.cpp benchmarks/peers/peer_tool_benchmark.cpp benchmarks/tool_scene.cpp
+    benchmarks/peers/voxmap_pointshell.cpp $<TARGET_OBJECTS:peer_tool>)
   target_link_libraries(peer_tool_benchmark PRIVATE core benchmark::benchmark fcl ${BULLET_LIBRARIES})
 else()
   peers_missing(peer_tool_benchmark "libbullet-dev, libfcl-dev and liboctomap-dev")

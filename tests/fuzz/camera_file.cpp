@@ -1,7 +1,7 @@
 // camera.json of a folder of depth images.
 #include "scenarios/recordings/recording.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::camera_file {
 namespace {

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/hdf5_child_source.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::child_answer {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fuzz {

@@ -3,7 +3,7 @@
 
 #include "runners/live/devices/haply_place.h"
 #include "runners/live/devices/uri.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::device_address {
 namespace {

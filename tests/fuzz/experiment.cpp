@@ -1,7 +1,7 @@
 // Experiments as JSON. What is accepted is written complete, and comes back the same.
 #include "runners/experiment/experiment.h"
 
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::experiment {
 namespace {

@@ -2,8 +2,8 @@
 #include "runners/export/csv_files.h"
 #include "runners/export/npy_array.h"
 #include "runners/export/result_tables.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::export_tables {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "runners/live/devices/haply.h"
 #include "tests/doubles/simulated_clock.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::haply_device {
 namespace {

@@ -1,6 +1,6 @@
 // Messages of Haply's service, as text.
 #include "runners/live/devices/haply_messages.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::haply_message {
 namespace {

@@ -1,6 +1,6 @@
 // Files of hashes in result files.
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/result_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/result_target.h"
 
 namespace remote_touch::fuzz::hashes_file {
 namespace {

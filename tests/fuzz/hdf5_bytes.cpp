@@ -2,9 +2,9 @@
 // limits.
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/lasting_child.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/lasting_child.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::hdf5_bytes {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_source.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::hdf5_shapes {
 namespace {

@@ -1,5 +1,5 @@
 // A child that reads many files answers as one that is begun for each of them.
-#include "tests/fuzz/lasting_child.h"
+#include "tests/fuzz/shared/lasting_child.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "runners/tool_files/mesh_file.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fuzz {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "runners/kernel_choice/kernel_choice.h"
-#include "tests/fuzz/cache_target.h"
+#include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::level_times {
 namespace {

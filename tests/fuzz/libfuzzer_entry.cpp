@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/lasting_child.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/lasting_child.h"
 
 using remote_touch::fuzz::targets;
 

@@ -1,8 +1,8 @@
 // The list of baselines. What is accepted is written, and comes back the same.
 #include "runners/regression/baselines/manifest.h"
 
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::manifest {
 namespace {

@@ -1,6 +1,6 @@
 // Bags of the kind MCAP.
-#include "tests/fuzz/bag_target.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/bag_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::mcap {
 namespace {

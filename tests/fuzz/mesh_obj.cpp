@@ -1,6 +1,6 @@
 // Meshes in OBJ files.
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/mesh_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/mesh_target.h"
 
 namespace remote_touch::fuzz::mesh_obj {
 namespace {

@@ -1,6 +1,6 @@
 // Meshes in PLY files.
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/mesh_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/mesh_target.h"
 
 namespace remote_touch::fuzz::mesh_ply {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::page_message {
 namespace {

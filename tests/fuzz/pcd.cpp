@@ -1,7 +1,7 @@
 // PCD files: ascii, binary, binary_compressed.
 #include "scenarios/recordings/pcd/pcd_file.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::pcd {
 namespace {

@@ -1,8 +1,8 @@
 // Headers of PLY files, which are checked before a library reads the file.
 #include "runners/tool_files/ply_header.h"
 
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::ply_header {
 namespace {

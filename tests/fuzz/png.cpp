@@ -1,7 +1,7 @@
 // PNG files, read as a depth image and as a colour image.
 #include "scenarios/recordings/png/depth_png.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::png {
 namespace {

@@ -3,8 +3,8 @@
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/recipe.h"
 #include "runners/settings/configuration_difference.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::provenance {
 namespace {

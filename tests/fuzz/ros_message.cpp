@@ -5,7 +5,7 @@
 #include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/messages/image_rays.h"
 #include "scenarios/recordings/static_transforms.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::ros_message {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "runners/experiment/experiment.h"
 #include "runners/sessions/session_scene.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::session_file {
 namespace {

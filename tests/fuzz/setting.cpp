@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "runners/experiment/experiment.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::setting {
 namespace {

@@ -1,7 +1,7 @@
 // Sphere trees of tools in the cache. What is read is written as it was.
 #include "runners/tool_files/spheres_cache.h"
 
-#include "tests/fuzz/cache_target.h"
+#include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::spheres_cache {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/text_files/json_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::sweep {
 namespace {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "runners/regression/comparison/comparison_report.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::sweep_file {
 namespace {

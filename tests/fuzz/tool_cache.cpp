@@ -2,7 +2,7 @@
 #include "runners/tool_files/tool_cache.h"
 
 #include "core/tool/mesh/mesh_corners.h"
-#include "tests/fuzz/cache_target.h"
+#include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::tool_cache {
 namespace {

@@ -1,8 +1,8 @@
 // Traces in result files: hashed, and compared within tolerances.
 #include "runners/regression/comparison/result_comparison.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/result_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/result_target.h"
 
 namespace remote_touch::fuzz::trace_file {
 namespace {

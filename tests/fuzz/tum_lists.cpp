@@ -1,8 +1,8 @@
 // depth.txt and rgb.txt of a recording in the layout of the TUM benchmark, parted by a line "---".
 #include "scenarios/recordings/recording.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::tum_lists {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/benchmarks/depth_trade_scene.h"
+#include "tests/benchmarks/peers/depth_trade_scene.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tests/benchmarks/peer_depth.h"
+#include "tests/benchmarks/peers/peer_depth.h"
 
 #include <pcl/features/integral_image_normal.h>
 #include <pcl/features/normal_3d_omp.h>

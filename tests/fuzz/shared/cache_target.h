@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz {
 

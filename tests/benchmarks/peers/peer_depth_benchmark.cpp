@@ -12,8 +12,8 @@
 #include "core/depth/depth_pipeline.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/benchmarks/peer_depth.h"
-#include "tests/benchmarks/peer_points.h"
+#include "tests/benchmarks/peers/peer_depth.h"
+#include "tests/benchmarks/peers/peer_points.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {

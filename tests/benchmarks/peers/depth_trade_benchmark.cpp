@@ -14,10 +14,10 @@
 #include "core/depth/depth_pipeline.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/benchmarks/depth_trade_scene.h"
-#include "tests/benchmarks/peer_depth.h"
-#include "tests/benchmarks/peer_points.h"
-#include "tests/benchmarks/published_normals.h"
+#include "tests/benchmarks/peers/depth_trade_scene.h"
+#include "tests/benchmarks/peers/peer_depth.h"
+#include "tests/benchmarks/peers/peer_points.h"
+#include "tests/benchmarks/peers/published_normals.h"
 
 namespace remote_touch::benchmarks {
 namespace {

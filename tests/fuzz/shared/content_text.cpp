@@ -1,4 +1,4 @@
-#include "tests/fuzz/content_text.h"
+#include "tests/fuzz/shared/content_text.h"
 
 #include <charconv>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "tests/benchmarks/peer_tool.h"
+#include "tests/benchmarks/peers/peer_tool.h"
 
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>

@@ -1,4 +1,4 @@
-#include "tests/benchmarks/voxmap_pointshell.h"
+#include "tests/benchmarks/peers/voxmap_pointshell.h"
 
 #include <algorithm>
 #include <cmath>

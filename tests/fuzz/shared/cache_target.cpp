@@ -1,11 +1,11 @@
-#include "tests/fuzz/cache_target.h"
+#include "tests/fuzz/shared/cache_target.h"
 
 #include <fstream>
 #include <iterator>
 
 #include "analysis/storage/packed_values.h"
 #include "analysis/storage/sha256.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz {
 

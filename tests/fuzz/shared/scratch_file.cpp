@@ -1,4 +1,4 @@
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 #include <unistd.h>
 

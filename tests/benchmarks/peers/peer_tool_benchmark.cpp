@@ -21,9 +21,9 @@
 #include "core/tool/contact/touch_finder.h"
 #include "core/tool/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/benchmarks/peer_tool.h"
+#include "tests/benchmarks/peers/peer_tool.h"
+#include "tests/benchmarks/peers/voxmap_pointshell.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/benchmarks/voxmap_pointshell.h"
 #include "tests/support/formatted.h"
 
 namespace remote_touch::benchmarks {

@@ -1,4 +1,4 @@
-#include "tests/fuzz/lasting_child.h"
+#include "tests/fuzz/shared/lasting_child.h"
 
 #include <sys/wait.h>
 #include <unistd.h>

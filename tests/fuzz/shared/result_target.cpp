@@ -1,8 +1,8 @@
-#include "tests/fuzz/result_target.h"
+#include "tests/fuzz/shared/result_target.h"
 
 #include "runners/regression/comparison/comparison_report.h"
-#include "tests/fuzz/content_text.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/shared/content_text.h"
+#include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz {
 

@@ -1,4 +1,4 @@
-#include "tests/benchmarks/published_normals.h"
+#include "tests/benchmarks/peers/published_normals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/cloud/point_cloud.h"
-#include "tests/benchmarks/peer_depth.h"
+#include "tests/benchmarks/peers/peer_depth.h"
 
 namespace remote_touch::benchmarks {
 

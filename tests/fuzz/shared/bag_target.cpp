@@ -1,10 +1,10 @@
-#include "tests/fuzz/bag_target.h"
+#include "tests/fuzz/shared/bag_target.h"
 
 #include <algorithm>
 
 #include "scenarios/recordings/bag_frames.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz {
 

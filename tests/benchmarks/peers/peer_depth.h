@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/benchmarks/published_normals.h"
+#include "tests/benchmarks/peers/published_normals.h"
 
 namespace remote_touch::peers {
 

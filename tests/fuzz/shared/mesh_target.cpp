@@ -1,10 +1,10 @@
-#include "tests/fuzz/mesh_target.h"
+#include "tests/fuzz/shared/mesh_target.h"
 
 #include "core/tool/mesh/mesh_corners.h"
 #include "runners/tool_files/mesh_file.h"
-#include "tests/fuzz/fuzz_target.h"
-#include "tests/fuzz/lasting_child.h"
-#include "tests/fuzz/scratch_file.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/lasting_child.h"
+#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz {
 
