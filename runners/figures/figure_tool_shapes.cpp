@@ -57,14 +57,14 @@ class Pool {
     for (int bin = 0; bin < kBins; ++bin) ratio.push_back((bin + 0.5) * kWidth);
     table.add("ratio", "1", "speed divided by the derived bound, middle of a bin", ratio);
     for (const CarrierName& carrier : kCarriers) {
-      std::vector<double> share, low, high, runs;
+      std::vector<double> fraction, low, high, runs;
       for (const Tally& bin : rules_[static_cast<std::size_t>(carrier.rule)].bins) {
         const auto interval = wilson_interval(bin.runs - bin.events, bin.runs);
-        share.push_back(bin.runs > 0 ? 1 - static_cast<double>(bin.events) / bin.runs : std::nan(""));
+        fraction.push_back(bin.runs > 0 ? 1 - static_cast<double>(bin.events) / bin.runs : std::nan(""));
         low.push_back(interval.first), high.push_back(interval.second), runs.push_back(bin.runs);
       }
       const std::string column = carrier.column;
-      table.add(column + "_carried", "1", "share of runs that are carried", share);
+      table.add(column + "_carried", "1", "fraction of runs that are carried", fraction);
       table.add(column + "_low", "1", "lower end of its 95 % Wilson interval", low);
       table.add(column + "_high", "1", "upper end of its 95 % Wilson interval", high);
       table.add(column + "_runs", "1", "runs", runs);
@@ -235,17 +235,17 @@ std::vector<Claim> shape_claims(const std::vector<Table>& still, const std::vect
     claims.push_back(claim_bounded_noise(noisy, carrier.rule, carrier.label));
     const Tally &below = pool.below(carrier.rule), &above = pool.above(carrier.rule);
     claims.push_back(claim_at_least(
-        kShapeFigure, label + "below the bound: share carried, lower end of the Wilson interval", "-",
+        kShapeFigure, label + "below the bound: fraction carried, lower end of the Wilson interval", "-",
         wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction"));
-    claims.push_back(claim_at_least(kShapeFigure,
-                                    label + "above the bound: share lost, lower end of the Wilson interval",
-                                    "-", wilson_interval(above.events, above.runs).first, 0.97, "fraction"));
+    claims.push_back(claim_at_least(
+        kShapeFigure, label + "above the bound: fraction lost, lower end of the Wilson interval", "-",
+        wilson_interval(above.events, above.runs).first, 0.97, "fraction"));
   }
   return claims;
 }
 
 Panel pool_panel(const Table& pooled, std::pair<double, double> place) {
-  Panel panel{pooled.title, "speed / derived bound", "share carried"};
+  Panel panel{pooled.title, "speed / derived bound", "fraction carried"};
   for (const CarrierName& carrier : kCarriers) {
     const std::string column = carrier.column;
     panel.curves.push_back(
@@ -265,7 +265,7 @@ Figure figure_tool_shapes(const FigureContext& context) {
       "contact rules; frames at 30 Hz; simulated. Where it is not the axis, the plate is 10 mm thick, edges "
       "and corners slope by 30 deg, and the ball has a radius of 40 mm. Dots: up to here every run is "
       "carried. Dashed: derived, no point is left in the plate (printed rule: in what is not shell; "
-      "continuous rule: and it moves by more than frame_reach_m, 20 mm); with noise: half are lost. Share "
+      "continuous rule: and it moves by more than frame_reach_m, 20 mm); with noise: half are lost. Fraction "
       "carried: of all runs without noise, with 95 % Wilson intervals."};
   Pool pool;
   constexpr std::size_t kColumns = 4;

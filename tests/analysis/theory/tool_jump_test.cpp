@@ -59,7 +59,7 @@ TEST(ToolJump, ABallFallsUpToTheCornersOfThePlateOrToItsMiddle) {
 }
 
 // The share of jumps after which no point is left, of drawn frames.
-double lost_share(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m) {
+double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m) {
   constexpr int kJumps = 2000;
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, sigma_m);
@@ -90,9 +90,9 @@ TEST(ToolJump, AtTheJumpOfNoisyPointsHalfOfAllAreLost) {
   for (const auto& points : {plane, slope, fading})
     for (const double sigma_m : {0.0005, 0.002}) {
       const double jump_m = noisy_jump_m(0.01, points, sigma_m);
-      EXPECT_NEAR(lost_share(jump_m, 0.01, points, sigma_m), 0.5, 0.09) << sigma_m;
-      EXPECT_LT(lost_share(jump_m - 2 * sigma_m, 0.01, points, sigma_m), 0.15) << sigma_m;
-      EXPECT_GT(lost_share(jump_m + 2 * sigma_m, 0.01, points, sigma_m), 0.85) << sigma_m;
+      EXPECT_NEAR(lost_fraction(jump_m, 0.01, points, sigma_m), 0.5, 0.09) << sigma_m;
+      EXPECT_LT(lost_fraction(jump_m - 2 * sigma_m, 0.01, points, sigma_m), 0.15) << sigma_m;
+      EXPECT_GT(lost_fraction(jump_m + 2 * sigma_m, 0.01, points, sigma_m), 0.85) << sigma_m;
     }
 }
 
