@@ -59,7 +59,8 @@ TEST(ToolJump, ABallFallsUpToTheCornersOfThePlateOrToItsMiddle) {
 }
 
 // The share of jumps after which no point is left, of drawn frames.
-double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m) {
+double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points,
+                     double sigma_m) {
   constexpr int kJumps = 2000;
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, sigma_m);
