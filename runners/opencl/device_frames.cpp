@@ -123,7 +123,7 @@ void DeviceFrames::start(const Kernel& kernel, const Arguments&... arguments) {
   const auto set = [&](const auto& argument) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(argument)>, Buffer>) {
       const cl_mem memory = argument.get();
-      require(cl_.SetKernelArg(kernel.get(), index++, sizeof memory, &memory), "clSetKernelArg");
+      require(cl_.SetKernelArg(kernel.get(), index++, sizeof(cl_mem), &memory), "clSetKernelArg");
     } else {
       require(cl_.SetKernelArg(kernel.get(), index++, sizeof argument, &argument), "clSetKernelArg");
     }

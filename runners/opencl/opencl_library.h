@@ -33,6 +33,7 @@ class OpenClLibrary {
   // Throws InputError where there is no library, or not the right one.
   OpenClLibrary();
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared takes none.
 #define REMOTE_TOUCH_DECLARE(name) decltype(&::cl##name) name = nullptr;
   REMOTE_TOUCH_OPENCL_FUNCTIONS(REMOTE_TOUCH_DECLARE)
 #undef REMOTE_TOUCH_DECLARE
