@@ -86,6 +86,19 @@ struct DiskColumns {
   double* extent;  // that of its point
 };
 
+// Which points are wanted, m.
+struct PlaceLimits {
+  double reach;   // they are no farther than this
+  double passed;  // as in DiskLimits
+};
+
+// Points in the tool frame; capacity for kLanes more than there are points. Lengths in m.
+struct PlaceColumns {
+  double* p_T[3];
+  double* distance;  // NaN outside the grid
+  double* number;    // of the point, a whole number
+};
+
 // A constraint (6.3), as ToolContact has it; m.
 struct ContactNumbers {
   double r_T[3], n_T[3];
@@ -132,6 +145,12 @@ struct ToolKernels {
   std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
                                 const PosedField&, const DiskLimits&, double* nearest, bool is_new,
                                 const DiskColumns&, std::size_t& outside_count);
+  // The points of the groups that the limits want, in their order: bit for bit what sample_field() gives.
+  // Outside the grid that is taken which is as near at the nearest place of the grid. nearest and is_new are
+  // as above, one for each group[i]. Returns how many there are, outside_count of them outside the grid.
+  std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
+                                 const PosedField&, const PlaceLimits&, double* nearest, bool is_new,
+                                 const PlaceColumns&, std::size_t& outside_count);
   // Of the points of the groups: those in a voxel (1: shell, 2: interior), and those whose disks of radius
   // fraction x spacing have their centres as near as limits.touch. Unclear are disks that only a search could
   // show to be so near, and places outside the grid. nearest and is_new are as above, one for each group[i].

@@ -17,7 +17,8 @@ add_executable(map_benchmark
 target_link_libraries(map_benchmark PRIVATE runners)
 
 add_executable(tool_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/tool_benchmark.cpp benchmarks/tool_scene.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/tool_benchmark.cpp benchmarks/tool_landing.cpp
+  benchmarks/tool_scene.cpp)
 target_link_libraries(tool_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(sphere_tree_benchmark

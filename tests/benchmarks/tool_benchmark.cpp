@@ -14,6 +14,7 @@
 #include "core/tool/contact/contact_list.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "tests/benchmarks/checked_benchmark.h"
+#include "tests/benchmarks/tool_landing.h"
 #include "tests/benchmarks/tool_scene.h"
 #include "tests/support/formatted.h"
 
@@ -222,12 +223,16 @@ int main(int argc, char** argv) {
       add_step(scene, rule);
       add_ride(scene, rule);
     }
+    add_landing(scene, settings(TouchRule::look_ahead), name_of(TouchRule::look_ahead));
   }
   const auto outer = generated_tool("husky", true);
   const std::vector<ToolScene> outer_scenes = {tool_scene("2500", outer, 50, 2e-3),
                                                tool_scene("40000", outer, 200, 1e-3),
                                                tool_scene("111556_dense", outer, 334, 3e-4)};
-  for (const ToolScene& scene : outer_scenes) add_ride(scene, TouchRule::continuous);
+  for (const ToolScene& scene : outer_scenes) {
+    add_ride(scene, TouchRule::continuous);
+    add_landing(scene, settings(TouchRule::continuous), name_of(TouchRule::continuous));
+  }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

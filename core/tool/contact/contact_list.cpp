@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace remote_touch {
@@ -27,7 +28,7 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
   const TiledCloud& points = finder_.cloud();
   max_disk_m_ = p_.disk_radius_ratio * points.max_spacing_m();
   reserve(points.padded_size());
-  touched_.on_frame();
+  touched_.on_frame(), points_.on_frame();
   const TiledCloud* merged = used_merged_disk_m(p_) > 0 ? points.merged() : nullptr;
   disks_.on_frame(merged ? *merged : points);
   max_near_disk_m_ =
@@ -36,8 +37,9 @@ void ContactList::on_frame(std::shared_ptr<const TiledCloud> cloud) {
 
 void ContactList::reserve(std::size_t padded_size) {
   finder_.reserve(padded_size), disks_.reserve(padded_size), touched_.reserve(padded_size);
+  if (p_.contact_rule == TouchRule::continuous) points_.reserve(padded_size);
   contacts_.reserve(2 * padded_size), collisions_.reserve(padded_size);
-  near_.reserve(padded_size), cells_.reserve(padded_size), others_.reserve(padded_size);
+  cells_.reserve(padded_size);
   nearest_.reserve(ContactThinning::kMaxCells);
   chosen_.reserve(padded_size);
 }
@@ -45,18 +47,6 @@ void ContactList::reserve(std::size_t padded_size) {
 std::span<const ToolContact> ContactList::thinned(std::vector<ToolContact>& contacts) {
   thinning_.thin(contacts);
   return contacts;
-}
-
-// All disks of the look-ahead rule are within the look-ahead.
-void ContactList::gather_near() {
-  const NearDisks& disks = disks_;
-  near_.resize(disks.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < disks.size(); ++i) {  // without a branch: which are near is hard to foresee
-    near_[count] = static_cast<std::uint32_t>(i);
-    count += disks.lower_m(i) <= p_.look_ahead_m ? 1 : 0;
-  }
-  near_.resize(count);
 }
 
 void ContactList::append_contacts(double side) {
@@ -68,16 +58,15 @@ void ContactList::gather_cells() {
   const NearDisks& disks = disks_;
   thinning_.begin();
   nearest_.clear();
-  cells_.resize(near_.size());
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    const std::uint32_t disk = near_[k];
+  cells_.resize(disks.size());
+  for (std::uint32_t disk = 0; disk < disks.size(); ++disk) {
     const std::size_t cell = thinning_.cell(disks.cell(disk));
-    cells_[k] = static_cast<std::uint32_t>(cell);
+    cells_[disk] = static_cast<std::uint32_t>(cell);
     if (cell == ContactThinning::kNoCell) continue;
     const double bound_m = disks.bound_m(disk);
     if (cell == nearest_.size()) nearest_.push_back({bound_m, disk});
     Nearest& nearest = nearest_[cell];
-    const bool is_nearer = bound_m < nearest.bound_m;  // without a branch, as above
+    const bool is_nearer = bound_m < nearest.bound_m;  // without a branch: hard to foresee
     nearest.bound_m = is_nearer ? bound_m : nearest.bound_m;
     nearest.disk = is_nearer ? disk : nearest.disk;
   }
@@ -91,18 +80,18 @@ void ContactList::gather_deepest(double side) {
   chosen_.clear();
   for (const Nearest& nearest : nearest_) chosen_.push_back(nearest.disk);
   append_contacts(side);
-  chosen_.clear(), others_.clear();
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    const std::uint32_t disk = near_[k], cell = cells_[k];
+  chosen_.clear();
+  for (std::uint32_t disk = 0; disk < disks.size(); ++disk) {
+    const std::uint32_t cell = cells_[disk];
     const bool can_be_deeper = cell < nearest_.size() && disk != nearest_[cell].disk &&
                                -disks.bound_m(disk) > contacts_[cell].depth_m;
-    if (can_be_deeper) chosen_.push_back(disk), others_.push_back(static_cast<std::uint32_t>(k));
+    if (can_be_deeper) chosen_.push_back(disk);
   }
   append_contacts(side);
-  for (std::size_t i = 0; i < others_.size(); ++i) {
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
     const ToolContact& other = contacts_[nearest_.size() + i];
-    ToolContact& deepest = contacts_[cells_[others_[i]]];
-    const double bound_m = disks.bound_m(near_[others_[i]]);
+    ToolContact& deepest = contacts_[cells_[chosen_[i]]];
+    const double bound_m = disks.bound_m(chosen_[i]);
     if (-bound_m > deepest.depth_m && other.depth_m > deepest.depth_m) deepest = other;
   }
   contacts_.resize(nearest_.size());
@@ -112,20 +101,23 @@ NearContacts ContactList::near(const ToolPose& pose, double side) {
   const double reach_m = std::min(p_.look_ahead_m + max_near_disk_m_, kMaxReach_m);
   NearContacts found{{}, -std::numeric_limits<double>::infinity()};
   contacts_.clear();
-  if (p_.contact_rule == TouchRule::continuous)  // every point can stop a motion
-    disks_.query(finder_, kernels_, pose, reach_m);
-  else
-    disks_.query(finder_, kernels_, pose, reach_m, p_.look_ahead_m);
-  gather_near();
-  if (near_.size() > ContactThinning::kMaxCount) {
+  disks_.query(finder_, kernels_, pose, reach_m, p_.look_ahead_m);
+  if (disks_.size() > ContactThinning::kMaxCount) {
     gather_deepest(side);
   } else {
-    chosen_ = near_;
+    chosen_.resize(disks_.size());
+    std::iota(chosen_.begin(), chosen_.end(), 0u);
     append_contacts(side);
   }
   for (const ToolContact& contact : contacts_) found.deepest_m = std::max(found.deepest_m, contact.depth_m);
   found.contacts = thinned(contacts_);
   return found;
+}
+
+const NearPoints& ContactList::points_within(const ToolPose& pose, double reach_m) {
+  const double max_m = std::min(p_.look_ahead_m + max_disk_m_, kMaxReach_m);
+  points_.query(finder_, kernels_, pose, std::min(reach_m, max_m));
+  return points_;
 }
 
 VoxelContacts ContactList::in_voxels(const ToolPose& pose) {

@@ -9,6 +9,7 @@
 #include "core/tool/contact/disk_contact.h"
 #include "core/tool/contact/near_contacts.h"
 #include "core/tool/contact/near_disks.h"
+#include "core/tool/contact/near_points.h"
 #include "core/tool/contact/touch_finder.h"
 #include "core/tool/contact/touched_points.h"
 #include "core/tool/dynamics/motion_program.h"
@@ -33,9 +34,10 @@ class ContactList final : public NearContactSource {
   void on_frame(std::shared_ptr<const TiledCloud> cloud);  // allocates unless reserved
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
-  // Of the last call of near(): those that the look-ahead reaches; for TouchRule::continuous those of all
-  // points within reach of any disk.
-  const NearDisks& near_disks() const { return disks_; }
+  const NearDisks& near_disks() const { return disks_; }  // of the last call of near()
+  // All points whose field value is reach_m or less, none merged, but for some that are beyond the
+  // look-ahead. Valid until the next call.
+  const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
   // near_contact().
@@ -46,7 +48,6 @@ class ContactList final : public NearContactSource {
   Touched touched(const ToolPose& pose);
 
  private:
-  void gather_near();
   void append_contacts(double side);
   void gather_cells();
   void gather_deepest(double side);
@@ -56,18 +57,17 @@ class ContactList final : public NearContactSource {
   const Kernels& kernels_;
   TouchFinder finder_;
   NearDisks disks_;  // of the points, or of fewer that stand for all
+  NearPoints points_;
   TouchedPoints touched_;
   double max_disk_m_ = 0, max_near_disk_m_ = 0;
   ContactThinning thinning_;
   std::vector<ToolContact> contacts_, collisions_;
-  std::vector<std::uint32_t> near_;   // disks within the look-ahead
-  std::vector<std::uint32_t> cells_;  // of each of these
+  std::vector<std::uint32_t> cells_;  // of each near disk
   struct Nearest {
     double bound_m;
     std::uint32_t disk;
   };
   std::vector<Nearest> nearest_;       // of each cell, by their bounds
-  std::vector<std::uint32_t> others_;  // of near_, that can be deeper than the contact of the nearest
   std::vector<std::uint32_t> chosen_;  // disks
 };
 

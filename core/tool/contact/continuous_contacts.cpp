@@ -62,11 +62,9 @@ double ContinuousContacts::known_fraction(const Vector6& a_g) const {
 double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a_g) {
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
-  const NearDisks& points = points_->near_disks();
-  const double far_m = way_.far_m(motion, reach_m_);
+  const NearPoints& points = points_->points_within(pose, way_.far_m(motion, reach_m_));
   std::size_t first = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points.distance_m(i) > far_m) continue;
     const double fraction = way_.fraction(motion, points.p_T(i), points.distance_m(i));
     if (fraction < clear) clear = fraction, first = i;
   }
@@ -75,12 +73,13 @@ double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a
 }
 
 double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const {
+  const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
-  const NearDisks& points = points_->near_disks();
-  const double far_m = way_.far_m(motion, reach_m_);
+  const NearPoints& points = points_->points_within(pose, way_.far_m(motion, reach_m_));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points.distance_m(i) > far_m || !(side * points.disk(i).n_T.dot(motion.a_T) < 0)) continue;
+    const Vec3 n_T = R_TW * points_->finder().cloud().normal(points.number(i));
+    if (!(side * n_T.dot(motion.a_T) < 0)) continue;
     if (points.distance_m(i) < -ClearWay::kInside_m) return 0;
     clear = std::min(clear, way_.fraction(motion, points.p_T(i), points.distance_m(i)));
   }

@@ -13,46 +13,21 @@ constexpr double kClustersPer_m = 100;  // touching points within a centimetre a
 
 }  // namespace
 
-void TouchedPoints::on_frame() {
-  searched_m_ = -1;
-}
-
 void TouchedPoints::reserve(std::size_t padded_size) {
-  groups_.grow(padded_size / kLanes + 1), nearest_.grow(padded_size / kLanes + 1);
+  groups_.reserve(padded_size);
   clusters_.grow(padded_size + kLanes), unclear_.grow(padded_size);
-  searched_m_ = -1;
-}
-
-void TouchedPoints::search(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
-  searched_at_ = pose, searched_m_ = remote_touch::searched_m(reach_m, kSpare_m);
-  is_new_ = true;
-  const std::span<const std::uint32_t> found = finder.groups_within(finder.cloud(), pose, searched_m_);
-  group_count_ = found.size();
-  std::copy(found.begin(), found.end(), groups_.data());
-}
-
-// Groups without a point that a search for searched_m_ has to find.
-void TouchedPoints::drop_far_groups() {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < group_count_; ++i) {
-    groups_[kept] = groups_[i], nearest_[kept] = nearest_[i];
-    kept += nearest_[i] > searched_m_ ? 0 : 1;
-  }
-  group_count_ = kept;
 }
 
 Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
                              double reach_m, double voxels_m) {
-  if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
-  const TouchLimits limits{reach_m, voxels_m, touch_m_, finder.max_slope(),
-                           passed_m(reach_m, max_change_m(finder, searched_at_, pose))};
+  const GroupsInReach groups = groups_.within(finder, pose, reach_m);
+  const TouchLimits limits{reach_m, voxels_m, touch_m_, finder.max_slope(), groups.passed_m};
   TouchedSummary sum{};
   sum.cluster = clusters_.data(), sum.unclear = unclear_.data();
-  kernels.tool.touched_points(finder.cloud().columns(), groups_.data(), group_count_, disk_radius_ratio_,
+  kernels.tool.touched_points(finder.cloud().columns(), groups.group, groups.count, disk_radius_ratio_,
                               kClustersPer_m, posed_field(finder.tool(), pose), finder.voxels(), limits,
-                              nearest_.data(), is_new_, sum);
-  if (is_new_) drop_far_groups();
-  is_new_ = false;
+                              groups.nearest_m, groups.is_new, sum);
+  groups_.on_measured();
   Touched all;
   all.points = static_cast<int>(sum.points);
   all.nearest_distance_m = sum.nearest;

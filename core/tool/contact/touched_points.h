@@ -1,15 +1,14 @@
 // What a pose touches of a cloud, every point counted.
 //
-// Groups of points are kept from one pose to the next, as the points of NearDisks are. Most points are told
+// Groups of points are kept from one pose to the next, kept_groups.h. Most points are told
 // by the voxel that they lie in, or by how far away they are; the nearest place of a disk is searched where
 // nothing else tells.
 #pragma once
 
-#include <vector>
+#include <limits>
 
 #include "core/rendering/renderer.h"
-#include "core/tool/contact/column_block.h"
-#include "core/tool/contact/posed_field.h"
+#include "core/tool/contact/kept_groups.h"
 #include "core/tool/contact/touch_finder.h"
 
 namespace remote_touch {
@@ -24,14 +23,13 @@ struct Touched {
 class TouchedPoints {
  public:
   static constexpr double kTouch_m = 1e-4;  // a disk closer to the tool than this is touched
-  static constexpr double kSpare_m = 4e-4;  // what is searched beyond the reach
 
   // with_disks: the disks of points are touched as well, not only points in voxels.
   TouchedPoints(double disk_radius_ratio, bool with_disks)
       : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {}
 
-  void on_frame();                        // a new cloud of the finder; allocates unless reserved
-  void reserve(std::size_t padded_size);  // for clouds of that size
+  void on_frame() { groups_.on_frame(); }  // a new cloud of the finder, whose size is reserved
+  void reserve(std::size_t padded_size);   // for clouds of that size
   // Of the points whose field value is reach_m or less: those in shell and interior voxels, if they are
   // within voxels_m, and those whose disks are touched. pre: reach_m <= kFieldMargin_m - 2e-4.
   Touched query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
@@ -40,18 +38,13 @@ class TouchedPoints {
  private:
   static constexpr double kNever_m = -std::numeric_limits<double>::infinity();
 
-  void search(const TouchFinder& finder, const ToolPose& pose, double reach_m);
-  void drop_far_groups();
   void add_unclear(const TouchFinder& finder, const ToolPose& pose, const TouchLimits& limits, Touched& all);
 
   const double disk_radius_ratio_, touch_m_;
-  Buffer<std::uint32_t> groups_, unclear_;
-  Buffer<double> nearest_;  // of each group, where they were searched
+  KeptGroups groups_;
+  Buffer<std::uint32_t> unclear_;
   Buffer<std::uint64_t> clusters_;
-  std::size_t group_count_ = 0, cluster_count_ = 0, unclear_count_ = 0;
-  ToolPose searched_at_;
-  double searched_m_ = -1;
-  bool is_new_ = false;  // nothing was measured since the search
+  std::size_t cluster_count_ = 0, unclear_count_ = 0;
 };
 
 }  // namespace remote_touch

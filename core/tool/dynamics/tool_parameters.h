@@ -41,8 +41,7 @@ struct ToolParameters {
 };
 
 Parameters parameters(ToolParameters& p);
-// merged_disk_m under the rule that uses it, else 0: the certificate of the continuous rule is of points, and
-// points without disks would leave gaps.
+// merged_disk_m under the rules that use it, else 0; and 0 for points without disks, which would leave gaps.
 double used_merged_disk_m(const ToolParameters& p);
 // Describes the first invalid combination of settings in one line; empty if there is none.
 std::string validate(const ToolParameters& p);

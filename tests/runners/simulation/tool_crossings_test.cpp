@@ -99,6 +99,13 @@ TEST_P(ToolCrossings, ThereAreNoneBeyondTheShellByVoxels) {
   expect_none(GetParam(), "voxels", kVoxels_m);
 }
 
+// Where points are so dense that one disk stands for many, every point is asked whether it stops a motion.
+TEST(ToolCrossings, ThereAreNoneWherePointsAreMerged) {
+  const ToolAudit audit = audited("fig6.3", "continuous", kContinuous_m, {"scenario.spacing_m=0.0005"});
+  EXPECT_GT(audit.point_ticks, 10'000'000);
+  EXPECT_EQ(audit.entered, 0) << audit.deepest_m;
+}
+
 // What the printed rule does to a tool that comes from the back of a surface.
 TEST(ToolCrossings, FromTheBackAToolIsPulledThroughByVoxels) {
   EXPECT_EQ(audited("tool-sheet", "look-ahead", kLookAhead_m).entered, 0);

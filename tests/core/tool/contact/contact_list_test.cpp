@@ -128,16 +128,16 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
 }
 
 // A box over a dense flat surface, with one edge lower: the deepest contact is as far as that edge is,
-// whether few points stand for many (look-ahead) or each for itself (continuous), wherever the edge is.
+// whether few points stand for many or each for itself, wherever the edge is.
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
   constexpr double kGap_m = 1e-4;
   PointCloud cloud;
   for (int j = 0; j < 100; ++j)
     for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
   const auto points = formatted<TiledCloud>(cloud, ToolParameters{}.merged_disk_m);
-  for (const TouchRule rule : {TouchRule::look_ahead, TouchRule::continuous}) {
+  for (const double merged_disk_m : {0.0, ToolParameters{}.merged_disk_m}) {
     ToolParameters p;
-    p.contact_rule = rule;
+    p.merged_disk_m = merged_disk_m;
     ContactList list(kTool, p, scenes::kernels());
     list.on_frame(points);
     for (const double tilt_rad : {0.004, 0.01, 0.02, 0.04, 0.06})
@@ -148,7 +148,7 @@ TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
         EXPECT_NEAR(near.deepest_m, -kGap_m, 2e-5) << tilt_rad << " " << x_m;
         for (const ToolContact& contact : near.contacts) EXPECT_GT((pose.q_WT * contact.n_T).y(), -0.1);
       }
-    EXPECT_EQ(list.near_disks().size() > 500, rule == TouchRule::continuous);
+    EXPECT_EQ(list.near_disks().size() > 500, merged_disk_m == 0);
   }
 }
 
@@ -165,6 +165,26 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
     list.near(pose, 0);
     EXPECT_EQ(list.near_disks().size() > 500, merged_disk_m == 0);
   }
+}
+
+// What may stop a motion of the continuous rule is asked of every point, also where few stand for many.
+TEST(ContactList, PointsWithinReachAreNeverMerged) {
+  PointCloud cloud;
+  for (int j = 0; j < 100; ++j)
+    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  ToolParameters p;
+  p.contact_rule = TouchRule::continuous;
+  ContactList list(kTool, p, scenes::kernels());
+  list.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+  const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};
+  list.near(pose, 0);
+  EXPECT_LT(list.near_disks().size(), 500u);
+  constexpr double kReach_m = 2e-4;
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    expected += sample_field(*kTool, cloud.point(i) - pose.p_W).distance_m <= kReach_m ? 1 : 0;
+  EXPECT_GT(expected, 600u);
+  EXPECT_EQ(list.points_within(pose, kReach_m).size(), expected);
 }
 
 TEST(ContactList, BeforeAFrameNothingIsNear) {

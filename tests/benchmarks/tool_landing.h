@@ -1,0 +1,14 @@
+// Ticks after a frame whose points lie in the tool.
+#pragma once
+
+#include "core/tool/dynamics/tool_parameters.h"
+#include "tests/benchmarks/tool_scene.h"
+
+namespace remote_touch::benchmarks {
+
+// Under the name tool_landing/...: the surface comes up by 4 mm while the device presses the tool down, and goes
+// back, again and again. The counters are the time of the tick that takes the frame, and of the slowest of those
+// after it.
+void add_landing(const ToolScene& scene, const ToolParameters& parameters, const char* rule);
+
+}  // namespace remote_touch::benchmarks
