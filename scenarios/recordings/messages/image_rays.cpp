@@ -65,7 +65,7 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
   const auto& [K, P] = std::pair(info.K, info.P);
   const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
   const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
-  const auto sound = [](double f) { return f > 0 && f < 1e6; };
+  const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite
   if (!sound(fx) || !sound(fy) || !(std::abs(cx) < 1e6) || !(std::abs(cy) < 1e6))
     throw InputError(subject, std::string(rectified ? "P" : "K") + " has fx = " + std::to_string(fx) +
                                   ", fy = " + std::to_string(fy) + ", cx = " + std::to_string(cx) +

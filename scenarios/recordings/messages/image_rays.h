@@ -16,8 +16,8 @@ namespace remote_touch {
 // come in two pixels where the lens shrinks the image.
 class ImageRays {
  public:
-  // Throws InputError about the subject when the intrinsics are not finite or the focal lengths not above 0,
-  // or the lens is of another model. rectified: the image was undistorted before it was recorded, its
+  // Throws InputError about the subject when the intrinsics are not finite or the focal lengths not above
+  // 1e-6, or the lens is of another model. rectified: the image was undistorted before it was recorded, its
   // intrinsics are P.
   ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject);
 

@@ -229,8 +229,10 @@ TEST(Messages, RefuseWrongCameras) {
   const auto error = [](CameraInfoMessage camera) { return refusal([&] { ImageRays(camera, false, "m"); }); };
   EXPECT_HAS(error(info(0, 3, {})), "has 0 x 3 pixels");
   CameraInfoMessage camera = info(3, 2, {});
-  camera.K[0] = 0;
-  EXPECT_HAS(error(camera), "expected a calibrated camera");
+  for (const double f : {0.0, 1e-320, 1e-6}) {  // so short that rays would be infinite
+    camera.K[0] = f;
+    EXPECT_HAS(error(camera), "expected a calibrated camera");
+  }
   camera = info(3, 2, {});
   camera.K[5] = std::nan("");
   EXPECT_HAS(error(camera), "expected a calibrated camera");
