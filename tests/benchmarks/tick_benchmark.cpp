@@ -1,7 +1,9 @@
 // Whole ticks of the renderer.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "core/kernels/isa.h"
 #include "core/proxy/proxy_renderer.h"
@@ -22,9 +24,34 @@ bool ticks_agree(const Slide& slide, const Kernels& kernels) {
   return true;
 }
 
-void time_ticks(benchmark::State& state, const Slide& slide, const Kernels& kernels) {
+ProxyParameters stepping(double gamma, int steps_per_tick) {
+  ProxyParameters p = kSettings;
+  p.gamma = gamma, p.steps_per_tick = steps_per_tick;
+  return p;
+}
+
+// Where the proxy rests after a slide of 20 mm.
+Vec3 rest_of(const Slide& slide, const ProxyParameters& parameters, const Kernels& kernels) {
+  constexpr int kSlideTicks = 200, kRestTicks = 40;
+  ProxyRenderer renderer(parameters, kTickRate_hz, kernels);
+  renderer.on_frame({0, 0, 0, slide.search});
+  renderer.step({slide.above}, 0);
+  RenderOutput out;
+  for (int tick = 0; tick < kSlideTicks + kRestTicks; ++tick)
+    out = renderer.step({hip_at(slide, std::min(tick, kSlideTicks) / kTickRate_hz)}, 0);
+  return out.proxy_W;
+}
+
+// As far as the contact region is thick, the rest may depend on the way to it.
+bool rests_agree(const Slide& slide, const ProxyParameters& parameters, const Kernels& kernels) {
+  const Vec3 limit_W = rest_of(slide, stepping(kSettings.gamma, 1000), kernels);
+  return (rest_of(slide, parameters, kernels) - limit_W).norm() < parameters.r2_m - parameters.r1_m;
+}
+
+void time_ticks(benchmark::State& state, const Slide& slide, const ProxyParameters& parameters,
+                const Kernels& kernels) {
   constexpr int kTicksOneWay = 500;
-  ProxyRenderer renderer(kSettings, kTickRate_hz, kernels);
+  ProxyRenderer renderer(parameters, kTickRate_hz, kernels);
   renderer.on_frame({0, 0, 0, slide.search});
   renderer.step({slide.above}, 0);
   for (int i = 0; i < 10; ++i) renderer.step({slide.start}, 0);  // down to the surface
@@ -46,10 +73,16 @@ void time_ticks(benchmark::State& state, const Slide& slide, const Kernels& kern
 }  // namespace
 
 void add_ticks(const Slide& slide) {
-  for (const Kernels* kernels : supported_kernels())
+  for (const Kernels* kernels : supported_kernels()) {
     add(
         "tick/" + slide.name + "/" + kernels->isa, [&slide, kernels] { return ticks_agree(slide, *kernels); },
-        [&slide, kernels](benchmark::State& state) { time_ticks(state, slide, *kernels); });
+        [&slide, kernels](benchmark::State& state) { time_ticks(state, slide, kSettings, *kernels); });
+    for (const ProxyParameters& fewer : {stepping(0.3, 10), stepping(0.5, 8)})
+      add(
+          "tick_of_" + std::to_string(fewer.steps_per_tick) + "_steps/" + slide.name + "/" + kernels->isa,
+          [&slide, fewer, kernels] { return rests_agree(slide, fewer, *kernels); },
+          [&slide, fewer, kernels](benchmark::State& state) { time_ticks(state, slide, fewer, *kernels); });
+  }
 }
 
 }  // namespace remote_touch::benchmarks
