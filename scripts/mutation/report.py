@@ -17,16 +17,15 @@ def fraction(successes, trials):
     return f"{successes} of {trials} = {successes / max(trials, 1):.3f} [{low:.3f}, {high:.3f}]"
 
 
-def summary(results, equivalent):
-    """results: {key: {"found": stage, ...}}; equivalent: {key: reason}. Lines of text."""
-    counted = {key: result for key, result in results.items() if key not in equivalent}
-    without_bits = sum(r["found"] in ("unit", "program") for r in counted.values())
-    by_all = sum(r["found"] in ("unit", "program", "bits") for r in counted.values())
-    yield f"mutations tried: {len(results)}, of these equivalent with a reason: {len(results) - len(counted)}"
+def summary(stages, equivalent):
+    """stages: what found each mutation that was tried; equivalent: how many were not tried. Lines of text."""
+    without_bits = sum(stage in ("unit", "program") for stage in stages)
+    by_all = without_bits + stages.count("bits")
+    yield f"mutations tried: {len(stages)}; not tried, as they are listed with a reason: {equivalent}"
     for stage in ("unit", "program", "bits", "survived", "unreached"):
-        yield f"  {stage:<10} {sum(r['found'] == stage for r in counted.values())}"
-    yield f"found without stored results: {fraction(without_bits, len(counted))}"
-    yield f"found by all tests:           {fraction(by_all, len(counted))}"
+        yield f"  {stage:<10} {stages.count(stage)}"
+    yield f"found without stored results: {fraction(without_bits, len(stages))}"
+    yield f"found by all tests:           {fraction(by_all, len(stages))}"
 
 
 def line(key, mutation):

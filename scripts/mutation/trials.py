@@ -136,15 +136,13 @@ def batches(tests, mutation_file):
             yield group[0].command, seconds, group[0].name
 
 
-def try_mutation(machine, number, file, tests):
-    """(stage, name of what found it), or ("survived", "") or ("unreached", "")."""
-    reaching = [test for test in tests if number in test.reached]
+def try_mutation(machine, number, file, tests, stage):
+    """The name of what finds it in this stage, or ""."""
+    of_stage = [test for test in tests if test.stage == stage and number in test.reached]
     try:
-        for stage in STAGES:
-            of_stage = [test for test in reaching if test.stage == stage]
-            for command, seconds, name in batches(of_stage, file):
-                if not machine.run(command, seconds, mutation=number):
-                    return stage, name
+        for command, seconds, name in batches(of_stage, file):
+            if not machine.run(command, seconds, mutation=number):
+                return name
     finally:
         machine.forget(number)
-    return ("survived" if reaching else "unreached"), ""
+    return ""
