@@ -23,6 +23,8 @@ struct DepthPipelineSettings {
   double normal_radius_m = 0.014;
   int normal_step = 1;
   NormalFit normal_fit = NormalFit::total_least_squares;
+
+  bool operator==(const DepthPipelineSettings&) const = default;
 };
 
 // The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of

@@ -1,9 +1,9 @@
 #include "runners/opencl/device_frames.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/kernels/depth_kernels.h"
-#include "runners/opencl/kernel_source.h"
 
 namespace remote_touch {
 
@@ -23,52 +23,21 @@ std::vector<float> narrow(const std::vector<double>& wide) {
   return {wide.begin(), wide.end()};
 }
 
-std::string options(const OpenClDevice& device, const DepthPipelineSettings& settings) {
-  std::string text = "-cl-std=CL1.2 -D FILTER_HALF=" + std::to_string(settings.filter_window / 2) +
-                     " -D NORMAL_HALF=" + std::to_string(settings.normal_window / 2);
-  text += device.rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : " -D DIVIDE_IN_DOUBLE";
-  return text;
-}
-
 }  // namespace
 
-DeviceFrames::DeviceFrames(const OpenClLibrary& library, const OpenClDevice& device,
-                           const DepthPipelineSettings& settings)
-    : cl_(library), settings_(settings) {
+DeviceFrames::DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings)
+    : kernels_(std::move(kernels)), cl_(kernels_->library()), settings_(settings) {
   cl_int code = CL_SUCCESS;
-  context_ = {cl_.CreateContext(nullptr, 1, &device.id, nullptr, nullptr, &code), cl_.ReleaseContext};
-  require(code, "clCreateContext");
-  queue_ = {cl_.CreateCommandQueue(context_.get(), device.id, 0, &code), cl_.ReleaseCommandQueue};
+  queue_ = {cl_.CreateCommandQueue(kernels_->context(), kernels_->device(), 0, &code),
+            cl_.ReleaseCommandQueue};
   require(code, "clCreateCommandQueue");
-  build(device);
-  to_plane_ = kernel("depths_to_plane"), filter_ = kernel("filter_depths");
-  normals_of_ = kernel("plane_normals"), place_ = kernel("place_points");
-}
-
-void DeviceFrames::build(const OpenClDevice& device) {
-  cl_int code = CL_SUCCESS;
-  const char* source = kDepthKernelSource;
-  program_ = {cl_.CreateProgramWithSource(context_.get(), 1, &source, nullptr, &code), cl_.ReleaseProgram};
-  require(code, "clCreateProgramWithSource");
-  code =
-      cl_.BuildProgram(program_.get(), 1, &device.id, options(device, settings_).c_str(), nullptr, nullptr);
-  if (code != CL_BUILD_PROGRAM_FAILURE) return require(code, "clBuildProgram");
-  std::string log(4096, '\0');
-  std::size_t bytes = 0;
-  cl_.GetProgramBuildInfo(program_.get(), device.id, CL_PROGRAM_BUILD_LOG, log.size(), log.data(), &bytes);
-  throw OpenClError("clBuildProgram: " + log.substr(0, log.find_first_of(std::string("\n\0", 2))));
-}
-
-DeviceFrames::Kernel DeviceFrames::kernel(const char* name) const {
-  cl_int code = CL_SUCCESS;
-  Kernel made{cl_.CreateKernel(program_.get(), name, &code), cl_.ReleaseKernel};
-  require(code, "clCreateKernel");
-  return made;
+  to_plane_ = kernels_->kernel("depths_to_plane"), filter_ = kernels_->kernel("filter_depths");
+  normals_of_ = kernels_->kernel("plane_normals"), place_ = kernels_->kernel("place_points");
 }
 
 DeviceFrames::Buffer DeviceFrames::buffer(std::size_t bytes) const {
   cl_int code = CL_SUCCESS;
-  Buffer made{cl_.CreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code),
+  Buffer made{cl_.CreateBuffer(kernels_->context(), CL_MEM_READ_WRITE, bytes, nullptr, &code),
               cl_.ReleaseMemObject};
   require(code, "clCreateBuffer");
   return made;

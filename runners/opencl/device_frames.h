@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/depth/depth_processor.h"
-#include "runners/opencl/opencl_devices.h"
+#include "runners/opencl/built_kernels.h"
 
 namespace remote_touch {
 
@@ -22,18 +22,15 @@ struct DeviceFrame {
 
 class DeviceFrames {
  public:
-  // Builds the kernels, which may take seconds. Throws OpenClError.
-  DeviceFrames(const OpenClLibrary& library, const OpenClDevice& device,
-               const DepthPipelineSettings& settings);
+  // With kernels that were built for these settings. Throws OpenClError.
+  DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings);
   // The same bits as DepthPipeline's. Throws OpenClError; after that it is of no use.
   void run(DeviceFrame& frame);
 
  private:
   using Buffer = OpenClObject<cl_mem>;
-  using Kernel = OpenClObject<cl_kernel>;
+  using Kernel = BuiltKernels::Kernel;
 
-  void build(const OpenClDevice& device);
-  Kernel kernel(const char* name) const;
   Buffer buffer(std::size_t bytes) const;
   void resize(const CameraIntrinsics& camera);
   template <class Value>
@@ -43,11 +40,10 @@ class DeviceFrames {
   void start(const Kernel& kernel, const Arguments&... arguments);
   void download(const Buffer& from, int column, std::vector<double>& to);
 
+  const std::shared_ptr<const BuiltKernels> kernels_;
   const OpenClLibrary& cl_;
   const DepthPipelineSettings settings_;
-  OpenClObject<cl_context> context_;
   OpenClObject<cl_command_queue> queue_;
-  OpenClObject<cl_program> program_;
   Kernel to_plane_, filter_, normals_of_, place_;
   int width_ = 0, height_ = 0;
   std::size_t stride_ = 0;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "runners/opencl/device_frames.h"
+#include "runners/opencl/device_trial.h"
 
 namespace remote_touch {
 
@@ -21,9 +22,9 @@ void exchanged(DeviceFrame& frame, PointCloud& cloud, const Visit& visit) {
 }  // namespace
 
 DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings,
-                               const Kernels& kernels, DepthReport report)
+                               const Kernels& kernels, std::function<void(const std::string&)> report)
     : DepthProcessor(settings),
-      name_(device.address() + " (" + device.name + ")"),
+      device_(device),
       report_(std::move(report)),
       cpu_(settings, kernels),
       frame_(std::make_shared<DeviceFrame>()),
@@ -36,11 +37,12 @@ DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSe
   const auto opened = std::make_shared<Opened>();
   const bool in_time = thread_->run(
       [opened, device, settings] {
-        opened->frames = std::make_shared<DeviceFrames>(opencl_library(), device, settings);
+        opened->frames =
+            std::make_shared<DeviceFrames>(built_kernels(opencl_library(), device, settings), settings);
         opened->frames->run(opened->first);
       },
       kBuildLimit);
-  if (!in_time) throw OpenClError("the kernels were not ready in 120 s");
+  if (!in_time) throw OpenClTimeout("the kernels were not ready in 120 s");
   frames_ = opened->frames;
 }
 
@@ -52,26 +54,36 @@ bool DevicePipeline::on_device(const DepthFrame& frame, PointCloud& cloud) {
   frame_->depth_m.assign(frame.depth_m, frame.depth_m + frame.pixels());
   frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;
   for (int i = 0; i < 12; ++i) frame_->X_WC[i] = frame.X_WC.matrix()(i / 4, i % 4);
+  bool in_time = false;
   try {
-    if (!thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, kFrameLimit)) {
-      give_up("no answer within 2 s");
-      return false;
-    }
+    in_time = thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, kFrameLimit);
   } catch (const std::exception& error) {
     give_up(error.what());
+    return false;
+  }
+  if (!in_time) {
+    give_up("no answer within 2 s");
     return false;
   }
   exchanged(*frame_, cloud, [](Column& made, Column& old) { made.swap(old); });
   return true;
 }
 
-// What the hanging thread still uses is its own.
+// What the hanging thread still uses is its own. To release objects of a device that failed may hang too: a
+// thread of its own does it, and nobody waits for it.
 void DevicePipeline::give_up(const std::string& why) {
+  forget_trials(device_);
+  const auto last = std::make_shared<std::shared_ptr<DeviceFrames>>(std::move(frames_));
+  DeadlineThread().run(
+      [last, id = device_.id] {
+        forget_kernels(id);
+        last->reset();
+      },
+      std::chrono::milliseconds(0));
   frames_.reset(), frame_.reset(), thread_.reset();
   if (report_)
-    report_("depth_pipeline.device = " + name_ + " failed: " + why +
-            "; the CPU processes this frame and all "
-            "later ones");
+    report_("depth_pipeline.device = " + device_.full_name() + " failed: " + why +
+            "; the CPU processes this frame and all later ones");
 }
 
 }  // namespace remote_touch

@@ -18,6 +18,11 @@ class OpenClError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+// A driver did not answer within a limit.
+class OpenClTimeout : public OpenClError {
+ public:
+  using OpenClError::OpenClError;
+};
 
 // Each is null until the constructor found it, and is named as in the library.
 #define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \

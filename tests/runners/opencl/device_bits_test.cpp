@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "core/parameters/input_error.h"
-#include "runners/opencl/depth_device.h"
+#include "runners/opencl/device_pipeline.h"
 #include "runners/opencl/opencl_devices.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/core/depth/depth_cases.h"

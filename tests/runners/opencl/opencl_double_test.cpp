@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "core/parameters/input_error.h"
+#include "runners/opencl/built_kernels.h"
 #include "runners/opencl/depth_device.h"
+#include "runners/opencl/device_pipeline.h"
 #include "runners/opencl/opencl_devices.h"
 #include "tests/core/depth/depth_cases.h"
 #include "tests/doubles/opencl_double.h"
@@ -31,7 +33,13 @@ class OpenClDoubleTest : public testing::Test {
  protected:
   void SetUp() override {
     setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
+    begin_anew();
+  }
+  // As in a new process.
+  static void begin_anew() {
     library().reset();
+    for (const OpenClDevice& device : opencl_devices(opencl_library()))
+      forget_trials(device), forget_kernels(device.id);
   }
   std::unique_ptr<DevicePipeline> opened() {
     return std::make_unique<DevicePipeline>(opencl_devices(opencl_library()).at(0), Settings{}, best(),
@@ -83,7 +91,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
         "clEnqueueNDRangeKernel", "clEnqueueReadBufferRect", "clFinish"})
     for (const int call : {1, 3}) {
       SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
-      library().reset(), told_.clear();
+      begin_anew(), told_.clear();
       const auto pipeline = opened();
       library().failing = function, library().failing_call = call, library().code = CL_OUT_OF_RESOURCES;
       for (int frame = 0; frame < 4; ++frame) EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
@@ -114,16 +122,81 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_EQ(library().objects, 0);  // its thread tidies up when the driver lets it go
 }
 
+// A sweep of short runs: the second run finds what the first one built and tried.
+TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
+  library().failing = "clBuildProgram", library().failing_call = 1000;
+  DepthDeviceSettings settings;
+  settings.device = "opencl", settings.filter_window = 5;
+  const auto first = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 1);
+  library().failing = "clEnqueueNDRangeKernel", library().calls = 0;
+  const auto second = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 4);  // those of the small first frame, and no trial
+  EXPECT_TRUE(same_bits(processed_by(*first), processed(scene_, settings, some_pose())));
+  EXPECT_TRUE(same_bits(processed_by(*second), processed(scene_, settings, some_pose())));
+  library().failing = "clBuildProgram", library().calls = 0;
+  settings.filter_window = 7;
+  make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 1);  // another window, other kernels
+}
+
+// What was built for a device that was lost is of no use when it is there again.
+TEST_F(OpenClDoubleTest, AfterAFailureKernelsAreBuiltAndTriedAnew) {
+  const auto pipeline = opened();
+  library().failing = "clFinish", library().failing_call = 1;
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  for (int i = 0; i < 2000 && library().objects > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(library().objects, 0);
+  library().failing = "clBuildProgram", library().failing_call = 1000, library().calls = 0;
+  EXPECT_TRUE(same_bits(processed_by(*opened()), expected_));
+  EXPECT_EQ(library().calls, 1);
+}
+
+TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
+  DepthDeviceSettings settings;
+  EXPECT_EQ(depth_device_of(settings), "");
+  settings.device = "opencl", settings.sigma_f_m = 0.02;
+  EXPECT_EQ(depth_device_of(settings), "");
+  const auto processor = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(depth_device_of(settings), "opencl:0:0 (double, double)");
+  library().failing = "clFinish", library().failing_call = 1;
+  processed_by(*processor);
+  EXPECT_EQ(depth_device_of(settings), "opencl:0:0 (double, double), which failed: then the CPU");
+  settings.sigma_f_m = 0.03;
+  EXPECT_EQ(depth_device_of(settings), "");  // of other settings
+}
+
+TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
+  library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
+  EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(listed_devices(), OpenClTimeout);  // at once, while they still hang
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
+  EXPECT_TRUE(refusal("auto").empty());
+  library().let_go = true;
+  std::vector<OpenClDevice> again;
+  for (int i = 0; i < 2000 && again.empty(); ++i) try {
+      library().failing.clear();
+      again = listed_devices();
+    } catch (const OpenClTimeout&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  EXPECT_EQ(again.size(), 1u);
+}
+
 TEST_F(OpenClDoubleTest, ADeviceThatCannotBeOpenedIsRefusedWithTheReason) {
   for (const char* function : {"clGetPlatformIDs", "clGetPlatformInfo", "clGetDeviceIDs", "clGetDeviceInfo",
                                "clCreateContext", "clCreateCommandQueue", "clCreateProgramWithSource",
                                "clBuildProgram", "clCreateKernel", "clFinish"}) {
-    library().reset();
+    begin_anew();
     library().failing = function, library().failing_call = 1;
     EXPECT_NE(refusal("opencl").find(std::string(function) + ": CL_OUT_OF_RESOURCES"), std::string::npos)
         << refusal("opencl");
     EXPECT_TRUE(refusal("auto").empty());  // then the CPU does it
   }
+  begin_anew();
   library().failing = "clBuildProgram", library().code = CL_BUILD_PROGRAM_FAILURE;
   EXPECT_NE(refusal("opencl").find("clBuildProgram: error: of the double"), std::string::npos);
 }
@@ -149,7 +222,7 @@ TEST_F(OpenClDoubleTest, ADeviceWithOtherBitsIsRefusedUnlessItIsAllowed) {
             std::string::npos)
       << refusal("opencl:0:0");
   EXPECT_TRUE(refusal("opencl:0:0", false).empty());
-  library().reset();
+  begin_anew();
   library().is_wrong = true;
   const std::string told = refusal("opencl");
   EXPECT_NE(told.find("gave other bits than the CPU in a trial frame"), std::string::npos) << told;
