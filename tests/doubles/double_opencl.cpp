@@ -264,6 +264,7 @@ cl_int clEnqueueReadBufferRect(cl_command_queue, cl_mem from, cl_bool, const siz
 cl_int clEnqueueNDRangeKernel(cl_command_queue, cl_kernel kernel, cl_uint, const size_t*, const size_t* all,
                               const size_t*, cl_uint, const cl_event*, cl_event*) {
   if (fails("clEnqueueNDRangeKernel")) return settings.code;
+  ++settings.kernel_runs;
   sizes[0] = all[0], sizes[1] = all[1];
   for (ids[1] = 0; ids[1] < all[1]; ++ids[1])
     for (ids[0] = 0; ids[0] < all[0]; ++ids[0]) run_item(thing(kernel));

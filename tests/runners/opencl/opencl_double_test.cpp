@@ -1,6 +1,5 @@
 // A device that fails, hangs or computes other bits, with a test double of the OpenCL library. A program of
 // its own: a library is loaded once for a process.
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -21,11 +20,7 @@ namespace {
 using namespace depth_cases;
 
 OpenClDouble& library() {
-  static OpenClDouble& one = *[] {
-    void* const loaded = dlopen(REMOTE_TOUCH_DOUBLE_OPENCL, RTLD_NOW | RTLD_LOCAL);
-    EXPECT_NE(loaded, nullptr) << dlerror();
-    return reinterpret_cast<OpenClDouble* (*)()>(dlsym(loaded, "opencl_double"))();
-  }();
+  static OpenClDouble& one = loaded_opencl_double(REMOTE_TOUCH_DOUBLE_OPENCL);
   return one;
 }
 
@@ -86,9 +81,9 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
 
 // Each function that a frame calls, from its first and from a later call of the frame on.
 TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
-  for (const char* function :
-       {"clCreateBuffer", "clEnqueueWriteBuffer", "clEnqueueWriteBufferRect", "clSetKernelArg",
-        "clEnqueueNDRangeKernel", "clEnqueueReadBufferRect", "clFinish"})
+  std::vector<const char*> functions(std::begin(kFrameFunctions), std::end(kFrameFunctions));
+  functions.push_back("clCreateBuffer");  // of a frame of another size than the one before
+  for (const char* function : functions)
     for (const int call : {1, 3}) {
       SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
       begin_anew(), told_.clear();
