@@ -29,10 +29,17 @@ class DevicePipeline final : public DepthProcessor {
   // takes longer than kFrameLimit, is processed on the CPU, and so is every frame after it.
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
 
+  // True unless the device has failed, before or in this frame, or columns of fixtures cannot be filled: the
+  // cloud has some already, or no colours. A sensor's image is processed only if it is filtered.
+  bool process_all(PointCloud& cloud, const HueSteps& steps) override;
+  bool process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) override;
+
   bool uses_device() const { return frames_ != nullptr; }
 
  private:
-  bool on_device(const DepthFrame& frame, PointCloud& cloud);
+  bool process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud);
+  void start(const DepthFrame& frame, const HueSteps* steps, const std::vector<std::uint32_t>& colour);
+  bool on_device();
   void give_up(const std::string& why);
 
   const OpenClDevice device_;

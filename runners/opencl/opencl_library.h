@@ -30,8 +30,8 @@ class OpenClTimeout : public OpenClError {
       each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
           each(BuildProgram) each(GetProgramBuildInfo) each(ReleaseProgram) each(CreateKernel)              \
               each(SetKernelArg) each(ReleaseKernel) each(CreateBuffer) each(ReleaseMemObject)              \
-                  each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueReadBufferRect)         \
-                      each(EnqueueNDRangeKernel) each(Finish)
+                  each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueMapBuffer)              \
+                      each(EnqueueUnmapMemObject) each(EnqueueNDRangeKernel) each(Finish)
 
 class OpenClLibrary {
  public:

@@ -10,10 +10,11 @@
 
 namespace remote_touch {
 
-// What every frame calls; buffers are made for the first one of a size only.
-inline constexpr const char* kFrameFunctions[] = {"clEnqueueWriteBuffer",    "clEnqueueWriteBufferRect",
-                                                  "clSetKernelArg",          "clEnqueueNDRangeKernel",
-                                                  "clEnqueueReadBufferRect", "clFinish"};
+// What every frame calls. Buffers are made for the first one of a size only, and a rectangle is written where
+// depths are no integers.
+inline constexpr const char* kFrameFunctions[] = {"clEnqueueWriteBuffer",    "clSetKernelArg",
+                                                  "clEnqueueNDRangeKernel",  "clEnqueueMapBuffer",
+                                                  "clEnqueueUnmapMemObject", "clFinish"};
 
 struct OpenClDouble {
   // The function that fails from the given call on, 1 for its first, counted from reset(); empty: none.

@@ -9,6 +9,7 @@
 #include "runners/opencl/opencl_devices.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/core/depth/depth_cases.h"
+#include "tests/runners/opencl/coloured_frames.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::device_bits_test {
@@ -37,6 +38,7 @@ class DeviceBits : public testing::Test {
       PointCloud a = cloud_from_depth(scene.depth, scene.camera, X_WC), b = a;
       on_device.process(a), on_cpu.process(b);
       EXPECT_TRUE(same_bits(a, b));
+      EXPECT_EQ(coloured_frames::differs(on_device, settings, scene, X_WC), "");
       EXPECT_TRUE(on_device.uses_device());
     }
   }

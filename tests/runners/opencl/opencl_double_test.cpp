@@ -13,6 +13,7 @@
 #include "runners/opencl/opencl_devices.h"
 #include "tests/core/depth/depth_cases.h"
 #include "tests/doubles/opencl_double.h"
+#include "tests/runners/opencl/coloured_frames.h"
 
 namespace remote_touch::opencl_double_test {
 namespace {
@@ -75,6 +76,7 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
       DevicePipeline pipeline(opencl_devices(opencl_library()).at(0), settings, best(), nullptr);
       EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, some_pose()),
                             processed(scene, settings, some_pose())));
+      EXPECT_EQ(coloured_frames::differs(pipeline, settings, scene, some_pose()), "");
       EXPECT_TRUE(pipeline.uses_device());
     }
 }
@@ -82,7 +84,7 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
 // Each function that a frame calls, from its first and from a later call of the frame on.
 TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
   std::vector<const char*> functions(std::begin(kFrameFunctions), std::end(kFrameFunctions));
-  functions.push_back("clCreateBuffer");  // of a frame of another size than the one before
+  functions.insert(functions.end(), {"clCreateBuffer", "clEnqueueWriteBufferRect"});
   for (const char* function : functions)
     for (const int call : {1, 3}) {
       SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
@@ -96,6 +98,30 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
           << told_[0];
       EXPECT_NE(told_[0].find("the CPU processes this frame and all later ones"), std::string::npos);
     }
+}
+
+TEST_F(OpenClDoubleTest, WhatCannotBeDoneAtOnceIsLeftAsItWas) {
+  const auto pipeline = opened();
+  const FixtureAssignment fixtures = coloured_frames::rules_by_hue();
+  const HueSteps steps = fixtures.hue_steps(0, 0).value();
+  const PointCloud measured = cloud_from_depth(scene_.depth, scene_.camera, some_pose());
+  const auto expect_left = [&](PointCloud cloud) {
+    const PointCloud before = cloud;
+    EXPECT_FALSE(pipeline->process_all(cloud, steps));
+    EXPECT_TRUE(coloured_frames::same_columns(cloud, before));
+  };
+  expect_left(measured);  // no colours
+  PointCloud coloured = measured;
+  coloured.colour = coloured_frames::colours(measured.size());
+  PointCloud with_radius = coloured, with_stiffness = coloured;
+  with_radius.fixture_radius_m.assign(measured.size(), 0.01);
+  with_stiffness.stiffness_N_per_m.assign(measured.size(), 100);
+  expect_left(with_radius), expect_left(with_stiffness);
+  EXPECT_TRUE(pipeline->uses_device());
+  library().failing = "clEnqueueMapBuffer", library().failing_call = 1;
+  expect_left(coloured);
+  EXPECT_EQ(told_.size(), 1u);
+  expect_left(coloured);
 }
 
 TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
