@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
@@ -43,8 +45,6 @@ class DepthDeviceLoss : public testing::Test {
     setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
     library().reset();
   }
-  void TearDown() override { library().let_go = true; }
-
   // One second on a simulated clock; fail() happens in the middle.
   LiveResult run(
       const std::string& device, const std::function<void()>& fail = [] {}) {
@@ -146,6 +146,10 @@ TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   EXPECT_EQ(takeovers, 1);
   EXPECT_LT(result.log.interval_s.greatest(), options.stall_s);
   EXPECT_EQ(result.counts.stalls, 0);
+  library().let_go = true;
+  for (int i = 0; i < 2000 && library().objects > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(library().objects, 0);
 }
 
 }  // namespace
