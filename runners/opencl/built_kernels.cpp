@@ -18,10 +18,12 @@ std::string options(const OpenClDevice& device, const DepthPipelineSettings& set
   return text;
 }
 
-// Not locked while something is built or released: a driver that hangs holds up its own thread only.
+// `mutex` is not locked while something is built or released. Kernels are built one after another, by whoever
+// has a deadline: compilers in drivers are not all safe in two threads, and the second one may find what it
+// needs.
 struct Cache {
   using Key = std::pair<cl_device_id, std::string>;
-  std::mutex mutex;
+  std::mutex mutex, one_at_a_time;
   std::map<Key, std::shared_ptr<const BuiltKernels>> built;
 };
 
@@ -64,6 +66,7 @@ std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, 
                                                   const DepthPipelineSettings& settings) {
   Cache& all = cache();
   const Cache::Key key{device.id, options(device, settings)};
+  const std::lock_guard alone(all.one_at_a_time);
   {
     const std::lock_guard lock(all.mutex);
     if (const auto known = all.built.find(key); known != all.built.end()) return known->second;

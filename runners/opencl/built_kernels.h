@@ -31,7 +31,7 @@ class BuiltKernels {
   OpenClObject<cl_program> program_;
 };
 
-// Built now, unless they are there. Two threads at once may both build them. Throws OpenClError.
+// Built now, unless they are there, after those that other threads build. Throws OpenClError.
 std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, const OpenClDevice& device,
                                                   const DepthPipelineSettings& settings);
 // Those of a device that failed are built again by who asks next.

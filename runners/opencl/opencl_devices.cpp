@@ -97,6 +97,9 @@ std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
   };
   static std::mutex mutex;
   static std::shared_ptr<const Listing> late;  // the last one that was given up
+  // Loaders and drivers begin at the first call, not all of them safely in two threads. Never freed: a driver
+  // that hangs may hold it when the process ends.
+  static std::mutex& one_at_a_time = *new std::mutex;
   const OpenClTimeout no_answer("its drivers did not list their devices in " +
                                 std::to_string(kListLimit.count() / 1000) + " s");
   {
@@ -107,6 +110,7 @@ std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
   DeadlineThread thread;
   const bool in_time = thread.run(
       [listing] {
+        const std::lock_guard alone(one_at_a_time);
         const std::shared_ptr<void> at_end(nullptr, [&](void*) { listing->is_over = true; });
         listing->devices = opencl_devices(opencl_library());
       },
