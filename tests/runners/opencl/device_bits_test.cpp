@@ -80,6 +80,12 @@ TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
   expect_same(settings, with_holes(83, 37), some_pose());
 }
 
+// As on a device whose single divisions and roots are not rounded correctly.
+TEST_F(DeviceBits, AreThoseOfTheCpuWithDivisionsInDouble) {
+  for (OpenClDevice& device : devices_) device.rounds_division = false;
+  expect_same({}, with_holes(161, 121), some_pose());
+}
+
 TEST_F(DeviceBits, AreThoseOfTheCpuOnRecordedFrames) {
   for (const char* name : {"visp_organ_table", "sr305_hand_flex", "pcd_single/mosd_boxes_learn3.pcd"}) {
     const std::filesystem::path path = data_root() / "rgbd" / name;
