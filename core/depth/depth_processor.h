@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct RawDepth {
   double metres_per_unit;
   CameraIntrinsics camera;
   RigidTransform X_WC;
+  std::span<const std::uint32_t> colour = {};  // of each pixel, 0xRRGGBB; empty: none
 };
 
 // Reuses its memory: after the first frame of a size nothing is allocated, if the caller passes the same
@@ -76,8 +78,8 @@ class DepthProcessor {
   // cloud is as it was. steps: fill the columns of r_f and k_s by the cloud's colours.
   // process(cloud), and the steps.
   virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
-  // The same from a sensor's image: cloud_from_depth(), process(cloud), and the steps unless they are null.
-  // The cloud has at most colours before.
+  // A sensor's image becomes a cloud with its colours: cloud_from_depth(), process(cloud), and the steps
+  // unless they are null.
   virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
     return false;
   }

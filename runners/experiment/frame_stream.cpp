@@ -47,9 +47,8 @@ void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const Sensor
   if (depth && !view.cloud) {
     const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
     PointCloud cloud;
-    cloud.colour = sensed.colour;
-    if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC}, cloud,
-                           steps ? &*steps : nullptr))
+    if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC, sensed.colour},
+                           cloud, steps ? &*steps : nullptr))
       return finish(frame, std::move(cloud), off, steps.has_value());
   }
   fill(frame, cloud_of(sensed, view, X_WC), off);

@@ -1,12 +1,14 @@
 // The depth pipeline of core/depth in OpenCL C 1.2: the operations of core/kernels/depth_rows.cpp,
-// depth_filter.cpp and plane_normals.cpp, and of the hues of core/virtual_fixtures, for each pixel, in the same
-// order, so that the bits are the same. Who changes one changes the other; tests/runners/opencl compares them.
+// depth_filter.cpp and plane_normals.cpp, and of the hues of core/virtual_fixtures, for each pixel, in the
+// same order, so that the bits are the same. Who changes one changes the other; tests/runners/opencl compares
+// them.
 //
-// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes. What
-// is uploaded in integers, and the columns of the cloud, have rows of the camera's `width`. The columns lie one
-// after another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as well. Only of the depths there are planes: the point
-// is z (ray_x, ray_y, 1). Built with FILTER_HALF and NORMAL_HALF, half the windows' widths; with
-// DIVIDE_IN_DOUBLE where single division and root are not rounded correctly.
+// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes.
+// What is uploaded in integers, and the columns of the cloud, have rows of the camera's `width`. The columns
+// lie one after another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as
+// well. Only of the depths there are planes: the point is z (ray_x, ray_y, 1). Built with FILTER_HALF and
+// NORMAL_HALF, half the windows' widths; with DIVIDE_IN_DOUBLE where single division and root are not rounded
+// correctly.
 //
 // Without vectors and without what C++ lacks: the test double of an OpenCL library compiles it as C++.
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -42,15 +44,16 @@ double or_none(int is_there, double value) { return is_there ? value : as_double
 // From a sensor's numbers to depths along the optical axis, by way of the points in the base frame, as
 // cloud_from_depth() and DepthProcessor::frame_of() compute them. The sums are those of Eigen. camera: cx, cy,
 // fx, fy; X: a row-major 3 x 4 matrix, then the third row of its inverse.
-__kernel void units_to_depths(__global const unsigned short* restrict units, double metres_per_unit, int width,
-                              __global const double* restrict camera, __constant double* X,
+__kernel void units_to_depths(__global const unsigned short* restrict units, double metres_per_unit,
+                              int width, __global const double* restrict camera, __constant double* X,
                               __global double* restrict depth_m) {
   const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
   if (u >= (size_t)width) return;
   const unsigned short count = units[v * width + u];
   const double z = count * metres_per_unit;
   const double x = ((double)u - camera[0]) * z / camera[2], y = ((double)v - camera[1]) * z / camera[3];
-  const double x_W = (X[0] * x + X[1] * y) + (X[2] * z + X[3]), y_W = (X[4] * x + X[5] * y) + (X[6] * z + X[7]);
+  const double x_W = (X[0] * x + X[1] * y) + (X[2] * z + X[3]);
+  const double y_W = (X[4] * x + X[5] * y) + (X[6] * z + X[7]);
   const double z_W = (X[8] * x + X[9] * y) + (X[10] * z + X[11]);
   depth_m[v * stride + u] = or_none(count > 0, (X[12] * x_W + (X[13] * y_W + X[14] * z_W)) + X[15]);
 }
@@ -304,13 +307,16 @@ Colour colour_of(unsigned int rgb) {
 }
 
 // As FixtureAssignment's: a value that is reached is reached exactly.
-double drawn(double from, double to, double weight) { return weight == 1 ? to : from + weight * (to - from); }
+double drawn(double from, double to, double weight) {
+  return weight == 1 ? to : from + weight * (to - from);
+}
 
 // 7.3.2: rules of forbidden regions by hue fill the columns of r_f and k_s. Each step has 8 numbers: first and
 // last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: as they are), strength.
 // keeps_points: the points of the cloud are those that were measured, else those of place_points.
-__kernel void fixture_columns(__global const unsigned int* restrict rgb, __global const double* restrict depth_m,
-                              int keeps_points, __global const double* restrict steps, int count, int width,
+__kernel void fixture_columns(__global const unsigned int* restrict rgb,
+                              __global const double* restrict depth_m, int keeps_points,
+                              __global const double* restrict steps, int count, int width,
                               __global double* restrict columns) {
   const size_t u = get_global_id(0), v = get_global_id(1), to = v * width + u;
   if (u >= (size_t)width) return;

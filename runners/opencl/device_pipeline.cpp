@@ -65,15 +65,14 @@ bool DevicePipeline::process_all(PointCloud& cloud, const HueSteps& steps) {
 // Points that are kept are those of cloud_from_depth() on the CPU.
 bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) {
   const DepthFrame size{nullptr, raw.camera, raw.X_WC};
-  if (frames_ == nullptr || !settings_.filter || (steps != nullptr && cloud.colour.size() != size.pixels()))
+  if (frames_ == nullptr || !settings_.filter || (steps != nullptr && raw.colour.size() != size.pixels()))
     return false;
-  start(size, steps, cloud.colour);
+  start(size, steps, raw.colour);
   frame_->units.assign(raw.units, raw.units + size.pixels());
   frame_->metres_per_unit = raw.metres_per_unit;
   if (!on_device()) return false;
-  std::vector<std::uint32_t> colour = std::move(cloud.colour);
   become_image(cloud, raw.camera, raw.X_WC);
-  cloud.colour = std::move(colour);
+  cloud.colour.assign(raw.colour.begin(), raw.colour.end());
   exchange(*frame_, cloud);
   return true;
 }
@@ -88,13 +87,13 @@ bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* ste
 
 // All of the frame but its depths. steps: null: no columns of fixtures.
 void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
-                           const std::vector<std::uint32_t>& colour) {
+                           std::span<const std::uint32_t> colour) {
   frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;
   const RigidTransform X_CW = frame.X_WC.inverse();
   for (int i = 0; i < 12; ++i) frame_->X_WC[i] = frame.X_WC.matrix()(i / 4, i % 4);
   for (int i = 0; i < 4; ++i) frame_->X_CW_z[i] = X_CW.matrix()(2, i);
   frame_->depth_m.clear(), frame_->units.clear(), frame_->colour.clear(), frame_->steps.clear();
-  if (steps != nullptr) frame_->colour = colour, frame_->steps = *steps;
+  if (steps != nullptr) frame_->colour.assign(colour.begin(), colour.end()), frame_->steps = *steps;
 }
 
 bool DevicePipeline::on_device() {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/depth/depth_pipeline.h"
@@ -38,7 +39,7 @@ class DevicePipeline final : public DepthProcessor {
 
  private:
   bool process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud);
-  void start(const DepthFrame& frame, const HueSteps* steps, const std::vector<std::uint32_t>& colour);
+  void start(const DepthFrame& frame, const HueSteps* steps, std::span<const std::uint32_t> colour);
   bool on_device();
   void give_up(const std::string& why);
 

@@ -79,13 +79,14 @@ bool same_bits_at_once(DevicePipeline& on_device, DepthPipeline& on_cpu, DepthIm
   }
   PointCloud expected = cloud_from_depth(image, kTrialCamera, X_WC), cloud = expected, from_sensor;
   for (std::uint32_t i = 0; i < expected.size(); ++i) expected.colour.push_back(i * 2654435761u >> 8);
-  cloud.colour = from_sensor.colour = expected.colour;
+  cloud.colour = expected.colour;
   const FixtureAssignment rules = trial_rules();
   const HueSteps steps = rules.hue_steps(0, 0).value_or(HueSteps{});
   on_cpu.process(expected);
   rules.assign(expected, 0);
   return (!on_device.process_all(cloud, steps) || same_bits(cloud, expected)) &&
-         (!on_device.process_all({units.data(), kUnit_m, kTrialCamera, X_WC}, from_sensor, &steps) ||
+         (!on_device.process_all({units.data(), kUnit_m, kTrialCamera, X_WC, expected.colour}, from_sensor,
+                                 &steps) ||
           same_bits(from_sensor, expected));
 }
 

@@ -84,14 +84,15 @@ inline std::string image_differs(DepthProcessor& device, const depth_cases::Sett
   for (std::size_t i = 0; i < units.size(); ++i)
     image.z_m[i] = units[i] == 0 ? depth_cases::kNaN : units[i] * kUnit_m;
   PointCloud measured = cloud_from_depth(image, scene.camera, X_WC), cloud, without_rules;
-  measured.colour = cloud.colour = colours(measured.size());
-  const RawDepth raw{units.data(), kUnit_m, scene.camera, X_WC};
+  measured.colour = colours(measured.size());
+  const RawDepth raw{units.data(), kUnit_m, scene.camera, X_WC, measured.colour};
   const bool is_done = device.process_all(raw, cloud, &steps);
   if (is_done != settings.filter) return "an image was processed only if it was not to be";
   if (!is_done) return {};
   PointCloud expected = on_cpu(measured, settings, fixtures, 0);
   if (!same_columns(cloud, expected)) return "columns of an image";
-  if (!device.process_all(raw, without_rules, nullptr)) return "an image without rules was not processed";
+  if (!device.process_all({raw.units, kUnit_m, raw.camera, X_WC}, without_rules, nullptr))
+    return "an image without rules was not processed";
   expected.colour.clear(), expected.fixture_radius_m.clear(), expected.stiffness_N_per_m.clear();
   return same_columns(without_rules, expected) ? "" : "columns of an image without rules";
 }
