@@ -75,6 +75,10 @@ void DepthProcessor::process(const DepthImage& depth, const CameraIntrinsics& ca
 }
 
 void DepthProcessor::process(PointCloud& cloud) {
+  process_frame(frame_of(cloud), cloud);
+}
+
+DepthFrame DepthProcessor::frame_of(const PointCloud& cloud) {
   if (!cloud.image) throw std::invalid_argument("DepthProcessor: the cloud has no image layout");
   const ImageLayout& image = *cloud.image;
   const DepthFrame size{nullptr, image.camera, image.X_WC};
@@ -86,7 +90,7 @@ void DepthProcessor::process(PointCloud& cloud) {
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < count; ++i)
     depth_m_[i] = X_CW.linear().row(2).dot(cloud.point(i)) + X_CW.translation().z();
-  process_frame({depth_m_.data(), image.camera, image.X_WC, !settings_.filter}, cloud);
+  return {depth_m_.data(), image.camera, image.X_WC, !settings_.filter};
 }
 
 }  // namespace remote_touch

@@ -2,12 +2,15 @@
 // elsewhere, with the same bits.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/cloud/camera.h"
 #include "core/cloud/point_cloud.h"
 #include "core/parameters/parameter.h"
+#include "core/virtual_fixtures/hue_range.h"
 
 namespace remote_touch {
 
@@ -23,6 +26,8 @@ struct DepthPipelineSettings {
   double normal_radius_m = 0.014;
   int normal_step = 1;
   NormalFit normal_fit = NormalFit::total_least_squares;
+
+  bool operator==(const DepthPipelineSettings&) const = default;
 };
 
 // The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
@@ -45,6 +50,15 @@ struct DepthFrame {
   }
 };
 
+// A whole depth image as sensors send it.
+struct RawDepth {
+  const std::uint16_t* units;  // 0: nothing measured
+  double metres_per_unit;
+  CameraIntrinsics camera;
+  RigidTransform X_WC;
+  std::span<const std::uint32_t> colour = {};  // of each pixel, 0xRRGGBB; empty: none
+};
+
 // Reuses its memory: after the first frame of a size nothing is allocated, if the caller passes the same
 // cloud again. One thread at a time. Throws std::invalid_argument if sizes do not match, and a maker of one
 // for settings that validate() refuses.
@@ -60,6 +74,16 @@ class DepthProcessor {
   // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
   void process(PointCloud& cloud);
 
+  // More of a frame at once, for a processor to which the way is long. False: it does not do that, and the
+  // cloud is as it was. steps: fill the columns of r_f and k_s by the cloud's colours.
+  // process(cloud), and the steps.
+  virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
+  // A sensor's image becomes a cloud with its colours: cloud_from_depth(), process(cloud), and the steps
+  // unless they are null.
+  virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
+    return false;
+  }
+
   // Normals, and unless they are kept points, of every pixel of the frame. The cloud has columns x, y, z of
   // the frame's size, and the image layout.
   virtual void process_frame(const DepthFrame& frame, PointCloud& cloud) = 0;
@@ -68,6 +92,10 @@ class DepthProcessor {
   explicit DepthProcessor(const DepthPipelineSettings& settings);
   DepthProcessor(const DepthProcessor&) = default;
   DepthProcessor& operator=(const DepthProcessor&) = delete;
+
+  // Of an organised cloud: its depth image is taken from the points. Holds until the next call. Throws
+  // std::invalid_argument.
+  DepthFrame frame_of(const PointCloud& cloud);
 
   const DepthPipelineSettings settings_;
 

@@ -55,6 +55,17 @@ void FixtureAssignment::assign(PointCloud& cloud, double captured_s, std::uint64
   }
 }
 
+std::optional<HueSteps> FixtureAssignment::hue_steps(double captured_s, std::uint64_t off) const {
+  if (empty()) return std::nullopt;
+  HueSteps steps;
+  for (std::size_t i = 0; i < rules_.size(); ++i) {
+    const auto* const range = dynamic_cast<const HueRange*>(rules_[i].get());
+    if (range == nullptr || range->values().role != FixtureRole::forbidden) return std::nullopt;
+    if (FixtureSwitches::is_on(off, i)) steps.push_back({range->settings(), range->strength(captured_s)});
+  }
+  return steps;
+}
+
 std::vector<GuidanceTarget> FixtureAssignment::targets(const PointCloud& cloud, double captured_s) const {
   std::vector<GuidanceTarget> all;
   for (std::size_t i = 0; i < rules_.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/virtual_fixtures/fixture_rule.h"
 #include "core/virtual_fixtures/fixture_switches.h"
 #include "core/virtual_fixtures/guidance_target.h"
+#include "core/virtual_fixtures/hue_range.h"
 
 namespace remote_touch {
 
@@ -29,6 +31,10 @@ class FixtureAssignment {
   // The same with these forbidden rules off, as off() returned them earlier.
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
   std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
+
+  // What assign() would do, where all rules are forbidden ranges of hue, of which another device may know how
+  // to apply them. None: there is another rule, or no rule at all.
+  std::optional<HueSteps> hue_steps(double captured_s, std::uint64_t off) const;
 
   // The targets of all guidance rules in their order, each with the rule's strength; at strength 0 it is not
   // visible. Throws as assign().

@@ -1,6 +1,8 @@
 // The points of a colour, 7.3.2: objects to protect or to guide to are marked by their hue.
 #pragma once
 
+#include <vector>
+
 #include "core/virtual_fixtures/fixture_rule.h"
 
 namespace remote_touch {
@@ -18,12 +20,21 @@ class HueRange final : public FixtureRule {
   explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
   // Throws InputError when the cloud has no colours.
   std::vector<double> weights(const PointCloud& cloud) const override;
+  const Settings& settings() const { return settings_; }
 
  private:
   bool holds(std::uint32_t rgb) const;
 
   const Settings settings_;
 };
+
+// A rule of forbidden regions at one moment. One after another they fill the columns of r_f and k_s as
+// FixtureAssignment::assign() does.
+struct HueStep {
+  HueRange::Settings range;
+  double strength = 1;
+};
+using HueSteps = std::vector<HueStep>;
 
 Parameters parameters(HueRange::Settings& s);
 std::string validate(const HueRange::Settings& s);

@@ -147,6 +147,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   if (view) options.on_start = [&] { leading.file = lead_to(*view); };
   see_to_every_end();
   const LiveResult result = run_live(experiment, options);
+  experiment.add_depth_device(options.provenance);
 
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());

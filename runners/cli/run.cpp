@@ -56,10 +56,11 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   std::string remark;
   options.remark = &remark;
   if (request.timing) options.step_duration_s = &durations;
-  const TextAttributes origin =
+  TextAttributes origin =
       provenance(experiment.to_json(), Recipe{"run", request.experiment, request.overrides},
                  line.kernels->isa, input_hashes(experiment.inputs()));
   const Trace trace = simulate(experiment, options);
+  experiment.add_depth_device(origin);
   const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
   if (!remark.empty()) std::printf("  note: %s\n", printable(remark).c_str());

@@ -75,8 +75,7 @@ FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitch
 
 namespace {
 
-// A device that fails is told on standard error, whoever runs the experiment: results are the same without
-// it.
+// Of a device that failed: results are the same without it.
 void print_line(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
@@ -84,11 +83,19 @@ void print_line(const std::string& line) {
 }  // namespace
 
 FrameProcessing Experiment::build_processing(const Kernels& kernels,
-                                             std::shared_ptr<const FixtureSwitches> switches) const {
+                                             std::shared_ptr<const FixtureSwitches> switches,
+                                             const DepthReport& report) const {
   FrameProcessing processing{nullptr, build_fixtures(std::move(switches))};
   if (configuration_.depth_pipeline)
-    processing.depth = make_depth_processor(*configuration_.depth_pipeline, kernels, print_line);
+    processing.depth = make_depth_processor(*configuration_.depth_pipeline, kernels,
+                                            report ? report : DepthReport(print_line));
   return processing;
+}
+
+void Experiment::add_depth_device(TextAttributes& provenance) const {
+  if (!configuration_.depth_pipeline) return;
+  const std::string device = depth_device_of(*configuration_.depth_pipeline);
+  if (!device.empty()) provenance.emplace_back("depth_device", device);
 }
 
 SimulatedHand Experiment::build_hand() const {

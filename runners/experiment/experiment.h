@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/configuration.h"
 #include "runners/settings/embedded_data.h"
 
@@ -49,8 +50,14 @@ class Experiment {
   std::unique_ptr<Renderer> build_renderer(const Kernels& kernels,
                                            std::shared_ptr<FixtureSwitches> switches = nullptr) const;
   FixtureAssignment build_fixtures(std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
+  // report: gets the line that an OpenCL device has failed, in the thread that processes frames; empty: it
+  // goes to standard error.
   FrameProcessing build_processing(const Kernels& kernels,
-                                   std::shared_ptr<const FixtureSwitches> switches = nullptr) const;
+                                   std::shared_ptr<const FixtureSwitches> switches = nullptr,
+                                   const DepthReport& report = {}) const;
+  // After build_processing(): adds `depth_device` to the provenance of a result, the name of the OpenCL
+  // device that processes its depth images; nothing where it is the CPU.
+  void add_depth_device(TextAttributes& provenance) const;
   SimulatedHand build_hand() const;
   // Upper bound, over all poses, of how fast |force| grows with the device's displacement: springs of the
   // renderer or of a forbidden region, plus those of all guidance.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "analysis/columns/hash64.h"
 #include "core/parameters/input_error.h"
+#include "runners/sessions/sensor_cloud.h"
 
 namespace remote_touch {
 
@@ -33,10 +35,32 @@ void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) co
   if (depth) {
     if (!cloud.image)
       throw InputError("depth_pipeline", "this scenario's frames are no depth images: expected none");
+    const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
+    if (steps && depth->process_all(cloud, *steps)) return finish(frame, std::move(cloud), off, true);
     depth->process(cloud);
   }
-  frame.guidance = fixtures.targets(cloud, frame.captured_s);
-  fixtures.assign(cloud, frame.captured_s, off);
+  finish(frame, std::move(cloud), off, false);
+}
+
+void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const SensorView& view,
+                           const RigidTransform& X_WC, std::uint64_t off) const {
+  if (depth && !view.cloud) {
+    const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
+    PointCloud cloud;
+    if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC, sensed.colour},
+                           cloud, steps ? &*steps : nullptr))
+      return finish(frame, std::move(cloud), off, steps.has_value());
+  }
+  fill(frame, cloud_of(sensed, view, X_WC), off);
+}
+
+// is_assigned: the cloud has its columns of fixtures. Then all rules are forbidden ones, and there are no
+// targets.
+void FrameProcessing::finish(Frame& frame, PointCloud cloud, std::uint64_t off, bool is_assigned) const {
+  if (!is_assigned) {
+    frame.guidance = fixtures.targets(cloud, frame.captured_s);
+    fixtures.assign(cloud, frame.captured_s, off);
+  }
   frame.points = make_search(std::move(cloud));
 }
 

@@ -9,6 +9,7 @@
 #include "core/random/noise.h"
 #include "core/rendering/renderer.h"
 #include "core/virtual_fixtures/fixture_assignment.h"
+#include "runners/sessions/sensor_frame.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
@@ -30,6 +31,12 @@ struct FrameProcessing {
   // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is not
   // a depth image as the pipeline needs, or a fixture rule cannot be applied to it.
   void fill(Frame& frame, PointCloud cloud, std::uint64_t off) const;
+  // The same of cloud_of(sensed, view, X_WC).
+  void fill(Frame& frame, const SensorFrame& sensed, const SensorView& view, const RigidTransform& X_WC,
+            std::uint64_t off) const;
+
+ private:
+  void finish(Frame& frame, PointCloud cloud, std::uint64_t off, bool is_assigned) const;
 };
 
 // 64-bit hash of a frame's points and its time of capture.

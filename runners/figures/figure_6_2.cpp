@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/depth/depth_pipeline.h"
 #include "core/random/noise.h"
 #include "runners/figures/fixture_run.h"
 #include "runners/figures/tools/tool_picture.h"

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
-#include <cstring>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/opencl/opencl_devices.h"
+#include "runners/opencl/device_pipeline.h"
 
 namespace remote_touch {
 
@@ -34,73 +33,6 @@ std::optional<Address> address_of(const std::string& text) {
   return address;
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-bool same_bits(const PointCloud& a, const PointCloud& b) {
-  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z) && same_bits(a.nx, b.nx) &&
-         same_bits(a.ny, b.ny) && same_bits(a.nz, b.nz);
-}
-
-constexpr CameraIntrinsics kTrialCamera{320, 240, 262.5, 262.5, 159.5, 119.5};
-
-// Two walls, rough by up to 2 mm, with a hole in each 31st pixel.
-DepthImage trial_image() {
-  DepthImage image{kTrialCamera.width, kTrialCamera.height, {}};
-  std::uint32_t random = 1;
-  for (int v = 0; v < image.height; ++v)
-    for (int u = 0; u < image.width; ++u) {
-      random = random * 1664525u + 1013904223u;
-      const double rough_m = 2e-3 * static_cast<double>(random >> 8) / (1 << 24);
-      const bool is_hole = (v * image.width + u) % 31 == 0;
-      image.z_m.push_back(is_hole ? std::numeric_limits<double>::quiet_NaN()
-                                  : (u < 150 ? 0.8 + 1e-3 * u : 1.1 + 5e-4 * v) + rough_m);
-    }
-  return image;
-}
-
-double min_ms(DepthProcessor& processor, const DepthImage& image, PointCloud& cloud) {
-  double min = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 5; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    processor.process(image, kTrialCamera, RigidTransform::Identity(), cloud);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-    min = std::min(min, took.count());
-  }
-  return min;
-}
-
-struct Tried {
-  DepthTrial trial;
-  std::unique_ptr<DevicePipeline> pipeline;  // null if it failed
-};
-
-Tried try_device(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
-                 const DepthReport& report) {
-  Tried tried;
-  tried.trial.failure = device.unfit_because;
-  if (!tried.trial.failure.empty()) return tried;
-  try {
-    const auto failure = std::make_shared<std::string>();
-    const auto told = std::make_shared<DepthReport>([failure](const std::string& line) { *failure = line; });
-    tried.pipeline = std::make_unique<DevicePipeline>(device, settings, kernels,
-                                                      [told](const std::string& line) { (*told)(line); });
-    DepthPipeline cpu(settings, kernels);
-    const DepthImage image = trial_image();
-    PointCloud on_device, on_cpu;
-    tried.trial.device_ms = min_ms(*tried.pipeline, image, on_device);
-    tried.trial.cpu_ms = min_ms(cpu, image, on_cpu);
-    tried.trial.same_bits = same_bits(on_device, on_cpu);
-    tried.trial.failure = *failure;
-    *told = report ? report : [](const std::string&) {};
-  } catch (const std::exception& error) {
-    tried.trial.failure = error.what();
-  }
-  if (!tried.trial.failure.empty()) tried.pipeline.reset();
-  return tried;
-}
-
 std::string inexact(const OpenClDevice& device, const DepthTrial& trial) {
   if (!device.inexact_because.empty()) return device.inexact_because;
   return trial.failure.empty() && !trial.same_bits ? "gave other bits than the CPU in a trial frame" : "";
@@ -117,7 +49,7 @@ bool is_for_devices(const DepthPipelineSettings& s) {
 
 std::vector<OpenClDevice> devices_or_none(std::string& why_none) {
   try {
-    std::vector<OpenClDevice> devices = opencl_devices(opencl_library());
+    std::vector<OpenClDevice> devices = listed_devices();
     if (devices.empty())
       why_none = "no OpenCL driver is installed (Debian: pocl-opencl-icd for the processor)";
     return devices;
@@ -127,24 +59,22 @@ std::vector<OpenClDevice> devices_or_none(std::string& why_none) {
   }
 }
 
-// The fastest one that keeps the bits and is faster than the CPU, or null.
-std::unique_ptr<DepthProcessor> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels,
-                                              const DepthReport& report) {
+// The fastest one that keeps the bits and is faster than the CPU.
+std::optional<OpenClDevice> faster_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
   std::string why_none;
-  std::unique_ptr<DepthProcessor> best;
+  std::optional<OpenClDevice> best;
   double best_ms = std::numeric_limits<double>::infinity();
   for (const OpenClDevice& device : devices_or_none(why_none)) {
     if (!device.inexact_because.empty()) continue;
-    Tried tried = try_device(device, settings, kernels, report);
-    const DepthTrial& trial = tried.trial;
-    if (!tried.pipeline || !trial.same_bits || trial.device_ms >= std::min(trial.cpu_ms, best_ms)) continue;
-    best_ms = trial.device_ms, best = std::move(tried.pipeline);
+    const DepthTrial trial = tried(device, settings, kernels);
+    if (!trial.failure.empty() || !trial.same_bits || trial.device_ms >= std::min(trial.cpu_ms, best_ms))
+      continue;
+    best_ms = trial.device_ms, best = device;
   }
   return best;
 }
 
-std::unique_ptr<DepthProcessor> asked_device(const DepthDeviceSettings& settings, const Kernels& kernels,
-                                             const DepthReport& report) {
+OpenClDevice asked_device(const DepthDeviceSettings& settings, const Kernels& kernels) {
   const Address address = address_of(settings.device).value_or(Address{});
   std::string why;
   std::vector<OpenClDevice> devices = devices_or_none(why);
@@ -153,14 +83,46 @@ std::unique_ptr<DepthProcessor> asked_device(const DepthDeviceSettings& settings
   for (const OpenClDevice& device : devices) {
     if (address.platform >= 0 && (device.platform != address.platform || device.number != address.number))
       continue;
-    Tried tried = try_device(device, settings, kernels, report);
-    std::string problem = tried.trial.failure;
-    if (problem.empty() && settings.exact) problem = inexact(device, tried.trial);
-    if (problem.empty()) return std::move(tried.pipeline);
-    why += (why.empty() ? "" : "; ") + device.address() + " (" + device.name + ") " + problem;
-    if (tried.trial.failure.empty()) why += "; depth_pipeline.exact = false allows it";
+    const DepthTrial trial = tried(device, settings, kernels);
+    std::string problem = trial.failure;
+    if (problem.empty() && settings.exact) problem = inexact(device, trial);
+    if (problem.empty()) return device;
+    why += (why.empty() ? "" : "; ") + device.full_name() + " " + problem;
+    if (trial.failure.empty()) why += "; depth_pipeline.exact = false allows it";
   }
   refuse(settings, why.empty() ? "there is no such device: `remote-touch devices` lists them" : why);
+}
+
+// What depth_device_of() tells.
+struct Choices {
+  std::mutex mutex;
+  std::vector<std::pair<DepthDeviceSettings, std::string>> all;
+
+  std::string& name_of(const DepthDeviceSettings& settings) {
+    for (auto& [of, name] : all)
+      if (of == settings) return name;
+    return all.emplace_back(settings, "").second;
+  }
+};
+Choices& choices() {
+  static Choices one;
+  return one;
+}
+
+void note_choice(const DepthDeviceSettings& settings, const std::string& name) {
+  const std::lock_guard lock(choices().mutex);
+  choices().name_of(settings) = name;
+}
+
+std::unique_ptr<DepthProcessor> opened(const OpenClDevice& device, const DepthDeviceSettings& settings,
+                                       const Kernels& kernels, const DepthReport& report) {
+  const std::string name = device.full_name();
+  auto made = std::make_unique<DevicePipeline>(device, settings, kernels, [=](const std::string& line) {
+    note_choice(settings, name + ", which failed: then the CPU");
+    if (report) report(line);
+  });
+  note_choice(settings, name);
+  return made;
 }
 
 }  // namespace
@@ -184,17 +146,28 @@ std::string validate(const DepthDeviceSettings& s) {
 }
 
 std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& settings,
-                                                     const Kernels& kernels, DepthReport report) {
-  std::unique_ptr<DepthProcessor> made;
-  if (settings.device == "auto" && is_for_devices(settings)) made = faster_device(settings, kernels, report);
-  if (address_of(settings.device)) made = asked_device(settings, kernels, report);
-  return made ? std::move(made) : std::make_unique<DepthPipeline>(settings, kernels);
+                                                     const Kernels& kernels, const DepthReport& report) {
+  std::optional<OpenClDevice> device;
+  if (settings.device == "auto" && is_for_devices(settings)) device = faster_device(settings, kernels);
+  if (address_of(settings.device)) device = asked_device(settings, kernels);
+  try {
+    if (device) return opened(*device, settings, kernels, report);
+  } catch (const OpenClError& error) {
+    if (settings.device != "auto") refuse(settings, device->full_name() + " " + error.what());
+  }
+  note_choice(settings, "");
+  return std::make_unique<DepthPipeline>(settings, kernels);
+}
+
+std::string depth_device_of(const DepthDeviceSettings& settings) {
+  const std::lock_guard lock(choices().mutex);
+  return choices().name_of(settings);
 }
 
 std::vector<FoundDepthDevice> try_depth_devices(const Kernels& kernels, std::string& why_none) {
   std::vector<FoundDepthDevice> found;
   for (const OpenClDevice& device : devices_or_none(why_none)) {
-    const DepthTrial trial = try_device(device, {}, kernels, nullptr).trial;
+    const DepthTrial trial = tried(device, {}, kernels);
     found.push_back({device.address(), device.name, inexact(device, trial), trial});
   }
   return found;

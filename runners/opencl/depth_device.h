@@ -1,19 +1,25 @@
 // Where the depth pipeline of an experiment runs: on the CPU, or on an OpenCL device with the same bits.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/depth/depth_processor.h"
 #include "core/kernels/kernels.h"
-#include "runners/opencl/device_pipeline.h"
+#include "runners/opencl/device_trial.h"
 
 namespace remote_touch {
+
+// Called once, with one line, when the CPU takes over from a device that failed.
+using DepthReport = std::function<void(const std::string& line)>;
 
 struct DepthDeviceSettings : DepthPipelineSettings {
   std::string device = "cpu";
   bool exact = true;
+
+  bool operator==(const DepthDeviceSettings&) const = default;
 };
 
 Parameters parameters(DepthDeviceSettings& s);
@@ -22,14 +28,11 @@ std::string validate(const DepthDeviceSettings& s);
 // Throws InputError, about depth_pipeline.device, where a device was asked for that is not there, does not
 // work, or must be exact and is not.
 std::unique_ptr<DepthProcessor> make_depth_processor(const DepthDeviceSettings& settings,
-                                                     const Kernels& kernels, DepthReport report);
+                                                     const Kernels& kernels, const DepthReport& report);
 
-// A frame of 320 x 240 pixels with holes, processed on the device and on the CPU.
-struct DepthTrial {
-  std::string failure;  // of the device; empty: it works
-  bool same_bits = false;
-  double device_ms = 0, cpu_ms = 0;  // min of five
-};
+// For the provenance of results: the OpenCL device of the newest processor that this process made with these
+// settings, "opencl:0:0 (NAME, PLATFORM)", and whether it failed. Empty: the CPU alone.
+std::string depth_device_of(const DepthDeviceSettings& settings);
 
 struct FoundDepthDevice {
   std::string address, name;

@@ -1,11 +1,14 @@
 // The depth pipeline of core/depth in OpenCL C 1.2: the operations of core/kernels/depth_rows.cpp,
-// depth_filter.cpp and plane_normals.cpp for each pixel, in the same order, so that the bits are the same. Who
-// changes one changes the other; tests/runners/opencl compares them.
+// depth_filter.cpp and plane_normals.cpp, and of the hues of core/virtual_fixtures, for each pixel, in the
+// same order, so that the bits are the same. Who changes one changes the other; tests/runners/opencl compares
+// them.
 //
-// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes. The
-// planes of depths have a border of holes around them as well. Only of the depths there are planes: the point
-// is z (ray_x, ray_y, 1). Built with FILTER_HALF and NORMAL_HALF, half the windows' widths; with
-// DIVIDE_IN_DOUBLE where single division and root are not rounded correctly.
+// A work item is a pixel. Images have rows of `stride` pixels, more than the camera has: those are holes.
+// What is uploaded in integers, and the columns of the cloud, have rows of the camera's `width`. The columns
+// lie one after another: x y z nx ny nz r_f k_s. The planes of depths have a border of holes around them as
+// well. Only of the depths there are planes: the point is z (ray_x, ray_y, 1). Built with FILTER_HALF and
+// NORMAL_HALF, half the windows' widths; with DIVIDE_IN_DOUBLE where single division and root are not rounded
+// correctly.
 //
 // Without vectors and without what C++ lacks: the test double of an OpenCL library compiles it as C++.
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -33,6 +36,26 @@ int measured(double z_m) { return (z_m > 0) & (z_m < MAX_DEPTH_M); }
 
 size_t in_plane(size_t u, size_t v, size_t plane_stride) {
   return (v + BORDER) * plane_stride + BORDER + u;
+}
+
+// One NaN for all: which one an operation gives differs between devices.
+double or_none(int is_there, double value) { return is_there ? value : as_double(0x7ff8000000000000UL); }
+
+// From a sensor's numbers to depths along the optical axis, by way of the points in the base frame, as
+// cloud_from_depth() and DepthProcessor::frame_of() compute them. The sums are those of Eigen. camera: cx, cy,
+// fx, fy; X: a row-major 3 x 4 matrix, then the third row of its inverse.
+__kernel void units_to_depths(__global const unsigned short* restrict units, double metres_per_unit,
+                              int width, __global const double* restrict camera, __constant double* X,
+                              __global double* restrict depth_m) {
+  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  if (u >= (size_t)width) return;
+  const unsigned short count = units[v * width + u];
+  const double z = count * metres_per_unit;
+  const double x = ((double)u - camera[0]) * z / camera[2], y = ((double)v - camera[1]) * z / camera[3];
+  const double x_W = (X[0] * x + X[1] * y) + (X[2] * z + X[3]);
+  const double y_W = (X[4] * x + X[5] * y) + (X[6] * z + X[7]);
+  const double z_W = (X[8] * x + X[9] * y) + (X[10] * z + X[11]);
+  depth_m[v * stride + u] = or_none(count > 0, (X[12] * x_W + (X[13] * y_W + X[14] * z_W)) + X[15]);
 }
 
 __kernel void depths_to_plane(__global const double* restrict depth_m, double scale,
@@ -197,15 +220,12 @@ Normal smallest_eigenvector(Symmetric m, float z, float ray_x, float ray_y) {
   return n;
 }
 
-// One NaN for all: which one an operation gives differs between devices.
-double or_none(int is_there, double value) { return is_there ? value : as_double(0x7ff8000000000000UL); }
-
-// Normals of the points of plane z, whose unit is the radius, into three columns of the cloud one after
-// another; X_WC is a row-major 3 x 4 matrix.
+// Normals of the points of plane z, whose unit is the radius, into their columns of the cloud.
 __kernel void plane_normals(__global const float* restrict ray_x, __global const float* restrict ray_y,
                             __global const float* restrict z_plane, float step_x, float step_y,
-                            __constant double* X, __global double* restrict normals) {
+                            __constant double* X, int width, __global double* restrict columns) {
   const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
+  if (u >= (size_t)width) return;
   const size_t plane_stride = stride + 2 * BORDER, here = in_plane(u, v, plane_stride);
   __global const float* const rays_x = ray_x + BORDER + u;
   __global const float* const rays_y = ray_y + BORDER + v;
@@ -241,24 +261,81 @@ __kernel void plane_normals(__global const float* restrict ray_x, __global const
   const Normal n = smallest_eigenvector(m, z0, rays_x[0], rays_y[0]);
   // The length is 1 to single precision; one of Newton's steps makes it so to double.
   const double x = n.x, y = n.y, along = n.z, one = 1.5 - 0.5 * (x * x + y * y + along * along);
-  const size_t to = v * stride + u, column = stride * get_global_size(1);
+  const size_t column = width * get_global_size(1);
+  __global double* const normals = columns + 3 * column;
+  const size_t to = v * width + u;
   normals[to] = or_none(n.is_plane, (X[0] * x + X[1] * y + X[2] * along) * one);
   normals[to + column] = or_none(n.is_plane, (X[4] * x + X[5] * y + X[6] * along) * one);
   normals[to + 2 * column] = or_none(n.is_plane, (X[8] * x + X[9] * y + X[10] * along) * one);
 }
 
-// Points in the base frame into three columns of the cloud. is_filtered: change is added to the depths.
+// Points in the base frame into their columns of the cloud. is_filtered: change is added to the depths.
 __kernel void place_points(__global const double* restrict depth_m, __global const float* restrict change,
                            int is_filtered, double change_unit_m, __global const double* restrict wide_ray_x,
-                           __global const double* restrict wide_ray_y, __constant double* X,
-                           __global double* restrict points) {
-  const size_t u = get_global_id(0), v = get_global_id(1), stride = get_global_size(0);
-  const size_t here = v * stride + u, column = stride * get_global_size(1);
+                           __global const double* restrict wide_ray_y, __constant double* X, int width,
+                           __global double* restrict columns) {
+  const size_t u = get_global_id(0), v = get_global_id(1), here = v * get_global_size(0) + u;
+  if (u >= (size_t)width) return;
   const double depth = depth_m[here];
   const double z = is_filtered ? depth + change_unit_m * change[here] : depth;
   const double x = wide_ray_x[u] * z, y = wide_ray_y[v] * z;
   const int is_there = measured(depth);
-  points[here] = or_none(is_there, X[0] * x + X[1] * y + X[2] * z + X[3]);
-  points[here + column] = or_none(is_there, X[4] * x + X[5] * y + X[6] * z + X[7]);
-  points[here + 2 * column] = or_none(is_there, X[8] * x + X[9] * y + X[10] * z + X[11]);
+  const size_t to = v * width + u, column = width * get_global_size(1);
+  columns[to] = or_none(is_there, X[0] * x + X[1] * y + X[2] * z + X[3]);
+  columns[to + column] = or_none(is_there, X[4] * x + X[5] * y + X[6] * z + X[7]);
+  columns[to + 2 * column] = or_none(is_there, X[8] * x + X[9] * y + X[10] * z + X[11]);
+}
+
+typedef struct {
+  double hue_deg, saturation, lightness;
+} Colour;
+
+// As hue_saturation_lightness() in core/cloud/colour.cpp.
+Colour colour_of(unsigned int rgb) {
+  const int red = rgb >> 16 & 0xFF, green = rgb >> 8 & 0xFF, blue = rgb & 0xFF;
+  const int more = red > green ? red : green, less = red < green ? red : green;
+  const int high = more > blue ? more : blue, low = less < blue ? less : blue;
+  const double chroma = high - low, sum = high + low;
+  Colour colour = {0, 0, sum / 510};
+  if (high == low) return colour;
+  colour.saturation = chroma / (255 - fabs(sum - 255));
+  const double sixth = high == red     ? (green - blue) / chroma + (green < blue ? 6 : 0)
+                       : high == green ? (blue - red) / chroma + 2
+                                       : (red - green) / chroma + 4;
+  colour.hue_deg = 60 * sixth;
+  return colour;
+}
+
+// As FixtureAssignment's: a value that is reached is reached exactly.
+double drawn(double from, double to, double weight) {
+  return weight == 1 ? to : from + weight * (to - from);
+}
+
+// 7.3.2: rules of forbidden regions by hue fill the columns of r_f and k_s. Each step has 8 numbers: first and
+// last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: as they are), strength.
+// keeps_points: the points of the cloud are those that were measured, else those of place_points.
+__kernel void fixture_columns(__global const unsigned int* restrict rgb,
+                              __global const double* restrict depth_m, int keeps_points,
+                              __global const double* restrict steps, int count, int width,
+                              __global double* restrict columns) {
+  const size_t u = get_global_id(0), v = get_global_id(1), to = v * width + u;
+  if (u >= (size_t)width) return;
+  const double depth = depth_m[v * get_global_size(0) + u];
+  // The difference is 0 for finite numbers only.
+  const int is_there = keeps_points ? depth - depth == 0 : measured(depth);
+  const Colour colour = colour_of(rgb[to]);
+  double radius = 0, stiffness = or_none(0, 0);
+  for (int i = 0; i < count; ++i) {
+    __global const double* const step = steps + 8 * i;
+    const int above = colour.hue_deg >= step[0], below = colour.hue_deg <= step[1];
+    const int in_hues = step[0] <= step[1] ? above & below : above | below;
+    const int is_clear = (colour.saturation >= step[2]) & (colour.lightness >= step[3]);
+    const double weight = step[7];
+    if (!(is_there & in_hues & is_clear & (colour.lightness <= step[4]) & (weight > 0))) continue;
+    if (step[5] >= 0) radius = drawn(radius, step[5], weight);
+    if (step[6] >= 0) stiffness = stiffness == stiffness ? drawn(stiffness, step[6], weight) : step[6];
+  }
+  const size_t column = width * get_global_size(1);
+  columns[to + 6 * column] = radius;
+  columns[to + 7 * column] = stiffness;
 }

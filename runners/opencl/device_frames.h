@@ -1,57 +1,71 @@
-// The depth pipeline on one OpenCL device: one upload, four kernels, one download. Inside of this room only.
+// The depth pipeline on one OpenCL device: one upload, its kernels, one download. Inside of this room only.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "core/depth/depth_processor.h"
-#include "runners/opencl/opencl_devices.h"
+#include "runners/opencl/built_kernels.h"
 
 namespace remote_touch {
 
 // A frame with all that the device reads and writes: it belongs to the call, so that a caller who gives up
 // waiting leaves nothing behind that is written later.
 struct DeviceFrame {
-  std::vector<double> depth_m;
+  // In the order in which they are downloaded.
+  enum Column { x, y, z, nx, ny, nz, fixture_radius, stiffness, kColumns };
+
   CameraIntrinsics camera;
-  double X_WC[12];
-  bool keep_points = false;
-  std::vector<double> x = {}, y = {}, z = {};  // not written if points are kept
-  std::vector<double> nx = {}, ny = {}, nz = {};
+  double X_WC[12];              // row-major
+  double X_CW_z[4];             // third row of its inverse
+  std::vector<double> depth_m;  // empty: units
+  std::vector<std::uint16_t> units = {};
+  double metres_per_unit = 0;
+  bool keep_points = false;  // x, y, z are not written
+  // By the steps the columns fixture_radius and stiffness are written; without colours they are not.
+  std::vector<std::uint32_t> colour = {};
+  HueSteps steps = {};
+  std::vector<double> columns[kColumns] = {};
+
+  bool has_stiffness() const;
 };
 
 class DeviceFrames {
  public:
-  // Builds the kernels, which may take seconds. Throws OpenClError.
-  DeviceFrames(const OpenClLibrary& library, const OpenClDevice& device,
-               const DepthPipelineSettings& settings);
-  // The same bits as DepthPipeline's. Throws OpenClError; after that it is of no use.
+  // With kernels that were built for these settings. Throws OpenClError.
+  DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings);
+  // The same bits as DepthPipeline's and FixtureAssignment's. Throws OpenClError; after that it is of no use,
+  // and the device may read the frame until drain() is over.
   void run(DeviceFrame& frame);
+  void drain() noexcept;
 
  private:
   using Buffer = OpenClObject<cl_mem>;
-  using Kernel = OpenClObject<cl_kernel>;
+  using Kernel = BuiltKernels::Kernel;
 
-  void build(const OpenClDevice& device);
-  Kernel kernel(const char* name) const;
-  Buffer buffer(std::size_t bytes) const;
+  Buffer buffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE) const;
   void resize(const CameraIntrinsics& camera);
+  void aim(const CameraIntrinsics& camera);
   template <class Value>
   void write(const Buffer& to, const std::vector<Value>& values);
   void upload(const DeviceFrame& frame);
   template <class... Arguments>
   void start(const Kernel& kernel, const Arguments&... arguments);
-  void download(const Buffer& from, int column, std::vector<double>& to);
+  void fill_columns(const DeviceFrame& frame);
+  void assign_fixtures(const DeviceFrame& frame);
+  void download(DeviceFrame& frame);
 
+  const std::shared_ptr<const BuiltKernels> kernels_;
   const OpenClLibrary& cl_;
   const DepthPipelineSettings settings_;
-  OpenClObject<cl_context> context_;
   OpenClObject<cl_command_queue> queue_;
-  OpenClObject<cl_program> program_;
-  Kernel to_plane_, filter_, normals_of_, place_;
-  int width_ = 0, height_ = 0;
-  std::size_t stride_ = 0;
-  Buffer depth_m_, change_, raw_, smooth_, ray_x_, ray_y_, wide_ray_x_, wide_ray_y_, X_WC_, points_, normals_;
+  Kernel to_depths_, to_plane_, filter_, normals_of_, place_, fixtures_;
+  CameraIntrinsics camera_;
+  std::size_t stride_ = 0, most_steps_ = 0;
+  Buffer units_, depth_m_, rgb_, steps_;
+  Buffer ray_x_, ray_y_, wide_ray_x_, wide_ray_y_, centre_and_focal_, X_;
+  Buffer change_, raw_, smooth_, columns_;
 };
 
 }  // namespace remote_touch

@@ -3,75 +3,131 @@
 #include <utility>
 
 #include "runners/opencl/device_frames.h"
+#include "runners/opencl/device_trial.h"
 
 namespace remote_touch {
 
 namespace {
 
-using Column = std::vector<double>;
-
 // Columns that the cloud and the frame exchange.
-template <class Visit>
-void exchanged(DeviceFrame& frame, PointCloud& cloud, const Visit& visit) {
-  visit(frame.nx, cloud.nx), visit(frame.ny, cloud.ny), visit(frame.nz, cloud.nz);
-  if (frame.keep_points) return;
-  visit(frame.x, cloud.x), visit(frame.y, cloud.y), visit(frame.z, cloud.z);
+void exchange(DeviceFrame& frame, PointCloud& cloud) {
+  const auto swap = [&](DeviceFrame::Column made, std::vector<double>& old) {
+    old.swap(frame.columns[made]);
+  };
+  swap(DeviceFrame::nx, cloud.nx), swap(DeviceFrame::ny, cloud.ny), swap(DeviceFrame::nz, cloud.nz);
+  if (!frame.keep_points)
+    swap(DeviceFrame::x, cloud.x), swap(DeviceFrame::y, cloud.y), swap(DeviceFrame::z, cloud.z);
+  if (frame.colour.empty()) return;
+  swap(DeviceFrame::fixture_radius, cloud.fixture_radius_m);
+  if (frame.has_stiffness()) swap(DeviceFrame::stiffness, cloud.stiffness_N_per_m);
 }
 
 }  // namespace
 
 DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings,
-                               const Kernels& kernels, DepthReport report)
+                               const Kernels& kernels, std::function<void(const std::string&)> report)
     : DepthProcessor(settings),
-      name_(device.address() + " (" + device.name + ")"),
+      device_(device),
       report_(std::move(report)),
       cpu_(settings, kernels),
       frame_(std::make_shared<DeviceFrame>()),
       thread_(std::make_unique<DeadlineThread>()) {
   struct Opened {
     std::shared_ptr<DeviceFrames> frames;
-    DeviceFrame first{
-        std::vector<double>(64, 1.0), {8, 8, 10, 10, 4, 4}, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+    DeviceFrame first{{8, 8, 10, 10, 4, 4},
+                      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
+                      {0, 0, 1, 0},
+                      std::vector<double>(64, 1.0)};
   };
   const auto opened = std::make_shared<Opened>();
   const bool in_time = thread_->run(
       [opened, device, settings] {
-        opened->frames = std::make_shared<DeviceFrames>(opencl_library(), device, settings);
+        opened->frames =
+            std::make_shared<DeviceFrames>(built_kernels(opencl_library(), device, settings), settings);
         opened->frames->run(opened->first);
       },
       kBuildLimit);
-  if (!in_time) throw OpenClError("the kernels were not ready in 120 s");
+  if (!in_time) throw OpenClTimeout("the kernels were not ready in 120 s");
   frames_ = opened->frames;
 }
 
 void DevicePipeline::process_frame(const DepthFrame& frame, PointCloud& cloud) {
-  if (frames_ == nullptr || !on_device(frame, cloud)) cpu_.process_frame(frame, cloud);
+  if (frames_ == nullptr || !process_depths(frame, nullptr, cloud)) cpu_.process_frame(frame, cloud);
 }
 
-bool DevicePipeline::on_device(const DepthFrame& frame, PointCloud& cloud) {
+bool DevicePipeline::process_all(PointCloud& cloud, const HueSteps& steps) {
+  const bool has_columns = !cloud.fixture_radius_m.empty() || !cloud.stiffness_N_per_m.empty();
+  if (frames_ == nullptr || has_columns || cloud.size() == 0 || cloud.colour.size() != cloud.size())
+    return false;
+  return process_depths(frame_of(cloud), &steps, cloud);
+}
+
+// Points that are kept are those of cloud_from_depth() on the CPU.
+bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) {
+  const DepthFrame size{nullptr, raw.camera, raw.X_WC};
+  if (frames_ == nullptr || !settings_.filter || (steps != nullptr && raw.colour.size() != size.pixels()))
+    return false;
+  start(size, steps, raw.colour);
+  frame_->units.assign(raw.units, raw.units + size.pixels());
+  frame_->metres_per_unit = raw.metres_per_unit;
+  if (!on_device()) return false;
+  become_image(cloud, raw.camera, raw.X_WC);
+  cloud.colour.assign(raw.colour.begin(), raw.colour.end());
+  exchange(*frame_, cloud);
+  return true;
+}
+
+bool DevicePipeline::process_depths(const DepthFrame& frame, const HueSteps* steps, PointCloud& cloud) {
+  start(frame, steps, cloud.colour);
   frame_->depth_m.assign(frame.depth_m, frame.depth_m + frame.pixels());
+  if (!on_device()) return false;
+  exchange(*frame_, cloud);
+  return true;
+}
+
+// All of the frame but its depths. steps: null: no columns of fixtures.
+void DevicePipeline::start(const DepthFrame& frame, const HueSteps* steps,
+                           std::span<const std::uint32_t> colour) {
   frame_->camera = frame.camera, frame_->keep_points = frame.keep_points;
+  const RigidTransform X_CW = frame.X_WC.inverse();
   for (int i = 0; i < 12; ++i) frame_->X_WC[i] = frame.X_WC.matrix()(i / 4, i % 4);
+  for (int i = 0; i < 4; ++i) frame_->X_CW_z[i] = X_CW.matrix()(2, i);
+  frame_->depth_m.clear(), frame_->units.clear(), frame_->colour.clear(), frame_->steps.clear();
+  if (steps != nullptr) frame_->colour.assign(colour.begin(), colour.end()), frame_->steps = *steps;
+}
+
+bool DevicePipeline::on_device() {
+  bool in_time = false;
   try {
-    if (!thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, kFrameLimit)) {
-      give_up("no answer within 2 s");
-      return false;
-    }
+    in_time = thread_->run([frames = frames_, job = frame_] { frames->run(*job); }, kFrameLimit);
   } catch (const std::exception& error) {
     give_up(error.what());
     return false;
   }
-  exchanged(*frame_, cloud, [](Column& made, Column& old) { made.swap(old); });
-  return true;
+  if (!in_time) give_up("no answer within 2 s");
+  return in_time;
 }
 
-// What the hanging thread still uses is its own.
+// What the hanging thread still uses is its own. To release objects of a device that failed may hang too: a
+// thread of its own does it, and nobody waits for it.
 void DevicePipeline::give_up(const std::string& why) {
-  frames_.reset(), frame_.reset(), thread_.reset();
+  forget_trials(device_);
+  struct Last {
+    std::shared_ptr<DeviceFrame> frame;  // the device may still read it
+    std::shared_ptr<DeviceFrames> frames;
+  };
+  const auto last = std::make_shared<Last>(Last{std::move(frame_), std::move(frames_)});
+  DeadlineThread().run(
+      [last, id = device_.id] {
+        forget_kernels(id);
+        last->frames->drain();
+        last->frames.reset();
+      },
+      std::chrono::milliseconds(0));
+  frame_.reset(), frames_.reset(), thread_.reset();
   if (report_)
-    report_("depth_pipeline.device = " + name_ + " failed: " + why +
-            "; the CPU processes this frame and all "
-            "later ones");
+    report_("depth_pipeline.device = " + device_.full_name() + " failed: " + why +
+            "; the CPU processes this frame and all later ones");
 }
 
 }  // namespace remote_touch

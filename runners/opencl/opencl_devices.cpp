@@ -1,5 +1,11 @@
 #include "runners/opencl/opencl_devices.h"
 
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+#include "runners/opencl/deadline_thread.h"
+
 namespace remote_touch {
 
 namespace {
@@ -82,6 +88,37 @@ std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library) {
     }
   }
   return all;
+}
+
+std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
+  struct Listing {
+    std::vector<OpenClDevice> devices;
+    std::atomic<bool> is_over = false;
+  };
+  static std::mutex mutex;
+  static std::shared_ptr<const Listing> late;  // the last one that was given up
+  // Loaders and drivers begin at the first call, not all of them safely in two threads. Never freed: a driver
+  // that hangs may hold it when the process ends.
+  static std::mutex& one_at_a_time = *new std::mutex;
+  const OpenClTimeout no_answer("its drivers did not list their devices in " +
+                                std::to_string(kListLimit.count() / 1000) + " s");
+  {
+    const std::lock_guard lock(mutex);
+    if (late && !late->is_over) throw OpenClTimeout(no_answer);
+  }
+  const auto listing = std::make_shared<Listing>();
+  DeadlineThread thread;
+  const bool in_time = thread.run(
+      [listing] {
+        const std::lock_guard alone(one_at_a_time);
+        const std::shared_ptr<void> at_end(nullptr, [&](void*) { listing->is_over = true; });
+        listing->devices = opencl_devices(opencl_library());
+      },
+      limit);
+  if (in_time) return std::move(listing->devices);
+  const std::lock_guard lock(mutex);
+  late = listing;
+  throw OpenClTimeout(no_answer);
 }
 
 }  // namespace remote_touch

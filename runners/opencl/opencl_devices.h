@@ -1,6 +1,7 @@
 // The OpenCL devices of this machine, and whether their arithmetic can keep the bits of the CPU.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,15 @@ struct OpenClDevice {
   std::string unfit_because;
 
   std::string address() const { return "opencl:" + std::to_string(platform) + ":" + std::to_string(number); }
+  std::string full_name() const { return address() + " (" + name + ")"; }
 };
 
 // In the order of platforms and devices; empty where no driver is installed. Throws OpenClError.
 std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library);
+
+// The same of the library of this process. To load it and its drivers may take kListLimit; after that, and as
+// long as they do not answer, this throws OpenClTimeout. Throws InputError where there is no library.
+inline constexpr std::chrono::milliseconds kListLimit{20000};
+std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit = kListLimit);
 
 }  // namespace remote_touch

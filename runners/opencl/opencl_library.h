@@ -18,6 +18,11 @@ class OpenClError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+// A driver did not answer within a limit.
+class OpenClTimeout : public OpenClError {
+ public:
+  using OpenClError::OpenClError;
+};
 
 // Each is null until the constructor found it, and is named as in the library.
 #define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \
@@ -25,8 +30,8 @@ class OpenClError : public std::runtime_error {
       each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
           each(BuildProgram) each(GetProgramBuildInfo) each(ReleaseProgram) each(CreateKernel)              \
               each(SetKernelArg) each(ReleaseKernel) each(CreateBuffer) each(ReleaseMemObject)              \
-                  each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueReadBufferRect)         \
-                      each(EnqueueNDRangeKernel) each(Finish)
+                  each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueMapBuffer)              \
+                      each(EnqueueUnmapMemObject) each(EnqueueNDRangeKernel) each(Finish)
 
 class OpenClLibrary {
  public:

@@ -38,6 +38,7 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   replay.trace = simulate(replay.experiment, options);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
   replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);
+  replay.experiment.add_depth_device(replay.attributes);
   const std::vector<Column> columns = replay.trace.columns();
   replay.digest = output.empty() ? digest(columns) : write_trace(output, columns, replay.attributes, {});
   return replay;

@@ -95,7 +95,7 @@ void CameraFeed::handle(SensorFrame& sensed) {
     return;
   }
   ++index_;
-  processing_.fill(frame, cloud_of(sensed, source_->view(), X_WC_), off);
+  processing_.fill(frame, sensed, source_->view(), X_WC_, off);
   renderer_.prepare(frame);
   send(std::move(frame), sensed.captured_s);
   counts_.processing_s += clock_.now_s() - begin_s;

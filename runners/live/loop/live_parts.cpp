@@ -41,16 +41,20 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   const SensorView& view = source->view();
   renderer_->reserve(expected_points(view));
   const RigidTransform registration = camera_registration(experiment.live());
-  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_, recorder(view, registration * view.X_WC),
-                                         options.on_tick);
+  FrameProcessing processing =
+      experiment.build_processing(*options.kernels, switches_, [this](const std::string& line) {
+        const std::lock_guard lock(told_mutex_);
+        told_.push_back(line);
+      });
+  logger_ = std::make_unique<LiveLogger>(
+      rows_, rate_hz_, recorder(experiment, view, registration * view.X_WC), options.on_tick);
   const auto sink = [this](const SensorFrame& sensed, const Frame& frame, std::uint64_t off) {
     return logger_->record(sensed, frame.captured_s, off);
   };
   const std::int64_t start_ns = clock_.now_ns();
   ends_ns_ = end_ns(start_ns, options.duration_s);
-  camera_ = std::make_unique<CameraFeed>(std::move(source),
-                                         experiment.build_processing(*options.kernels, switches_), *renderer_,
-                                         registration, clock_, start_ns, frames_, sink, options.on_frame);
+  camera_ = std::make_unique<CameraFeed>(std::move(source), std::move(processing), *renderer_, registration,
+                                         clock_, start_ns, frames_, sink, options.on_frame);
   force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
@@ -63,13 +67,15 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   if (force_scale_ < 1) report_force_scale();
 }
 
-std::unique_ptr<SessionWriter> LiveParts::recorder(const SensorView& view,
+std::unique_ptr<SessionWriter> LiveParts::recorder(const Experiment& experiment, const SensorView& view,
                                                    const RigidTransform& registered) const {
   if (options_.record.empty()) return nullptr;
   std::vector<std::string> names;
   if (options_.controls)
     for (const LiveParameter& parameter : options_.controls->parameters()) names.push_back(parameter.name);
-  return std::make_unique<SessionWriter>(options_.record, view, registered, options_.provenance, names);
+  TextAttributes provenance = options_.provenance;
+  experiment.add_depth_device(provenance);
+  return std::make_unique<SessionWriter>(options_.record, view, registered, provenance, names);
 }
 
 // Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.
@@ -91,6 +97,7 @@ void LiveParts::run_loop() noexcept {
 
 LiveResult LiveParts::finish() {
   logger_->finish();
+  report_told();
   LiveResult result;
   result.device = device_->traits().name;
   result.force_scale = force_scale_;
@@ -136,6 +143,15 @@ void LiveParts::report_line(const std::string& line) const {
   if (options_.report_line) options_.report_line(line);
 }
 
+void LiveParts::report_told() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(told_mutex_);
+    lines.swap(told_);
+  }
+  for (const std::string& line : lines) report_line(line);
+}
+
 void LiveParts::report_force_scale() const {
   char line[160];
   std::snprintf(line, sizeof line,
@@ -145,6 +161,7 @@ void LiveParts::report_force_scale() const {
 }
 
 void LiveParts::report_changes() {
+  report_told();
   if (!reported_camera_ && !camera_->ended().empty()) {
     reported_camera_ = true;
     report_line("no more frames (" + camera_->ended() + "): the last cloud stays");

@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/live_logger.h"
@@ -39,13 +41,15 @@ class LiveParts {
   LiveResult finish();
 
  private:
-  std::unique_ptr<SessionWriter> recorder(const SensorView& view, const RigidTransform& registered) const;
+  std::unique_ptr<SessionWriter> recorder(const Experiment& experiment, const SensorView& view,
+                                          const RigidTransform& registered) const;
   void require_rate() const;
   LiveCounts counts() const;
   std::string camera_failure() const;
   std::string why_over() const;
   std::string why_lost() const;
   void report_line(const std::string& line) const;
+  void report_told();
   void report_force_scale() const;
 
   const LiveOptions& options_;
@@ -57,6 +61,8 @@ class LiveParts {
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;
+  std::mutex told_mutex_;
+  std::vector<std::string> told_;  // by the camera's thread, for report_changes()
   TripleBuffer<LiveFrame> frames_;
   Ring<LiveTick> rows_;
   std::unique_ptr<LiveLogger> logger_;

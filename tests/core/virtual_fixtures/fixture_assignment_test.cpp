@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/virtual_fixtures/everywhere.h"
+#include "core/virtual_fixtures/hue_range.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fixture_assignment_test {
@@ -213,6 +215,43 @@ TEST(FixtureValues, ThatContradictThemselvesAreRefused) {
   EXPECT_EQ(validate(scheduled({0, 1.5})), "schedule: strength 1.500000: expected 0 to 1");
   EXPECT_EQ(validate(scheduled({0, 0, 2, 1, 1, 0})),
             "schedule: time 1.000000: expected no earlier than the row before");
+}
+
+// --- steps by hue, for another device ---
+
+FixtureAssignment by_hue(FixtureRole role, bool with_other_rule) {
+  HueRange::Settings red, blue;
+  blue.from_deg = 200, blue.to_deg = 280;
+  blue.values.role = role, blue.values.radius_m = 0.03, blue.values.schedule = {0, 0, 2, 1};
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  rules.push_back(std::make_unique<HueRange>(red));
+  rules.push_back(std::make_unique<HueRange>(blue));
+  if (with_other_rule) rules.push_back(std::make_unique<Told>(FixtureValues{}, Column{}));
+  return FixtureAssignment(std::move(rules));
+}
+
+TEST(FixtureAssignment, StepsByHueAreItsRulesWithTheirStrengthThen) {
+  const auto steps = by_hue(FixtureRole::forbidden, false).hue_steps(0.5, 0);
+  ASSERT_TRUE(steps.has_value());
+  ASSERT_EQ(steps->size(), 2u);
+  EXPECT_EQ(steps->at(0).range.from_deg, 340);
+  EXPECT_EQ(steps->at(0).strength, 1);
+  EXPECT_EQ(steps->at(1).range.values.radius_m, 0.03);
+  EXPECT_EQ(steps->at(1).strength, 0.25);
+}
+
+TEST(FixtureAssignment, StepsByHueLeaveOutRulesThatAreOff) {
+  const FixtureAssignment fixtures = by_hue(FixtureRole::forbidden, false);
+  const auto steps = fixtures.hue_steps(2, 1);
+  ASSERT_EQ(steps.value_or(HueSteps{}).size(), 1u);
+  EXPECT_EQ(steps->at(0).range.from_deg, 200);
+  EXPECT_EQ(fixtures.hue_steps(2, 3).value_or(HueSteps(1)).size(), 0u);  // the column of r_f is still made
+}
+
+TEST(FixtureAssignment, ThereAreNoStepsByHueForOtherRules) {
+  EXPECT_FALSE(by_hue(FixtureRole::guidance, false).hue_steps(0, 0).has_value());
+  EXPECT_FALSE(by_hue(FixtureRole::forbidden, true).hue_steps(0, 0).has_value());
+  EXPECT_FALSE(FixtureAssignment().hue_steps(0, 0).has_value());
 }
 
 }  // namespace

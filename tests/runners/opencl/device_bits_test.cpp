@@ -1,14 +1,22 @@
 // The bits of a real OpenCL device beside those of the CPU. Debian's pocl is one on every processor.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "core/parameters/input_error.h"
 #include "runners/opencl/depth_device.h"
+#include "runners/opencl/device_pipeline.h"
 #include "runners/opencl/opencl_devices.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/core/depth/depth_cases.h"
+#include "tests/runners/opencl/coloured_frames.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::device_bits_test {
@@ -37,6 +45,7 @@ class DeviceBits : public testing::Test {
       PointCloud a = cloud_from_depth(scene.depth, scene.camera, X_WC), b = a;
       on_device.process(a), on_cpu.process(b);
       EXPECT_TRUE(same_bits(a, b));
+      EXPECT_EQ(coloured_frames::differs(on_device, settings, scene, X_WC), "");
       EXPECT_TRUE(on_device.uses_device());
     }
   }
@@ -71,6 +80,12 @@ TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
   expect_same(settings, with_holes(83, 37), some_pose());
 }
 
+// As on a device whose single divisions and roots are not rounded correctly.
+TEST_F(DeviceBits, AreThoseOfTheCpuWithDivisionsInDouble) {
+  for (OpenClDevice& device : devices_) device.rounds_division = false;
+  expect_same({}, with_holes(161, 121), some_pose());
+}
+
 TEST_F(DeviceBits, AreThoseOfTheCpuOnRecordedFrames) {
   for (const char* name : {"visp_organ_table", "sr305_hand_flex", "pcd_single/mosd_boxes_learn3.pcd"}) {
     const std::filesystem::path path = data_root() / "rgbd" / name;
@@ -79,6 +94,37 @@ TEST_F(DeviceBits, AreThoseOfTheCpuOnRecordedFrames) {
     const CameraIntrinsics& camera = cloud.image->camera;
     expect_same({}, {camera, {camera.width, camera.height, cloud.z}, {}}, some_pose());
   }
+}
+
+// As the threads of a sweep do from its first runs on: each lists, opens and computes. Before listings came
+// one after another, the loader found no driver in some of them, or crashed.
+TEST(DeviceThreads, BeginAtOnceAndHaveTheBitsOfTheCpu) {
+  unsetenv("REMOTE_TOUCH_LIBOPENCL");
+  const scenes::DepthScene scene = with_holes(70, 30);
+  const PointCloud expected = processed(scene, {}, some_pose());
+  std::atomic<int> refused = 0, same = 0;
+  std::string why;
+  std::mutex mutex;
+  const auto process = [&] {
+    DepthDeviceSettings settings;
+    settings.device = "opencl";
+    try {
+      const auto processor = make_depth_processor(settings, best(), nullptr);
+      for (int frame = 0; frame < 5; ++frame)
+        same += same_bits(processor->process(scene.depth, scene.camera, some_pose()), expected) ? 1 : 0;
+    } catch (const InputError& error) {
+      const std::lock_guard lock(mutex);
+      ++refused, why = error.what();
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) threads.emplace_back(process);
+  }
+  if (refused == 4) GTEST_SKIP() << why;
+  EXPECT_EQ(refused, 0) << why;
+  EXPECT_EQ(same, 4 * 5);
+  EXPECT_NE(depth_device_of({{}, "opencl"}), "");
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // A device that fails, hangs or computes other bits, with a test double of the OpenCL library. A program of
 // its own: a library is loaded once for a process.
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -8,10 +7,13 @@
 #include <thread>
 
 #include "core/parameters/input_error.h"
+#include "runners/opencl/built_kernels.h"
 #include "runners/opencl/depth_device.h"
+#include "runners/opencl/device_pipeline.h"
 #include "runners/opencl/opencl_devices.h"
 #include "tests/core/depth/depth_cases.h"
 #include "tests/doubles/opencl_double.h"
+#include "tests/runners/opencl/coloured_frames.h"
 
 namespace remote_touch::opencl_double_test {
 namespace {
@@ -19,11 +21,7 @@ namespace {
 using namespace depth_cases;
 
 OpenClDouble& library() {
-  static OpenClDouble& one = *[] {
-    void* const loaded = dlopen(REMOTE_TOUCH_DOUBLE_OPENCL, RTLD_NOW | RTLD_LOCAL);
-    EXPECT_NE(loaded, nullptr) << dlerror();
-    return reinterpret_cast<OpenClDouble* (*)()>(dlsym(loaded, "opencl_double"))();
-  }();
+  static OpenClDouble& one = loaded_opencl_double(REMOTE_TOUCH_DOUBLE_OPENCL);
   return one;
 }
 
@@ -31,7 +29,13 @@ class OpenClDoubleTest : public testing::Test {
  protected:
   void SetUp() override {
     setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
+    begin_anew();
+  }
+  // As in a new process.
+  static void begin_anew() {
     library().reset();
+    for (const OpenClDevice& device : opencl_devices(opencl_library()))
+      forget_trials(device), forget_kernels(device.id);
   }
   std::unique_ptr<DevicePipeline> opened() {
     return std::make_unique<DevicePipeline>(opencl_devices(opencl_library()).at(0), Settings{}, best(),
@@ -72,18 +76,19 @@ TEST_F(OpenClDoubleTest, TheKernelsHaveTheBitsOfTheCpuForEveryWindow) {
       DevicePipeline pipeline(opencl_devices(opencl_library()).at(0), settings, best(), nullptr);
       EXPECT_TRUE(same_bits(pipeline.process(scene.depth, scene.camera, some_pose()),
                             processed(scene, settings, some_pose())));
+      EXPECT_EQ(coloured_frames::differs(pipeline, settings, scene, some_pose()), "");
       EXPECT_TRUE(pipeline.uses_device());
     }
 }
 
 // Each function that a frame calls, from its first and from a later call of the frame on.
 TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
-  for (const char* function :
-       {"clCreateBuffer", "clEnqueueWriteBuffer", "clEnqueueWriteBufferRect", "clSetKernelArg",
-        "clEnqueueNDRangeKernel", "clEnqueueReadBufferRect", "clFinish"})
+  std::vector<const char*> functions(std::begin(kFrameFunctions), std::end(kFrameFunctions));
+  functions.insert(functions.end(), {"clCreateBuffer", "clEnqueueWriteBufferRect"});
+  for (const char* function : functions)
     for (const int call : {1, 3}) {
       SCOPED_TRACE(std::string(function) + " " + std::to_string(call));
-      library().reset(), told_.clear();
+      begin_anew(), told_.clear();
       const auto pipeline = opened();
       library().failing = function, library().failing_call = call, library().code = CL_OUT_OF_RESOURCES;
       for (int frame = 0; frame < 4; ++frame) EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
@@ -93,6 +98,30 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
           << told_[0];
       EXPECT_NE(told_[0].find("the CPU processes this frame and all later ones"), std::string::npos);
     }
+}
+
+TEST_F(OpenClDoubleTest, WhatCannotBeDoneAtOnceIsLeftAsItWas) {
+  const auto pipeline = opened();
+  const FixtureAssignment fixtures = coloured_frames::rules_by_hue();
+  const HueSteps steps = fixtures.hue_steps(0, 0).value();
+  const PointCloud measured = cloud_from_depth(scene_.depth, scene_.camera, some_pose());
+  const auto expect_left = [&](PointCloud cloud) {
+    const PointCloud before = cloud;
+    EXPECT_FALSE(pipeline->process_all(cloud, steps));
+    EXPECT_TRUE(coloured_frames::same_columns(cloud, before));
+  };
+  expect_left(measured);  // no colours
+  PointCloud coloured = measured;
+  coloured.colour = coloured_frames::colours(measured.size());
+  PointCloud with_radius = coloured, with_stiffness = coloured;
+  with_radius.fixture_radius_m.assign(measured.size(), 0.01);
+  with_stiffness.stiffness_N_per_m.assign(measured.size(), 100);
+  expect_left(with_radius), expect_left(with_stiffness);
+  EXPECT_TRUE(pipeline->uses_device());
+  library().failing = "clEnqueueMapBuffer", library().failing_call = 1;
+  expect_left(coloured);
+  EXPECT_EQ(told_.size(), 1u);
+  expect_left(coloured);
 }
 
 TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
@@ -114,16 +143,81 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_EQ(library().objects, 0);  // its thread tidies up when the driver lets it go
 }
 
+// A sweep of short runs: the second run finds what the first one built and tried.
+TEST_F(OpenClDoubleTest, KernelsAreBuiltAndTriedOnceInAProcess) {
+  library().failing = "clBuildProgram", library().failing_call = 1000;
+  DepthDeviceSettings settings;
+  settings.device = "opencl", settings.filter_window = 5;
+  const auto first = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 1);
+  library().failing = "clEnqueueNDRangeKernel", library().calls = 0;
+  const auto second = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 4);  // those of the small first frame, and no trial
+  EXPECT_TRUE(same_bits(processed_by(*first), processed(scene_, settings, some_pose())));
+  EXPECT_TRUE(same_bits(processed_by(*second), processed(scene_, settings, some_pose())));
+  library().failing = "clBuildProgram", library().calls = 0;
+  settings.filter_window = 7;
+  make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(library().calls, 1);  // another window, other kernels
+}
+
+// What was built for a device that was lost is of no use when it is there again.
+TEST_F(OpenClDoubleTest, AfterAFailureKernelsAreBuiltAndTriedAnew) {
+  const auto pipeline = opened();
+  library().failing = "clFinish", library().failing_call = 1;
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
+  for (int i = 0; i < 2000 && library().objects > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(library().objects, 0);
+  library().failing = "clBuildProgram", library().failing_call = 1000, library().calls = 0;
+  EXPECT_TRUE(same_bits(processed_by(*opened()), expected_));
+  EXPECT_EQ(library().calls, 1);
+}
+
+TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
+  DepthDeviceSettings settings;
+  EXPECT_EQ(depth_device_of(settings), "");
+  settings.device = "opencl", settings.sigma_f_m = 0.02;
+  EXPECT_EQ(depth_device_of(settings), "");
+  const auto processor = make_depth_processor(settings, best(), nullptr);
+  EXPECT_EQ(depth_device_of(settings), "opencl:0:0 (double, double)");
+  library().failing = "clFinish", library().failing_call = 1;
+  processed_by(*processor);
+  EXPECT_EQ(depth_device_of(settings), "opencl:0:0 (double, double), which failed: then the CPU");
+  settings.sigma_f_m = 0.03;
+  EXPECT_EQ(depth_device_of(settings), "");  // of other settings
+}
+
+TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
+  library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
+  EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(listed_devices(), OpenClTimeout);  // at once, while they still hang
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
+  EXPECT_TRUE(refusal("auto").empty());
+  library().let_go = true;
+  std::vector<OpenClDevice> again;
+  for (int i = 0; i < 2000 && again.empty(); ++i) try {
+      library().failing.clear();
+      again = listed_devices();
+    } catch (const OpenClTimeout&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  EXPECT_EQ(again.size(), 1u);
+}
+
 TEST_F(OpenClDoubleTest, ADeviceThatCannotBeOpenedIsRefusedWithTheReason) {
   for (const char* function : {"clGetPlatformIDs", "clGetPlatformInfo", "clGetDeviceIDs", "clGetDeviceInfo",
                                "clCreateContext", "clCreateCommandQueue", "clCreateProgramWithSource",
                                "clBuildProgram", "clCreateKernel", "clFinish"}) {
-    library().reset();
+    begin_anew();
     library().failing = function, library().failing_call = 1;
     EXPECT_NE(refusal("opencl").find(std::string(function) + ": CL_OUT_OF_RESOURCES"), std::string::npos)
         << refusal("opencl");
     EXPECT_TRUE(refusal("auto").empty());  // then the CPU does it
   }
+  begin_anew();
   library().failing = "clBuildProgram", library().code = CL_BUILD_PROGRAM_FAILURE;
   EXPECT_NE(refusal("opencl").find("clBuildProgram: error: of the double"), std::string::npos);
 }
@@ -149,7 +243,7 @@ TEST_F(OpenClDoubleTest, ADeviceWithOtherBitsIsRefusedUnlessItIsAllowed) {
             std::string::npos)
       << refusal("opencl:0:0");
   EXPECT_TRUE(refusal("opencl:0:0", false).empty());
-  library().reset();
+  begin_anew();
   library().is_wrong = true;
   const std::string told = refusal("opencl");
   EXPECT_NE(told.find("gave other bits than the CPU in a trial frame"), std::string::npos) << told;

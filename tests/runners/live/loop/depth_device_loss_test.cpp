@@ -1,0 +1,161 @@
+// What a live run does when the OpenCL device of its depth pipeline fails or hangs, with a test double of the
+// library. A program of its own: a library is loaded once for a process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "runners/live/devices/device_table.h"
+#include "runners/simulation/simulation.h"
+#include "tests/doubles/opencl_double.h"
+#include "tests/runners/live/loop/simulated_run.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::depth_device_loss_test {
+namespace {
+
+OpenClDouble& library() {
+  static OpenClDouble& one = loaded_opencl_double(REMOTE_TOUCH_DOUBLE_OPENCL);
+  return one;
+}
+
+// A hand in front of the valves, which are forbidden by their colours. The hash of each frame, its points,
+// radii and stiffness, is in the trace.
+Experiment at_the_valves(const std::string& device) {
+  return Experiment::from_json(R"({
+  "scenario": {"name": "valve-tank", "width": 80, "height": 60, "focal_px": 66},
+  "depth_pipeline": {"filter_window": 3, "normal_window": 5},
+  "fixtures": [{"name": "hue-range", "from_deg": 340, "to_deg": 20, "radius_m": 0.04},
+               {"name": "hue-range", "from_deg": 35, "to_deg": 80, "radius_m": 0.03, "stiffness_N_per_m": 200}],
+  "renderer": {"name": "proxy"},
+  "trajectory": {"name": "poses", "poses": [[0, 0.02, 0.33, 0, 0, 0, 0], [-0.105, 0.006, 0.2, 0, 0, 0, 1]]}})",
+                               "test", {"depth_pipeline.device=" + device});
+}
+
+constexpr double kFails_s = 0.5;
+constexpr const char* kTakeover = "; the CPU processes this frame and all later ones";
+
+class DepthDeviceLoss : public testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
+    library().reset();
+  }
+  // One second on a simulated clock; fail() happens in the middle.
+  LiveResult run(
+      const std::string& device, const std::function<void()>& fail = [] {}) {
+    SimulatedClock clock;
+    SimulatedRun run(clock, at_the_valves(device), [](const Experiment& experiment, Clock& own) {
+      return open_device("sim:", {experiment, scenes::kernels(), own});
+    });
+    run.options.duration_s = 1;
+    run.options.provenance = {{"config", at_the_valves(device).to_json()}};
+    run.options.record = folder_ / (device + ".h5");
+    run.options.on_frame = [&](const Frame& frame) {
+      frames_.push_back({clock.now_ns(), frame.index, kernel_runs()});
+    };
+    clock.at(kFails_s, fail);
+    LiveResult result = run.run();
+    told_ = run.told();
+    return result;
+  }
+  static int kernel_runs() { return library().kernel_runs; }
+  static void fail_in(const char* function, int call = 1) {
+    library().calls = 0, library().failing_call = call, library().failing = function;
+  }
+
+  struct SeenFrame {
+    std::int64_t at_ns;
+    int index, kernel_runs;
+  };
+  const TestFolder folder_{"depth_device_loss"};
+  std::vector<SimulatedRun::Told> told_;
+  std::vector<SeenFrame> frames_;
+};
+
+// The frame in which the call fails is processed by the CPU, no frame is missing, and nothing of what the
+// hand feels tells that something happened.
+TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
+  const LiveResult on_cpu = run("cpu");
+  EXPECT_TRUE(told_.empty());
+  const std::size_t frames = frames_.size();
+  const std::string expected = digest(on_cpu.log.trace.columns());
+  for (const char* function : kFrameFunctions) {
+    SCOPED_TRACE(function);
+    library().reset(), frames_.clear();
+    const LiveResult result = run("opencl", [&] { fail_in(function); });
+    EXPECT_GT(library().calls, 0) << "was not called";
+    EXPECT_EQ(digest(result.log.trace.columns()), expected);
+    EXPECT_EQ(result.log.missed_ticks, 0);
+    EXPECT_FALSE(result.failed) << result.ended;
+    ASSERT_EQ(frames_.size(), frames);
+    ASSERT_EQ(told_.size(), 1u);
+    EXPECT_EQ(told_[0].line, "depth_pipeline.device = opencl:0:0 (double, double) failed: " +
+                                 std::string(function) + ": CL_OUT_OF_RESOURCES (-5)" + kTakeover);
+    // The first frame after the failure is that of 0.5 s, and the next look for news is 10 ms later at most.
+    EXPECT_GE(told_[0].at_ns, ms(500));
+    EXPECT_LE(told_[0].at_ns, ms(550));
+    // It was the device before: from the sensor's numbers to the columns of fixtures.
+    EXPECT_EQ(frames_[1].kernel_runs, frames_[0].kernel_runs + 6);
+    EXPECT_EQ(frames_[frames - 1].kernel_runs, frames_[frames - 2].kernel_runs);
+  }
+}
+
+TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
+  const LiveResult live = run("opencl");
+  EXPECT_TRUE(told_.empty());
+  // From the disk frames come as clouds: another way through the device, with the same bits.
+  SimulationOptions offline;
+  offline.kernels = &scenes::kernels(), offline.hash_frames = true;
+  const int before = kernel_runs();
+  const Trace again = simulate(Experiment::load((folder_ / "opencl.h5").string()), offline);
+  EXPECT_GT(kernel_runs(), before);
+  EXPECT_EQ(digest(again.columns()), digest(live.log.trace.columns()));
+  EXPECT_EQ(attribute(Hdf5Reader(folder_ / "opencl.h5").attributes(), "depth_device"),
+            "opencl:0:0 (double, double)");
+  run("cpu");
+  EXPECT_EQ(attribute(Hdf5Reader(folder_ / "cpu.h5").attributes(), "depth_device"), "");
+}
+
+// In real time, with the threads of a live run: the camera's waits 2 s for the driver, the haptic loop does
+// not.
+TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
+  const Experiment experiment = at_the_valves("opencl");
+  std::vector<std::string> told;
+  int frames = 0;
+  LiveOptions options;
+  options.kernels = &scenes::kernels();
+  options.duration_s = 4;
+  options.stall_s =
+      0.5;  // a busy machine delays ticks too, but not for a quarter of the time that the driver hangs
+  options.report_line = [&](const std::string& line) { told.push_back(line); };
+  options.on_frame = [&](const Frame&) {
+    if (++frames == 10) library().hangs = true, fail_in("clFinish");
+  };
+  const LiveResult result = run_live(experiment, options);
+  EXPECT_FALSE(result.failed) << result.ended;
+  EXPECT_GT(frames, 10);                             // the CPU went on
+  EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // and this is what the hand had no frames for
+  const auto takeovers = std::count_if(told.begin(), told.end(), [](const std::string& line) {
+    return line.find(kTakeover) != std::string::npos;
+  });
+  EXPECT_EQ(takeovers, 1);
+  EXPECT_LT(result.log.interval_s.greatest(), options.stall_s);
+  EXPECT_EQ(result.counts.stalls, 0);
+  library().let_go = true;
+  for (int i = 0; i < 2000 && library().objects > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(library().objects, 0);
+}
+
+}  // namespace
+}  // namespace remote_touch::depth_device_loss_test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
