@@ -81,9 +81,8 @@ RunResult run(const RunRequest& request, const LongWork& work) {
   options.hash_frames = options.find_true_contact = true;
   std::vector<double> durations;
   if (request.timing) options.step_duration_s = &durations;
-  TextAttributes origin =
-      provenance(experiment.to_json(), Recipe{"run", request.subject, request.overrides}, work.kernels.isa,
-                 input_hashes(experiment.inputs()));
+  TextAttributes origin = provenance(experiment.to_json(), Recipe{"run", request.subject, request.overrides},
+                                     work.kernels.isa, input_hashes(experiment.inputs()));
   const Trace trace = simulate(experiment, options);
   experiment.add_depth_device(origin);
   RunResult result{trace.columns(), measures_of(trace), {}, {}};
