@@ -52,7 +52,7 @@ struct DepthFrame {
 
 // A whole depth image as sensors send it.
 struct RawDepth {
-  const std::uint16_t* units;  // 0: nothing measured
+  const std::uint16_t* units;  // of each pixel; 0: nothing measured
   double metres_per_unit;
   CameraIntrinsics camera;
   RigidTransform X_WC;
@@ -74,7 +74,7 @@ class DepthProcessor {
   // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
   void process(PointCloud& cloud);
 
-  // More of a frame at once, for a processor to which the way is long. False: it does not do that, and the
+  // More of a frame at once, for a processor to which copying takes long. False: it does not do that, and the
   // cloud is as it was. steps: fill the columns of r_f and k_s by the cloud's colours.
   // process(cloud), and the steps.
   virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }

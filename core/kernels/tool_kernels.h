@@ -145,8 +145,8 @@ struct ToolKernels {
   std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
                                 const PosedField&, const DiskLimits&, double* nearest, bool is_new,
                                 const DiskColumns&, std::size_t& outside_count);
-  // The points of the groups that the limits want, in their order: bit for bit what sample_field() gives.
-  // Outside the grid that is taken which is as near at the nearest place of the grid. nearest and is_new are
+  // The points of the groups that the limits want, in their order: bit for bit what sample_field() gives. A
+  // point outside the grid is taken if the nearest place of the grid is within reach. nearest and is_new are
   // as above, one for each group[i]. Returns how many there are, outside_count of them outside the grid.
   std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
                                  const PosedField&, const PlaceLimits&, double* nearest, bool is_new,

@@ -18,13 +18,19 @@ std::string options(const OpenClDevice& device, const DepthPipelineSettings& set
   return text;
 }
 
-// `mutex` is not locked while something is built or released. Kernels are built one after another, by whoever
-// has a deadline: compilers in drivers are not all safe in two threads, and the second one may find what it
-// needs.
+// `mutex` is not locked while something is built or released. The kernels of one platform are built one after
+// another, by whoever has a deadline: compilers in drivers are not all safe in two threads, and the second
+// one may find what it needs. A driver that hangs holds up no other one.
 struct Cache {
   using Key = std::pair<cl_device_id, std::string>;
-  std::mutex mutex, one_at_a_time;
+  std::mutex mutex;
   std::map<Key, std::shared_ptr<const BuiltKernels>> built;
+  std::map<int, std::mutex> one_at_a_time;  // of each platform
+
+  std::mutex& turn_of(int platform) {
+    const std::lock_guard lock(mutex);
+    return one_at_a_time[platform];
+  }
 };
 
 Cache& cache() {
@@ -66,7 +72,7 @@ std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, 
                                                   const DepthPipelineSettings& settings) {
   Cache& all = cache();
   const Cache::Key key{device.id, options(device, settings)};
-  const std::lock_guard alone(all.one_at_a_time);
+  const std::lock_guard alone(all.turn_of(device.platform));
   {
     const std::lock_guard lock(all.mutex);
     if (const auto known = all.built.find(key); known != all.built.end()) return known->second;
@@ -76,12 +82,13 @@ std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, 
   return all.built.emplace(key, std::move(made)).first->second;
 }
 
-void forget_kernels(cl_device_id device) {
+std::vector<std::shared_ptr<const BuiltKernels>> forget_kernels(cl_device_id device) {
   std::vector<std::shared_ptr<const BuiltKernels>> forgotten;
   const std::lock_guard lock(cache().mutex);
   for (auto& [key, built] : cache().built)
     if (key.first == device) forgotten.push_back(std::move(built));
   std::erase_if(cache().built, [&](const auto& entry) { return entry.first.first == device; });
+  return forgotten;
 }
 
 }  // namespace remote_touch

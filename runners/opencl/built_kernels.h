@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/depth/depth_processor.h"
 #include "runners/opencl/opencl_devices.h"
@@ -34,7 +35,8 @@ class BuiltKernels {
 // Built now, unless they are there, after those that other threads build. Throws OpenClError.
 std::shared_ptr<const BuiltKernels> built_kernels(const OpenClLibrary& library, const OpenClDevice& device,
                                                   const DepthPipelineSettings& settings);
-// Those of a device that failed are built again by who asks next.
-void forget_kernels(cl_device_id device);
+// Those of a device that failed are built again by who asks next. Returns the old ones: to release them may
+// hang.
+[[nodiscard]] std::vector<std::shared_ptr<const BuiltKernels>> forget_kernels(cl_device_id device);
 
 }  // namespace remote_touch

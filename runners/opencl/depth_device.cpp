@@ -117,9 +117,11 @@ void note_choice(const DepthDeviceSettings& settings, const std::string& name) {
 std::unique_ptr<DepthProcessor> opened(const OpenClDevice& device, const DepthDeviceSettings& settings,
                                        const Kernels& kernels, const DepthReport& report) {
   const std::string name = device.full_name();
-  auto made = std::make_unique<DevicePipeline>(device, settings, kernels, [=](const std::string& line) {
+  auto made = std::make_unique<DevicePipeline>(device, settings, kernels, [=](const std::string& why) {
     note_choice(settings, name + ", which failed: then the CPU");
-    if (report) report(line);
+    if (report)
+      report("depth_pipeline.device = " + name + " failed: " + why +
+             "; the CPU processes this frame and all later ones");
   });
   note_choice(settings, name);
   return made;

@@ -89,11 +89,25 @@ void DeviceFrames::aim(const CameraIntrinsics& camera) {
   camera_ = camera;
 }
 
+void DeviceFrames::upload_steps(const DeviceFrame& frame) {
+  std::vector<double> numbers;
+  for (const auto& [range, strength] : frame.steps)
+    for (const double each :
+         {range.from_deg, range.to_deg, range.min_saturation, range.min_lightness, range.max_lightness,
+          range.values.radius_m, range.values.stiffness_N_per_m, strength})
+      numbers.push_back(each);
+  if (numbers.size() > most_steps_ || most_steps_ == 0) {
+    most_steps_ = std::max<std::size_t>(numbers.size(), 1);
+    steps_ = buffer(most_steps_ * sizeof(double));
+  }
+  if (!numbers.empty()) write(steps_, numbers);
+}
+
 void DeviceFrames::upload(const DeviceFrame& frame) {
   std::vector<double> X(std::begin(frame.X_WC), std::end(frame.X_WC));
   X.insert(X.end(), std::begin(frame.X_CW_z), std::end(frame.X_CW_z));
   write(X_, X);
-  if (!frame.colour.empty()) write(rgb_, frame.colour);
+  if (!frame.colour.empty()) write(rgb_, frame.colour), upload_steps(frame);
   if (frame.depth_m.empty()) return write(units_, frame.units);
   const std::size_t none[3] = {0, 0, 0}, row = static_cast<std::size_t>(camera_.width) * sizeof(double);
   const std::size_t region[3] = {row, static_cast<std::size_t>(camera_.height), 1};
@@ -139,17 +153,6 @@ void DeviceFrames::fill_columns(const DeviceFrame& frame) {
 }
 
 void DeviceFrames::assign_fixtures(const DeviceFrame& frame) {
-  std::vector<double> numbers;
-  for (const auto& [range, strength] : frame.steps)
-    for (const double each :
-         {range.from_deg, range.to_deg, range.min_saturation, range.min_lightness, range.max_lightness,
-          range.values.radius_m, range.values.stiffness_N_per_m, strength})
-      numbers.push_back(each);
-  if (numbers.size() > most_steps_ || most_steps_ == 0) {
-    most_steps_ = std::max<std::size_t>(numbers.size(), 1);
-    steps_ = buffer(most_steps_ * sizeof(double));
-  }
-  if (!numbers.empty()) write(steps_, numbers);
   const cl_int keeps_points = frame.keep_points ? 1 : 0, width = camera_.width;
   start(fixtures_, rgb_, depth_m_, keeps_points, steps_, static_cast<cl_int>(frame.steps.size()), width,
         columns_);

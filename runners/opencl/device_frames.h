@@ -53,6 +53,7 @@ class DeviceFrames {
   template <class... Arguments>
   void start(const Kernel& kernel, const Arguments&... arguments);
   void fill_columns(const DeviceFrame& frame);
+  void upload_steps(const DeviceFrame& frame);
   void assign_fixtures(const DeviceFrame& frame);
   void download(DeviceFrame& frame);
 

@@ -65,8 +65,8 @@ bool DevicePipeline::process_all(PointCloud& cloud, const HueSteps& steps) {
 // Points that are kept are those of cloud_from_depth() on the CPU.
 bool DevicePipeline::process_all(const RawDepth& raw, PointCloud& cloud, const HueSteps* steps) {
   const DepthFrame size{nullptr, raw.camera, raw.X_WC};
-  if (frames_ == nullptr || !settings_.filter || (steps != nullptr && raw.colour.size() != size.pixels()))
-    return false;
+  const bool fits = raw.colour.size() == size.pixels() || (raw.colour.empty() && steps == nullptr);
+  if (frames_ == nullptr || !settings_.filter || !fits) return false;
   start(size, steps, raw.colour);
   frame_->units.assign(raw.units, raw.units + size.pixels());
   frame_->metres_per_unit = raw.metres_per_unit;
@@ -115,19 +115,18 @@ void DevicePipeline::give_up(const std::string& why) {
   struct Last {
     std::shared_ptr<DeviceFrame> frame;  // the device may still read it
     std::shared_ptr<DeviceFrames> frames;
+    std::vector<std::shared_ptr<const BuiltKernels>> kernels;
   };
-  const auto last = std::make_shared<Last>(Last{std::move(frame_), std::move(frames_)});
+  const auto last =
+      std::make_shared<Last>(Last{std::move(frame_), std::move(frames_), forget_kernels(device_.id)});
   DeadlineThread().run(
-      [last, id = device_.id] {
-        forget_kernels(id);
+      [last] {
         last->frames->drain();
-        last->frames.reset();
+        last->frames.reset(), last->kernels.clear();
       },
       std::chrono::milliseconds(0));
   frame_.reset(), frames_.reset(), thread_.reset();
-  if (report_)
-    report_("depth_pipeline.device = " + device_.full_name() + " failed: " + why +
-            "; the CPU processes this frame and all later ones");
+  if (report_) report_(why);
 }
 
 }  // namespace remote_touch

@@ -26,8 +26,8 @@ class DevicePipeline final : public DepthProcessor {
   DevicePipeline(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels,
                  std::function<void(const std::string&)> report);
 
-  // report() is called once, with one line, when the CPU takes over. A frame in which the device fails, or
-  // takes longer than kFrameLimit, is processed on the CPU, and so is every frame after it.
+  // report() is called once, with the reason in one line, when the CPU takes over. A frame in which the
+  // device fails, or takes longer than kFrameLimit, is processed on the CPU, and so is every frame after it.
   void process_frame(const DepthFrame& frame, PointCloud& cloud) override;
 
   // True unless the device has failed, before or in this frame, or columns of fixtures cannot be filled: the

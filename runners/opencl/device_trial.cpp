@@ -20,7 +20,8 @@ namespace remote_touch {
 namespace {
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 
 bool same_bits(const PointCloud& a, const PointCloud& b) {
@@ -94,7 +95,7 @@ DepthTrial try_now(const OpenClDevice& device, const DepthPipelineSettings& sett
                    const Kernels& kernels) {
   DepthTrial trial;
   DevicePipeline on_device(device, settings, kernels,
-                           [&trial](const std::string& line) { trial.failure = line; });
+                           [&trial](const std::string& why) { trial.failure = "failed: " + why; });
   DepthPipeline on_cpu(settings, kernels);
   const DepthImage image = trial_image();
   PointCloud a, b;
@@ -125,6 +126,10 @@ DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settin
   DepthTrial trial;
   trial.failure = device.unfit_because;
   if (!trial.failure.empty()) return trial;
+  // One after another, so that each is timed alone, and threads that begin at once all have one answer. Never
+  // freed: a thread may wait when the process ends.
+  static std::mutex& one_at_a_time = *new std::mutex;
+  const std::lock_guard alone(one_at_a_time);
   {
     const std::lock_guard lock(known().mutex);
     for (const Known::Entry& entry : known().trials)

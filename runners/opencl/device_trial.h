@@ -17,10 +17,10 @@ struct DepthTrial {
   double device_ms = 0, cpu_ms = 0;  // min of five
 };
 
-// Tried now, or as it was found in this process with these settings. A failure is found anew each time,
-// except that of a device that did not answer.
+// Tried now, after those of other threads, or as it was found in this process with these settings. A failure
+// is found anew each time, except that of a device that was not opened in time.
 DepthTrial tried(const OpenClDevice& device, const DepthPipelineSettings& settings, const Kernels& kernels);
-// What was found of a device that failed since, together with its kernels.
+// Forgets what was found of a device that failed since.
 void forget_trials(const OpenClDevice& device);
 
 }  // namespace remote_touch

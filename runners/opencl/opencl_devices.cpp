@@ -101,7 +101,7 @@ std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
   // that hangs may hold it when the process ends.
   static std::mutex& one_at_a_time = *new std::mutex;
   const OpenClTimeout no_answer("its drivers did not list their devices in " +
-                                std::to_string(kListLimit.count() / 1000) + " s");
+                                std::to_string(limit.count() / 1000) + " s");
   {
     const std::lock_guard lock(mutex);
     if (late && !late->is_over) throw OpenClTimeout(no_answer);

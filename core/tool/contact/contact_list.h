@@ -35,8 +35,8 @@ class ContactList final : public NearContactSource {
   void reserve(std::size_t padded_size);                   // for clouds of that size
   const TouchFinder& finder() const { return finder_; }
   const NearDisks& near_disks() const { return disks_; }  // of the last call of near()
-  // All points whose field value is reach_m or less, none merged, but for some that are beyond the
-  // look-ahead. Valid until the next call.
+  // For TouchRule::continuous only: every point by itself, none merged, whose field value is at most reach_m,
+  // and at most look_ahead_m and the radius of the largest disk. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
   // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
@@ -44,7 +44,7 @@ class ContactList final : public NearContactSource {
   NearContacts near(const ToolPose& pose, double side) override;
   // The points in shell and interior voxels. Those without a normal are left out.
   VoxelContacts in_voxels(const ToolPose& pose);
-  // Points in shell or interior voxels, and under the look-ahead rule those whose disk is touched.
+  // Points in shell or interior voxels, and unless the rule is voxels those whose disk is touched.
   Touched touched(const ToolPose& pose);
 
  private:

@@ -54,6 +54,13 @@ NearContacts ContinuousContacts::near(const ToolPose& pose, double side) {
   return {contacts_, found.deepest_m + kGap_m};
 }
 
+bool ContinuousContacts::has_points_inside(const ToolPose& pose) const {
+  const NearPoints& points = points_->points_within(pose, 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points.distance_m(i) < -ClearWay::kInside_m) return true;
+  return false;
+}
+
 double ContinuousContacts::known_fraction(const Vector6& a_g) const {
   const double motion_m = max_point_displacement_m(a_g, reach_m_);
   return motion_m > max_motion_m_ ? max_motion_m_ / motion_m : 1;

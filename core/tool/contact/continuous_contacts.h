@@ -27,11 +27,12 @@ class ContinuousContacts final : public NearContactSource {
   // With the gap. Points that have stopped the tool since begin() are contacts of their own: a step that runs
   // against one of them is not tried again.
   NearContacts near(const ToolPose& pose, double side) override;
-  // pre: pose is that of the last call of near().
+  // A point is in the tool, also where near() has a disk for many that is not.
+  bool has_points_inside(const ToolPose& pose) const;
   double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;
   // The same for a motion away from a surface, when a frame has put points anywhere: only those with a normal
   // that faces the tool from ahead stop it, and they do at once if they are in it, as between walls that have
-  // closed. side: of the surface, as in near(). pre: as above; the motion is a translation.
+  // closed. side: of the surface, as in near(). pre: the motion is a translation.
   double fraction_ahead(const ToolPose& pose, const Vector6& a_g, double side) const;
 
  private:

@@ -13,10 +13,6 @@ int max_steps(int detections_per_tick) {
   return std::max(0, (detections_per_tick - 4) / 3);
 }
 
-bool is_clear(const NearContacts& near) {
-  return near.deepest_m <= ContinuousContacts::kGap_m;
-}
-
 Vector6 translation(const Vec3& by_W) {
   Vector6 a_g = Vector6::Zero();
   a_g.head<3>() = by_W;
@@ -31,11 +27,16 @@ ContinuousMotion::ContinuousMotion(const ToolParameters& parameters, const Voxel
       frame_reach_m_(std::min(parameters.frame_reach_m, step_m_ * max_steps(parameters.detections_per_tick))),
       motion_(parameters, tool, tool.reach_m) {}
 
+bool ContinuousMotion::is_clear(const NearContacts& near, const ToolPose& pose) const {
+  return near.deepest_m <= ContinuousContacts::kGap_m && !near_.has_points_inside(pose);
+}
+
 // A surface is close on the side that held the tool, and none is in it.
 bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& pose) const {
   const Vec3 push_T = pose.q_WT.conjugate() * push_W_;
-  return is_clear(near) && std::any_of(near.contacts.begin(), near.contacts.end(),
-                                       [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
+  return is_clear(near, pose) &&
+         std::any_of(near.contacts.begin(), near.contacts.end(),
+                     [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
 }
 
 // Out to the first place that is supported. Returns how far, or kNowhere_m.
@@ -73,7 +74,7 @@ void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& repor
   const double out_m = leave(outside, report.detections);
   if (out_m <= 0) return;
   // Where no point is in the tool the surface is gone, and may as well have gone the other way.
-  if (is_clear(near_.near(pose, 0))) {
+  if (is_clear(near_.near(pose, 0), pose)) {
     ToolPose ahead = pose;
     if (approach(ahead, out_m, report.detections) < out_m) return;
   }

@@ -25,6 +25,7 @@ class ContinuousMotion final : public ToolMotion {
   double frame_reach_m() const { return frame_reach_m_; }
 
  private:
+  bool is_clear(const NearContacts& near, const ToolPose& pose) const;
   bool is_supported(const NearContacts& near, const ToolPose& pose) const;
   double leave(ToolPose& pose, int& detections);
   double approach(ToolPose& pose, double distance_m, int& detections);

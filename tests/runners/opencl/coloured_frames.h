@@ -21,7 +21,9 @@ inline std::vector<std::uint32_t> colours(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     random = random * 1664525u + 1013904223u;
     const std::uint32_t level = random >> 24;
-    all.push_back(i % 5 == 0 ? level * 0x010101u : i % 5 == 1 ? 0xFFu << 8 * (random >> 8) % 3 : random >> 8);
+    all.push_back(i % 5 == 0   ? level * 0x010101u
+                  : i % 5 == 1 ? 0xFFu << 8 * ((random >> 8) % 3)
+                               : random >> 8);
   }
   return all;
 }

@@ -94,9 +94,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverInTheFrameInWhichACallFails) {
       for (int frame = 0; frame < 4; ++frame) EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
       EXPECT_FALSE(pipeline->uses_device());
       ASSERT_EQ(told_.size(), 1u);
-      EXPECT_NE(told_[0].find(std::string(function) + ": CL_OUT_OF_RESOURCES (-5)"), std::string::npos)
-          << told_[0];
-      EXPECT_NE(told_[0].find("the CPU processes this frame and all later ones"), std::string::npos);
+      EXPECT_EQ(told_[0], std::string(function) + ": CL_OUT_OF_RESOURCES (-5)");
     }
 }
 
