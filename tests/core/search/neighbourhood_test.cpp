@@ -76,5 +76,18 @@ TEST(Neighbourhood, FirstHitIsThatOfTheWholeCloud) {
   EXPECT_GT(hits, 200);
 }
 
+// The list that is there may be of a place elsewhere, even of the one on the other side of the origin.
+TEST(Neighbourhood, FirstHitDoesNotAskAListOfAnotherPlace) {
+  PointCloud cloud;
+  const Vec3 p(0.1, 0.08, -0.06), u = Vec3::UnitX();
+  cloud.append(p + 0.0105 * u);
+  Neighbourhood near(kReach, scenes::kernels());
+  near.set_points(make_search(cloud));
+  const double hit = near.first_hit(p, u, kContactRadius, 0.006);
+  EXPECT_NEAR(hit, 0.0105 - kContactRadius, 1e-12);
+  EXPECT_EQ(near.around(-p).size(), 0u);
+  EXPECT_EQ(near.first_hit(p, u, kContactRadius, 0.006), hit);
+}
+
 }  // namespace
 }  // namespace remote_touch::neighbourhood_test
