@@ -21,9 +21,10 @@ struct ProxyStep {
   std::array<double, kPoints> x{}, y{}, z{};
 
   ProxyStep() {
-    for (std::size_t i = 0; i < kPoints; ++i)
-      x[i] = 1e-3 * (static_cast<double>(i % kAlong) - 6),
-      y[i] = 1e-3 * (static_cast<double>((i - i % kAlong) / kAlong) - 3.5);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const std::size_t column = i % kAlong, row = i / kAlong;
+      x[i] = 1e-3 * (static_cast<double>(column) - 6), y[i] = 1e-3 * (static_cast<double>(row) - 3.5);
+    }
   }
   void operator()(const Kernels& kernels) const {
     constexpr int kSteps = 24;

@@ -122,7 +122,7 @@ function digestOffline(session) {
 }
 
 for (const [name, ...more] of [["fig5.8-recorded"], ["fig4.16"], ["fig6.4-organ"]])
-  test(`${name}: the mouse touches, and the recording gives the same digest`, { timeout: 120000 }, async (t) => {
+  test(`${name}: the mouse touches, and the recording gives the same digest`, { timeout: 400000 }, async (t) => {
     if (!process.env.REMOTE_TOUCH_DATA && name !== "fig4.16") return t.skip("needs a recording below REMOTE_TOUCH_DATA");
     const { address, stop } = await startLive(name, ...more, "--record", `${name}.session.h5`, "--force");
     const { page, complaints } = await openLive(address);
@@ -174,7 +174,7 @@ test("what cannot run has no address", () => {
 });
 
 // 300 000 points: a picture draws them once, and a frame is uploaded once.
-test("fig4.16 with 880 x 660 pixels", { timeout: 120000 }, async () => {
+test("fig4.16 with 880 x 660 pixels", { timeout: 400000 }, async () => {
   const { address, stop } = await startLive("fig4.16", "--set", "scenario.width=880", "--set", "scenario.height=660", "--set", "scenario.focal_px=722");
   const { page, complaints } = await openLive(address);
   const { uploads, draws, pictures, frames, points } = await page.evaluate(countWork);
@@ -186,7 +186,7 @@ test("fig4.16 with 880 x 660 pixels", { timeout: 120000 }, async () => {
   assert.deepEqual(complaints, []);
 });
 
-test("who is refused, and the run goes on", { timeout: 120000 }, async () => {
+test("who is refused, and the run goes on", { timeout: 400000 }, async () => {
   const { address, stop } = await startLive("fig4.16");
   const { page } = await openLive(address);
   const port = new URL(address).port, wrong = address.replace(/[0-9a-f]{32}/, "0".repeat(32));
