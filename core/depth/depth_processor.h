@@ -74,12 +74,12 @@ class DepthProcessor {
   // An organised cloud, in place: its depth image is taken from the points, all other columns stay.
   void process(PointCloud& cloud);
 
-  // More of a frame at once, for a processor to which copying takes long. False: it does not do that, and the
-  // cloud is as it was. steps: fill the columns of r_f and k_s by the cloud's colours.
-  // process(cloud), and the steps.
+  // A whole frame at once, for a processor to which copying takes long: process(cloud), then the columns of
+  // r_f and k_s by the steps and the cloud's colours. False: this processor does not do that, and the cloud
+  // is as it was.
   virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
-  // A sensor's image becomes a cloud with its colours: cloud_from_depth(), process(cloud), and the steps
-  // unless they are null.
+  // The same from a sensor's image, which first becomes a cloud with its colours, as by cloud_from_depth();
+  // without the columns of r_f and k_s where the steps are null.
   virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
     return false;
   }

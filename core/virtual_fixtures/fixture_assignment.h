@@ -32,8 +32,8 @@ class FixtureAssignment {
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
   std::uint64_t off() const { return switches_ ? switches_->off() : 0; }
 
-  // What assign() would do, where all rules are forbidden ranges of hue, of which another device may know how
-  // to apply them. None: there is another rule, or no rule at all.
+  // What assign() does, as numbers that an OpenCL device can apply: where every rule is a HueRange in the
+  // role forbidden. None: there is another rule, or no rule at all.
   std::optional<HueSteps> hue_steps(double captured_s, std::uint64_t off) const;
 
   // The targets of all guidance rules in their order, each with the rule's strength; at strength 0 it is not

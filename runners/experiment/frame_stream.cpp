@@ -36,10 +36,13 @@ void FrameProcessing::fill(Frame& frame, PointCloud cloud, std::uint64_t off) co
     if (!cloud.image)
       throw InputError("depth_pipeline", "this scenario's frames are no depth images: expected none");
     const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
-    if (steps && depth->process_all(cloud, *steps)) return finish(frame, std::move(cloud), off, true);
+    if (steps && depth->process_all(cloud, *steps)) {
+      frame.points = make_search(std::move(cloud));
+      return;
+    }
     depth->process(cloud);
   }
-  finish(frame, std::move(cloud), off, false);
+  apply_fixtures(frame, std::move(cloud), off);
 }
 
 void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const SensorView& view,
@@ -48,19 +51,20 @@ void FrameProcessing::fill(Frame& frame, const SensorFrame& sensed, const Sensor
     const std::optional<HueSteps> steps = fixtures.hue_steps(frame.captured_s, off);
     PointCloud cloud;
     if (depth->process_all({sensed.depth.data(), view.metres_per_unit, view.camera, X_WC, sensed.colour},
-                           cloud, steps ? &*steps : nullptr))
-      return finish(frame, std::move(cloud), off, steps.has_value());
+                           cloud, steps ? &*steps : nullptr)) {
+      if (steps)  // done; and where all rules are forbidden regions there are no targets
+        frame.points = make_search(std::move(cloud));
+      else
+        apply_fixtures(frame, std::move(cloud), off);
+      return;
+    }
   }
   fill(frame, cloud_of(sensed, view, X_WC), off);
 }
 
-// is_assigned: the cloud has its columns of fixtures. Then all rules are forbidden ones, and there are no
-// targets.
-void FrameProcessing::finish(Frame& frame, PointCloud cloud, std::uint64_t off, bool is_assigned) const {
-  if (!is_assigned) {
-    frame.guidance = fixtures.targets(cloud, frame.captured_s);
-    fixtures.assign(cloud, frame.captured_s, off);
-  }
+void FrameProcessing::apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const {
+  frame.guidance = fixtures.targets(cloud, frame.captured_s);
+  fixtures.assign(cloud, frame.captured_s, off);
   frame.points = make_search(std::move(cloud));
 }
 

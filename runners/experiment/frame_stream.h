@@ -36,7 +36,7 @@ struct FrameProcessing {
             std::uint64_t off) const;
 
  private:
-  void finish(Frame& frame, PointCloud cloud, std::uint64_t off, bool is_assigned) const;
+  void apply_fixtures(Frame& frame, PointCloud cloud, std::uint64_t off) const;
 };
 
 // 64-bit hash of a frame's points and its time of capture.

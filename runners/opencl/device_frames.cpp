@@ -96,9 +96,9 @@ void DeviceFrames::upload_steps(const DeviceFrame& frame) {
          {range.from_deg, range.to_deg, range.min_saturation, range.min_lightness, range.max_lightness,
           range.values.radius_m, range.values.stiffness_N_per_m, strength})
       numbers.push_back(each);
-  if (numbers.size() > most_steps_ || most_steps_ == 0) {
-    most_steps_ = std::max<std::size_t>(numbers.size(), 1);
-    steps_ = buffer(most_steps_ * sizeof(double));
+  if (numbers.size() > most_step_numbers_ || most_step_numbers_ == 0) {
+    most_step_numbers_ = std::max<std::size_t>(numbers.size(), 1);
+    steps_ = buffer(most_step_numbers_ * sizeof(double));
   }
   if (!numbers.empty()) write(steps_, numbers);
 }

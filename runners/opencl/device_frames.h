@@ -1,4 +1,5 @@
-// The depth pipeline on one OpenCL device: one upload, its kernels, one download. Inside of this room only.
+// The depth pipeline on one OpenCL device: uploads, then its kernels, then one download. Inside of this room
+// only.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +64,7 @@ class DeviceFrames {
   OpenClObject<cl_command_queue> queue_;
   Kernel to_depths_, to_plane_, filter_, normals_of_, place_, fixtures_;
   CameraIntrinsics camera_;
-  std::size_t stride_ = 0, most_steps_ = 0;
+  std::size_t stride_ = 0, most_step_numbers_ = 0;
   Buffer units_, depth_m_, rgb_, steps_;
   Buffer ray_x_, ray_y_, wide_ray_x_, wide_ray_y_, centre_and_focal_, X_;
   Buffer change_, raw_, smooth_, columns_;

@@ -1,9 +1,11 @@
-// A box as a tool, written down in closed form: for tests that need a tool whose every number is known.
+// A box as a tool, written down in closed form: for tests that need a tool whose every number is known. And
+// clouds for it.
 #pragma once
 
 #include <cmath>
 #include <memory>
 
+#include "core/cloud/point_cloud.h"
 #include "core/tool/voxels/voxel_tool.h"
 
 namespace remote_touch::scenes {
@@ -57,6 +59,22 @@ inline std::shared_ptr<const VoxelTool> box_tool(const Vec3& half_m, double voxe
   tool->inertia_m2 /= 12;
   tool->reach_m = half_m.norm();
   return tool;
+}
+
+// Points so dense that one disk can stand for many: 100 x 100 in the plane y = 0, 0.3 mm apart, with normals.
+inline PointCloud dense_plane() {
+  PointCloud cloud;
+  for (int j = 0; j < 100; ++j)
+    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  return cloud;
+}
+
+// Five points less than a cell outside a grid.
+inline PointCloud points_outside(const VoxelGrid& grid) {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i)
+    cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
+  return cloud;
 }
 
 }  // namespace remote_touch::scenes

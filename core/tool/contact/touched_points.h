@@ -1,8 +1,7 @@
 // What a pose touches of a cloud, every point counted.
 //
-// Groups of points are kept from one pose to the next, kept_groups.h. Most points are told
-// by the voxel that they lie in, or by how far away they are; the nearest place of a disk is searched where
-// nothing else tells.
+// Groups of points are kept from one pose to the next (kept_groups.h). Most points are told by the voxel that
+// they lie in, or by how far away they are; the nearest place of a disk is searched where nothing else tells.
 #pragma once
 
 #include <limits>

@@ -12,78 +12,15 @@
 #include <vector>
 
 #include "core/geometry/rotation.h"
-#include "core/tool/motion/tool_renderer.h"
 #include "runners/contract/allocation_counter.h"
-#include "tests/support/box_tool.h"
-#include "tests/support/scenes.h"
+#include "tests/core/guidance/guided_scene.h"
 
 namespace remote_touch::guided_renderer_test {
 namespace {
 
+using namespace guided_scene;
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-enum class Inner { proxy, tool };
-
-std::unique_ptr<Renderer> inner(Inner kind) {
-  if (kind == Inner::proxy)
-    return std::make_unique<ProxyRenderer>(ProxyParameters{}, 1000, scenes::kernels());
-  return std::make_unique<ToolRenderer>(ToolParameters{}, scenes::box_tool({0.02, 0.005, 0.01}),
-                                        scenes::kernels());
-}
-
-FixtureValues fixture(FixtureRole role, const std::string& label) {
-  FixtureValues values;
-  values.role = role, values.label = label;
-  return values;
-}
-FixtureValues guide(const std::string& label) {
-  return fixture(FixtureRole::guidance, label);
-}
-FixtureValues region(const std::string& label) {
-  return fixture(FixtureRole::forbidden, label);
-}
-
-SequenceStep step(FixtureAction action, const std::string& label, StepStart start = StepStart::previous,
-                  int button = 0) {
-  SequenceStep s;
-  s.action = action, s.fixture = label, s.start = start, s.button = button;
-  return s;
-}
-SequenceStep until_reached(SequenceStep s) {
-  s.done = StepEnd::reached;
-  return s;
-}
-
-// The goal is the target itself, in the orientation of the base.
-GuidanceSettings plain() {
-  GuidanceSettings s;
-  s.standoff_m = 0;
-  return s;
-}
-
-using Switches = std::shared_ptr<FixtureSwitches>;
-GuidedRenderer guided(Inner kind, const std::vector<FixtureValues>& fixtures,
-                      std::vector<SequenceStep> steps = {}, const GuidanceSettings& settings = plain(),
-                      const Switches& switches = std::make_shared<FixtureSwitches>()) {
-  EXPECT_EQ(validate(fixtures, steps), "");
-  return {inner(kind), settings, fixtures, std::move(steps), switches};
-}
-
-GuidanceTarget target(const Vec3& mean_W) {
-  return {100, mean_W, Vec3::Zero()};
-}
-
-Frame frame(std::vector<GuidanceTarget> targets, int index = 0) {
-  Frame f = scenes::frame(scenes::flat_grid(40), index);
-  f.guidance = std::move(targets);
-  return f;
-}
-
-DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero(), std::uint32_t buttons = 0) {
-  return {p_W, rotation(turn), buttons};
-}
-
-const Vec3 kAbove(0, 0.1, 0), kLeft(-0.05, 0.1, 0), kRight(0.05, 0.1, 0);
 
 class EveryRenderer : public testing::TestWithParam<Inner> {};
 INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, Inner::tool));
@@ -127,19 +64,6 @@ TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
   EXPECT_LT((r.step(device(kAbove), 0).force_N - Vec3(1, 0, 0)).norm(), 1e-12);
 }
 
-void expect_no_guidance(const RenderOutput& out) {
-  ASSERT_TRUE(out.guidance);
-  EXPECT_FALSE(out.guidance->active);
-  EXPECT_EQ(out.guidance->force_N, Vec3::Zero());
-  EXPECT_EQ(out.guidance->torque_Nm, Vec3::Zero());
-  EXPECT_TRUE(out.guidance->goal_W.array().isNaN().all());
-  EXPECT_TRUE(out.guidance->goal_orientation_W.coeffs().array().isNaN().all());
-  EXPECT_EQ(out.force_N, Vec3::Zero());
-  if (out.tool) {
-    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
-  }
-}
-
 TEST_P(EveryRenderer, NothingPullsBeforeAFrameOrWithoutATarget) {
   GuidedRenderer r = guided(GetParam(), {guide("valve")});
   expect_no_guidance(r.step(device(kAbove), 0));
@@ -175,78 +99,6 @@ TEST_P(EveryRenderer, AStaleFrameLeavesTheTarget) {
   }
   r.on_frame(frame({target(kRight)}, 6));
   EXPECT_EQ(r.step(device(kAbove), 0.3).guidance->goal_W, kRight);
-}
-
-// --- a target that is lost, and forces that begin and end ---
-
-Frame frame_at(double arrives_s, std::vector<GuidanceTarget> targets, int index) {
-  Frame f = frame(std::move(targets), index);
-  f.arrives_s = arrives_s;
-  return f;
-}
-
-TEST_P(EveryRenderer, ALostTargetIsUsedForHoldSeconds) {
-  GuidanceSettings holding = plain();
-  holding.hold_s = 0.1;
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, holding);
-  r.on_frame(frame_at(0, {target(kLeft)}, 0));
-  EXPECT_EQ(r.step(device(kAbove), 0.05).guidance->goal_W, kLeft);
-  r.on_frame(frame_at(0.0625, {GuidanceTarget{}}, 1));
-  r.on_frame(frame_at(0.125, {GuidanceTarget{}}, 2));  // lost since the first of the two
-  EXPECT_EQ(r.step(device(kAbove), 0.162).guidance->goal_W, kLeft);
-  expect_no_guidance(r.step(device(kAbove), 0.163));
-  r.on_frame(frame_at(0.1875, {target(kRight)}, 3));
-  EXPECT_EQ(r.step(device(kAbove), 0.1875).guidance->goal_W, kRight);
-}
-
-TEST_P(EveryRenderer, WhatWasNeverSeenIsNotHeld) {
-  GuidanceSettings holding = plain();
-  holding.hold_s = 10;
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, holding);
-  r.on_frame(frame_at(0, {GuidanceTarget{}}, 0));
-  expect_no_guidance(r.step(device(kAbove), 0.001));
-}
-
-// Closed form: a device that rests feels level times the spring, and the level changes by 1 ms / fade_s a
-// tick.
-TEST_P(EveryRenderer, TheForceRisesAndFallsEvenly) {
-  GuidanceSettings fading = plain();
-  fading.fade_s = 0.1;
-  std::vector<SequenceStep> steps{step(FixtureAction::activate, "valve", StepStart::button, 0),
-                                  step(FixtureAction::release, "valve", StepStart::button, 1)};
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, steps, fading);
-  r.on_frame(frame({target(kLeft)}));
-  const Vec3 full_N = guidance_wrench(fading, -1, {kLeft, Eigen::Quaterniond::Identity()},
-                                      {kAbove, Eigen::Quaterniond::Identity()})
-                          .force_N;
-  DeviceState held = device(kAbove);
-  const auto level = [&](int ms) { return r.step(held, 0.001 * ms).force_N.norm() / full_N.norm(); };
-  EXPECT_EQ(level(0), 0);
-  held.buttons = 1;
-  for (int ms = 1; ms <= 150; ++ms) EXPECT_NEAR(level(ms), std::min(1.0, 0.01 * ms), 1e-12) << ms;
-  held.buttons = 2;
-  for (int ms = 151; ms <= 300; ++ms) EXPECT_NEAR(level(ms), std::max(0.0, 0.01 * (250 - ms)), 1e-12) << ms;
-  expect_no_guidance(r.step(held, 0.301));
-}
-
-// A lost target lets go as gently.
-TEST_P(EveryRenderer, TheForceFallsWhenTheTargetIsLost) {
-  GuidanceSettings fading = plain();
-  fading.fade_s = 0.05, fading.hold_s = 0.1;
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, fading);
-  r.on_frame(frame_at(0, {target(kLeft)}, 0));
-  double before_N = 0, max_change_N = 0;
-  for (int ms = 0; ms <= 400; ++ms) {
-    if (ms == 200) r.on_frame(frame_at(0.2, {GuidanceTarget{}}, 1));
-    const double force_N = r.step(device(kAbove), 0.001 * ms).force_N.norm();
-    max_change_N = std::max(max_change_N, std::abs(force_N - before_N));
-    before_N = force_N;
-    if (ms >= 60 && ms < 300) {
-      EXPECT_GT(force_N, 3.9) << ms;
-    }
-  }
-  EXPECT_EQ(before_N, 0);
-  EXPECT_LE(max_change_N, fading.max_force_N * 0.001 / fading.fade_s + 1e-12);
 }
 
 // --- which fixtures begin how ---

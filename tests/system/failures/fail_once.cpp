@@ -13,7 +13,7 @@
 //
 // With FAIL_ONCE_SERVER it does not begin, but answers requests on stdin, so that the loader has its work
 // once only. A request is a line "KIND:N:HOW PROCESS FOLDER" (PROCESS 0: any); a copy of the program then
-// runs in FOLDER/work with its output in FOLDER/out and FOLDER/err, and the answer is a line with its status,
+// runs in FOLDER/made with its output in FOLDER/out and FOLDER/err, and the answer is a line with its status,
 // as of waitpid(). The first line of all is how many allocations there were until then: those fail in no
 // copy.
 #include "fail_once.h"

@@ -37,13 +37,13 @@ void take_request(const char* wish, const char* process, const char* place) {
   redirect(STDIN_FILENO, "/dev/null", "", O_RDONLY);
   redirect(STDOUT_FILENO, place, "/out", O_WRONLY | O_CREAT | O_TRUNC);
   redirect(STDERR_FILENO, place, "/err", O_WRONLY | O_CREAT | O_TRUNC);
-  set_below("FAIL_ONCE_BELOW", place, "/work");
-  set_below("TMPDIR", place, "/work/tmp");
-  set_below("REMOTE_TOUCH_CACHE", place, "/work/cache");
+  set_below("FAIL_ONCE_BELOW", place, "/made");
+  set_below("TMPDIR", place, "/made/tmp");
+  set_below("REMOTE_TOUCH_CACHE", place, "/made/cache");
   ::unsetenv("FAIL_ONCE_SERVER");
   ::setenv("FAIL_ONCE", wish, 1);
   if (std::strcmp(process, "0") != 0) ::setenv("FAIL_ONCE_PROCESS", process, 1);
-  count_below(place, "/work");
+  count_below(place, "/made");
   if (::chdir(std::getenv("FAIL_ONCE_BELOW")) != 0) ::_exit(125);
   this_process.is_chosen = std::strcmp(process, "0") == 0 || std::strcmp(process, "1") == 0;
   read_wish(wish);

@@ -68,7 +68,7 @@ class Trials:
     def __init__(self, scene, trace=None):
         self.scene, self.tools, self.command = scene, scene.tools, scene.command
         self.place = tempfile.mkdtemp(dir=self.tools.folder)
-        self.folder = os.path.join(self.place, "work")
+        self.folder = os.path.join(self.place, "made")
         self.counts = new_counts(self.place)
         restore(self.folder, scene.before)
         self.server = self.tools.serve(self.place, self.command.arguments, self.counts, trace)

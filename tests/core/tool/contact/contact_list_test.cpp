@@ -131,9 +131,7 @@ TEST(ContactList, OfManyTheDeepestOfEveryCellIsThere) {
 // whether few points stand for many or each for itself, wherever the edge is.
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
   constexpr double kGap_m = 1e-4;
-  PointCloud cloud;
-  for (int j = 0; j < 100; ++j)
-    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  const PointCloud cloud = scenes::dense_plane();
   const auto points = formatted<TiledCloud>(cloud, ToolParameters{}.merged_disk_m);
   for (const double merged_disk_m : {0.0, ToolParameters{}.merged_disk_m}) {
     ToolParameters p;
@@ -153,9 +151,7 @@ TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
 }
 
 TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
-  PointCloud cloud;
-  for (int j = 0; j < 100; ++j)
-    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  const PointCloud cloud = scenes::dense_plane();
   const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};
   ToolParameters p;
   for (const double merged_disk_m : {0.0, 0.002}) {
@@ -169,9 +165,7 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
 
 // What may stop a motion of the continuous rule is asked of every point, also where few stand for many.
 TEST(ContactList, PointsWithinReachAreNeverMerged) {
-  PointCloud cloud;
-  for (int j = 0; j < 100; ++j)
-    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
+  const PointCloud cloud = scenes::dense_plane();
   ToolParameters p;
   p.contact_rule = TouchRule::continuous;
   ContactList list(kTool, p, scenes::kernels());

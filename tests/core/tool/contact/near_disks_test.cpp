@@ -99,9 +99,7 @@ TEST(NearDisks, TheSameBitsAsOneAfterTheOtherOnEveryInstructionSet) {
 // A point less than a cell outside the grid can be in the list.
 TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
-  PointCloud cloud;
-  for (int i = 0; i < 5; ++i)
-    cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
+  const PointCloud cloud = scenes::points_outside(grid);
   TouchFinder finder(kTool, scenes::kernels());
   finder.on_frame(formatted<TiledCloud>(cloud));
   NearDisks disks(kFraction, kCell_m);

@@ -109,9 +109,7 @@ TEST(NearPoints, ANewCloudReplacesTheOldOne) {
 
 TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
-  PointCloud cloud;
-  for (int i = 0; i < 5; ++i)
-    cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-3 * i, 0), Vec3::UnitX());
+  const PointCloud cloud = scenes::points_outside(grid);
   Look look(cloud, scenes::kernels());
   const ToolPose at_home{Vec3::Zero(), Eigen::Quaterniond::Identity()};
   std::size_t count = 0;

@@ -11,6 +11,7 @@
 
 #include "core/cloud/camera.h"
 #include "runners/contract/allocation_counter.h"
+#include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::tiled_cloud_test {
@@ -178,10 +179,8 @@ TEST(TiledCloud, OnlyTilesNearTheBallAreShownAndNothingIsAllocated) {
 }
 
 TEST(TiledCloud, AMergedCloudIsMadeOnRequestAndHasWhatMergedPointsFinds) {
-  PointCloud cloud;
+  const PointCloud cloud = scenes::dense_plane();
   std::vector<CloudPoint> points;
-  for (int j = 0; j < 100; ++j)
-    for (int i = 0; i < 100; ++i) cloud.append(Vec3((i - 50) * 3e-4, 0, (j - 50) * 3e-4), Vec3::UnitY());
   TiledCloud tiled;
   tiled.assign(cloud);
   EXPECT_FALSE(tiled.merged());

@@ -1,0 +1,59 @@
+#include "core/tool/contact/continuous_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "core/tool/contact/contact_list.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/formatted.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::continuous_contacts_test {
+namespace {
+
+constexpr double kLength_m = 0.006, kShorter_m = 3e-4, kApart_m = 1e-3;
+
+// Two pins of half a millimetre side by side, one of them shorter at its lower end.
+std::shared_ptr<const VoxelTool> two_pins() {
+  auto tool = std::make_shared<VoxelTool>(*scenes::box_tool({1.25e-3, kLength_m, 2.5e-4}, 1.25e-4));
+  const VoxelGrid& grid = tool->grid;
+  std::size_t node = 0;
+  for (int k = 0; k <= grid.cells[2]; ++k)
+    for (int j = 0; j <= grid.cells[1]; ++j)
+      for (int i = 0; i <= grid.cells[0]; ++i) {
+        const Vec3 p_T = grid.origin_T + grid.size_m * Vec3(i, j, k), half_m(2.5e-4, kLength_m, 2.5e-4);
+        const double longer_m = scenes::box_distance(half_m, p_T),
+                     shorter_m = scenes::box_distance(half_m, p_T - Vec3(kApart_m, kShorter_m, 0));
+        tool->distance_m[node++] = static_cast<float>(std::min(longer_m, shorter_m));
+      }
+  return tool;
+}
+
+// On a dense flat surface, where one disk stands for many points, and finds the pin that its field falls
+// towards: points in the other one are found all the same.
+TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
+  constexpr double kDepth_m = 2e-4;
+  const auto pin = two_pins();
+  const PointCloud cloud = scenes::dense_plane();
+  ToolParameters p;
+  p.contact_rule = TouchRule::continuous;
+  ContactList points(pin, p, scenes::kernels());
+  points.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+  ContinuousContacts contacts(p, *pin);
+  contacts.begin(points);
+  int not_told = 0;
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 10; ++i) {
+      ToolPose pose{{2e-4 * i, kLength_m - kDepth_m, 2e-4 * j}, Eigen::Quaterniond::Identity()};
+      not_told += contacts.near(pose, 0).deepest_m <= ContinuousContacts::kGap_m ? 1 : 0;
+      EXPECT_TRUE(contacts.has_points_inside(pose)) << i << " " << j;
+      pose.p_W.y() = kLength_m + kDepth_m;
+      EXPECT_FALSE(contacts.has_points_inside(pose)) << i << " " << j;
+    }
+  EXPECT_GT(not_told, 0);
+}
+
+}  // namespace
+}  // namespace remote_touch::continuous_contacts_test
