@@ -48,7 +48,7 @@ constexpr const char* kName = "double";
 
 // Whether this call is to fail; it hangs if it is to hang.
 bool fails(const char* function) {
-  if (settings.failing != function || ++settings.calls < settings.failing_call) return false;
+  if (std::strcmp(settings.failing, function) != 0 || ++settings.calls < settings.failing_call) return false;
   while (settings.hangs && !settings.let_go) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return true;
 }
@@ -87,7 +87,7 @@ Thing& thing(Object object) {
 template <class Object>
 Object make(const char* function, cl_int* code) {
   const bool failed = fails(function);
-  if (code != nullptr) *code = failed ? settings.code : CL_SUCCESS;
+  if (code != nullptr) *code = failed ? settings.code.load() : CL_SUCCESS;
   return failed ? nullptr : reinterpret_cast<Object>(new Thing);
 }
 
@@ -154,7 +154,7 @@ cl_int clGetPlatformIDs(cl_uint room, cl_platform_id* to, cl_uint* count) {
 }
 
 cl_int clGetPlatformInfo(cl_platform_id, cl_platform_info, size_t room, void* to, size_t* bytes) {
-  return fails("clGetPlatformInfo") ? settings.code : text(kName, room, to, bytes);
+  return fails("clGetPlatformInfo") ? settings.code.load() : text(kName, room, to, bytes);
 }
 
 cl_int clGetDeviceIDs(cl_platform_id, cl_device_type, cl_uint room, cl_device_id* to, cl_uint* count) {
@@ -258,11 +258,11 @@ cl_int clEnqueueWriteBufferRect(cl_command_queue, cl_mem to, cl_bool, const size
 void* clEnqueueMapBuffer(cl_command_queue, cl_mem from, cl_bool, cl_map_flags, size_t offset, size_t, cl_uint,
                          const cl_event*, cl_event*, cl_int* code) {
   const bool failed = fails("clEnqueueMapBuffer");
-  *code = failed ? settings.code : CL_SUCCESS;
+  *code = failed ? settings.code.load() : CL_SUCCESS;
   return failed ? nullptr : thing(from).bytes.data() + offset;
 }
 cl_int clEnqueueUnmapMemObject(cl_command_queue, cl_mem, void*, cl_uint, const cl_event*, cl_event*) {
-  return fails("clEnqueueUnmapMemObject") ? settings.code : CL_SUCCESS;
+  return fails("clEnqueueUnmapMemObject") ? settings.code.load() : CL_SUCCESS;
 }
 
 cl_int clEnqueueNDRangeKernel(cl_command_queue, cl_kernel kernel, cl_uint, const size_t*, const size_t* all,
@@ -281,6 +281,6 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue, cl_kernel kernel, cl_uint, const
 }
 
 cl_int clFinish(cl_command_queue) {
-  return fails("clFinish") ? settings.code : CL_SUCCESS;
+  return fails("clFinish") ? settings.code.load() : CL_SUCCESS;
 }
 }

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
+#include <type_traits>
 
 namespace remote_touch {
 
@@ -16,24 +16,28 @@ inline constexpr const char* kFrameFunctions[] = {"clEnqueueWriteBuffer",    "cl
                                                   "clEnqueueNDRangeKernel",  "clEnqueueMapBuffer",
                                                   "clEnqueueUnmapMemObject", "clFinish"};
 
+// A thread that gives up a device calls the library while a test sets it anew, and still when the program
+// ends: all of it is atomic, and nothing is destroyed.
 struct OpenClDouble {
-  // The function that fails from the given call on, 1 for its first, counted from reset(); empty: none.
-  std::string failing;
-  int failing_call = 0;
-  int code = -5;              // that it returns: CL_OUT_OF_RESOURCES
-  bool hangs = false;         // it does not return instead, until let_go
-  bool is_imprecise = false;  // the device says that it flushes subnormal numbers
-  bool is_wrong = false;      // the device's normals are a little off
+  // A literal: the function that fails from the given call on, 1 for its first, counted from reset(); "":
+  // none.
+  std::atomic<const char*> failing{""};
+  std::atomic<int> failing_call{0};
+  std::atomic<int> code{-5};              // that it returns: CL_OUT_OF_RESOURCES
+  std::atomic<bool> hangs{false};         // it does not return instead, until let_go
+  std::atomic<bool> is_imprecise{false};  // the device says that it flushes subnormal numbers
+  std::atomic<bool> is_wrong{false};      // the device's normals are a little off
   std::atomic<bool> let_go{false};
   std::atomic<int> calls{0};        // of the failing function
   std::atomic<int> kernel_runs{0};  // since the library was loaded
   std::atomic<int> objects{0};      // that exist: contexts, queues, programs, kernels, buffers
 
   void reset() {
-    failing.clear(), failing_call = 0, code = -5, hangs = is_imprecise = is_wrong = false;
-    let_go = false, calls = 0;
+    failing = "", failing_call = 0, code = -5;
+    hangs = false, is_imprecise = false, is_wrong = false, let_go = false, calls = 0;
   }
 };
+static_assert(std::is_trivially_destructible_v<OpenClDouble>);
 
 // In the library: extern "C" remote_touch::OpenClDouble* opencl_double(). It stays loaded.
 inline OpenClDouble& loaded_opencl_double(const char* file) {

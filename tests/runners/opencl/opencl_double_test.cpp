@@ -31,6 +31,16 @@ class OpenClDoubleTest : public testing::Test {
     setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
     begin_anew();
   }
+  void TearDown() override {
+    begin_anew();
+    EXPECT_TRUE(everything_is_released());
+  }
+  // A device that failed is tidied up by a thread that nobody waits for.
+  static bool everything_is_released() {
+    for (int i = 0; i < 2000 && library().objects > 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return library().objects == 0;
+  }
   // As in a new process.
   static void begin_anew() {
     library().reset();
@@ -136,9 +146,7 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   EXPECT_NE(told_[0].find("no answer within 2 s"), std::string::npos) << told_[0];
   pipeline.reset();  // does not wait for the driver
   library().let_go = true;
-  for (int i = 0; i < 2000 && library().objects > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(library().objects, 0);  // its thread tidies up when the driver lets it go
+  EXPECT_TRUE(everything_is_released());  // its thread tidies up when the driver lets it go
 }
 
 // A sweep of short runs: the second run finds what the first one built and tried.
@@ -164,9 +172,7 @@ TEST_F(OpenClDoubleTest, AfterAFailureKernelsAreBuiltAndTriedAnew) {
   const auto pipeline = opened();
   library().failing = "clFinish", library().failing_call = 1;
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
-  for (int i = 0; i < 2000 && library().objects > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(library().objects, 0);
+  EXPECT_TRUE(everything_is_released());
   library().failing = "clBuildProgram", library().failing_call = 1000, library().calls = 0;
   EXPECT_TRUE(same_bits(processed_by(*opened()), expected_));
   EXPECT_EQ(library().calls, 1);
@@ -197,7 +203,7 @@ TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
   library().let_go = true;
   std::vector<OpenClDevice> again;
   for (int i = 0; i < 2000 && again.empty(); ++i) try {
-      library().failing.clear();
+      library().failing = "";
       again = listed_devices();
     } catch (const OpenClTimeout&) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
