@@ -1,7 +1,7 @@
 #include "core/tool/contact/merged_points.h"
 
 #include <algorithm>
-#include <array>
+#include <bitset>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -63,7 +63,8 @@ std::optional<MergedPoint> flat_disk(std::span<const CloudPoint> points) {
   MergedPoint disk{Vec3::Zero(), Vec3::Zero(), spacing_m, 0};
   for (const CloudPoint& point : points) disk.p_W += point.p_W, disk.n_W += point.n_W;
   const double length = disk.n_W.norm(), count = static_cast<double>(points.size());
-  if (points.size() < 2 || !(length > kMinAgreement * count)) return {};  // false for NaN
+  if (points.size() < 2 || !(spacing_m > 0)) return {};  // 0: not known
+  if (!(length > kMinAgreement * count)) return {};      // false for NaN
   disk.p_W /= count, disk.n_W /= length;
   for (const CloudPoint& point : points) {
     const Vec3 offset = point.p_W - disk.p_W;
@@ -78,14 +79,14 @@ bool is_covered(const MergedPoint& disk, const Cubes& cubes) {
       std::clamp(static_cast<int>(2 * disk.extent_m / (kSquare * disk.spacing_m)), 1, kMaxSquares);
   const double square_m = 2 * disk.extent_m / side;
   const Vec3 u = disk.n_W.unitOrthogonal(), v = disk.n_W.cross(u);
-  std::array<bool, kMaxSquares * kMaxSquares> has_point{};
+  std::bitset<kMaxSquares * kMaxSquares> has_point;  // set() throws outside
   cubes.for_each_around(disk.p_W, [&](const CloudPoint& point) {
     const Vec3 offset = point.p_W - disk.p_W;
     if (!(std::abs(offset.dot(disk.n_W)) <= disk.spacing_m)) return;
     const double x = std::floor((offset.dot(u) + disk.extent_m) / square_m),
                  y = std::floor((offset.dot(v) + disk.extent_m) / square_m);
     if (x >= 0 && x < side && y >= 0 && y < side)
-      has_point[static_cast<std::size_t>(y) * kMaxSquares + static_cast<std::size_t>(x)] = true;
+      has_point.set(static_cast<std::size_t>(y) * kMaxSquares + static_cast<std::size_t>(x));
   });
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {

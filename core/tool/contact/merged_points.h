@@ -10,8 +10,8 @@
 namespace remote_touch {
 
 struct CloudPoint {
-  Vec3 p_W, n_W;  // NaN: no normal
-  double spacing_m;
+  Vec3 p_W, n_W;     // NaN: no normal
+  double spacing_m;  // to its neighbours; 0: not known
 };
 
 // Where extent_m is 0 a point of the cloud. Otherwise the disk that stands for all points in a cube of a grid
@@ -19,8 +19,7 @@ struct CloudPoint {
 // - none of them is farther from the middle than extent_m;
 // - each of them, and the rim of a disk of one spacing around it, lies within kFlat_m of its plane;
 // - the cloud covers it: within extent_m of the middle no square of 1.5 spacings is without a point of this
-// or
-//   a neighbouring cube, so that it does not reach beyond an edge or over a hole.
+//   or a neighbouring cube, so that it does not reach beyond an edge or over a hole.
 struct MergedPoint {
   Vec3 p_W, n_W;
   double spacing_m, extent_m;

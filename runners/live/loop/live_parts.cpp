@@ -15,18 +15,17 @@ std::size_t padded(int side_px) {
   return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
 }
 
-// A cloud may grow: to twice its first size without memory from the system.
-std::size_t expected_points(const SensorView& view) {
-  return view.cloud ? 2 * view.cloud->expected_points + 256
-                    : padded(view.camera.width) * padded(view.camera.height);
-}
-
 std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
   return duration_s > 0 ? start_ns + std::llround(1e9 * duration_s)
                         : std::numeric_limits<std::int64_t>::max();
 }
 
 }  // namespace
+
+std::size_t expected_points(const SensorView& view) {
+  return view.cloud ? 2 * view.cloud->expected_points + 256
+                    : padded(view.camera.width) * padded(view.camera.height);
+}
 
 LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, Clock& clock,
                      std::unique_ptr<HapticDevice> device, std::unique_ptr<DepthSource> source)

@@ -14,6 +14,10 @@
 
 namespace remote_touch {
 
+// How many points renderers have to make room for, so that no frame needs memory from the system: those of
+// an image, whole tiles of it; of a cloud, which may grow, twice those of its first frame.
+std::size_t expected_points(const SensorView& view);
+
 class LiveParts {
  public:
   // All arguments must outlive it. Throws InputError if they do not fit each other, or the recording cannot

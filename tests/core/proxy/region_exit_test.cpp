@@ -53,6 +53,21 @@ TEST(StraightExit, TakesTheShortestOfItsLines) {
   EXPECT_LT((*exit - Vec3(0.02 + kDefault.contact_radius_m(), 0, 0)).norm(), 1e-12);
 }
 
+// The direction of u is one of the lines, however short u is.
+TEST(StraightExit, OnlyTheDirectionOfTheDisplacementMatters) {
+  PointCloud cloud;
+  for (const double y : {0.0, 0.03, 0.06}) cloud.append({0, y, 0});
+  cloud.fixture_radius_m = {0.02, 0.02, 0.02};
+  Neighbourhood near = neighbourhood(cloud);
+  const Vec3 direction = Vec3(1, 0, 1).normalized();
+  for (const int exponent : {0, -10, -30, -100}) {
+    const auto exit = straight_exit(near, scenes::kernels(), 0.001 * direction, Vec3::UnitY(),
+                                    std::ldexp(1, exponent) * direction, kDefault);
+    ASSERT_TRUE(exit);
+    EXPECT_LT((*exit - (0.02 + kDefault.contact_radius_m()) * direction).norm(), 1e-12) << exponent;
+  }
+}
+
 // Never against the normal, though that is nearest.
 TEST(StraightExit, StaysOnItsSide) {
   Neighbourhood near = neighbourhood(two_balls(0, 0.02));

@@ -151,6 +151,34 @@ TEST(QuadraticProgram, RefusesRowsThatAreNotFiniteOrHaveNoRoom) {
   EXPECT_EQ(program.nearest(Vector<6>::Zero()).y, axis(5));
 }
 
+// Usual rows are taken all at once, with the bits of one after the other; where one is not, none is.
+TEST(QuadraticProgram, AllRowsAtOnceAreAsOneAfterTheOther) {
+  Random random(12);
+  for (const int count : {1, 2, 3, 8, 21, 40}) {
+    const Problem<6> p = problem<6>(Kind::fulfillable, count, random);
+    double columns[6][42] = {}, bounds[42] = {};
+    for (std::size_t i = 0; i < p.rows.size(); ++i) {
+      for (int k = 0; k < 6; ++k) columns[k][i] = p.rows[i][k];
+      bounds[i] = p.bounds[i];
+    }
+    const auto all_at_once = [&](QuadraticProgram<6>& program) {
+      return program.add_all({columns[0], columns[1], columns[2], columns[3], columns[4], columns[5]}, bounds,
+                             static_cast<int>(p.rows.size()));
+    };
+    QuadraticProgram<6> program(42);
+    ASSERT_TRUE(all_at_once(program)) << count;
+    EXPECT_EQ(program.size(), static_cast<int>(p.rows.size()));
+    EXPECT_EQ(program.nearest(p.target).y, p.program().nearest(p.target).y) << count;
+    for (const double bad : {std::nan(""), kInfinite, 1e200}) {
+      columns[3][p.rows.size() - 1] = bad;
+      program.clear();
+      EXPECT_FALSE(all_at_once(program)) << bad;
+      EXPECT_EQ(program.size(), 0);
+      EXPECT_EQ(program.nearest(p.target).y, p.target);
+    }
+  }
+}
+
 TEST(QuadraticProgram, NothingIsLeftAfterClear) {
   QuadraticProgram<6> program(20);
   for (int k = 0; k < 20; ++k) program.add(axis(k % 6), 1 + k);

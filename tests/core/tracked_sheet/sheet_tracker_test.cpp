@@ -70,6 +70,38 @@ TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
     }
 }
 
+// Few points that are as many at every height of the noise: the profile has valleys all over, by chance.
+TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
+  constexpr double kSpacing_m = 0.006, kReach_m = 0.09;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));  // standard deviation 1
+    const auto noisy = [&](double height_m) {
+      PointCloud cloud;
+      for (double z = -kReach_m; z <= kReach_m; z += kSpacing_m)
+        for (double x = -kReach_m; x <= kReach_m; x += kSpacing_m) {
+          const double x_off = even(random), y_off = even(random), z_off = even(random);
+          cloud.append(Vec3(x, height_m, z) + kUnit * Vec3(x_off, y_off, z_off));
+        }
+      return cloud;
+    };
+    SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
+    tracker.keep(std::make_shared<BruteForceSearch>(noisy(0)));
+    tracker.requery({Vec3(0, kUnit, 0), false});
+    for (int k = 1; k <= 4; ++k) {
+      const double height_m = 0.001 * k;
+      const PointCloud cloud = noisy(height_m);
+      tracker.on_frame(std::make_shared<BruteForceSearch>(cloud), {Vec3(0, height_m + kUnit, 0), true},
+                       1.0 / 30);
+      ASSERT_TRUE(tracker.changes_points()) << "seed " << seed;
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        if (std::hypot(cloud.x[i], cloud.z[i]) > 3 * kUnit) continue;
+        EXPECT_EQ(tracker.shown(cloud.point(i)).kind, ShownPoint::Kind::sheet) << "seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(SheetTracker, LeavesASheetWithoutNoiseAsItIs) {
   SheetTracker tracker({}, kUnit, scenes::kernels());
   tracker.reserve(20000, false, false);

@@ -46,6 +46,16 @@ TEST_F(OfABox, EndsWhereAPointTouches) {
     }
 }
 
+// Nearer than kTouch_m is touched, also where the motion ends before the surface.
+TEST_F(OfABox, EndsBeforeAMotionThatWouldEndAHairOutside) {
+  for (const double distance_m : {2e-4, 7e-4, 2e-3}) {
+    const Vec3 p_T(0.002, -0.001, 0.005 + distance_m);
+    const double motion_m = distance_m - 0.5 * ClearWay::kTouch_m;
+    EXPECT_LE(fraction(p_T, shift({0, 0, motion_m})) * motion_m, distance_m - 0.9 * ClearWay::kTouch_m)
+        << distance_m;
+  }
+}
+
 TEST_F(OfABox, SlidesAlongAFaceAndLeavesIt) {
   const Vec3 p_T(0.002, -0.001, 0.005 + 2e-6);
   EXPECT_EQ(fraction(p_T, shift({1e-3, 3e-4, 0})), 1);

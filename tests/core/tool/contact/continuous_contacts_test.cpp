@@ -55,5 +55,32 @@ TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   EXPECT_GT(not_told, 0);
 }
 
+// A surface that lies ahead stops a motion away from another one where it is met; at once if it is in the
+// tool, but not by a hair, as where the tool slides along it.
+TEST(ContinuousContacts, ASurfaceAheadStopsAMotionUnlessItOnlyTouches) {
+  const Vec3 half_m(0.005, 0.003, 0.004);
+  const auto tool = scenes::box_tool(half_m, 2.5e-4);
+  ToolParameters p;
+  p.contact_rule = TouchRule::continuous;
+  ContactList points(tool, p, scenes::kernels());
+  points.on_frame(formatted<TiledCloud>(scenes::dense_plane(), 0.0));
+  ContinuousContacts contacts(p, *tool);
+  contacts.begin(points);
+  const auto fraction = [&](double height_m, const Vec3& shift_W, double side) {
+    Vector6 a_g = Vector6::Zero();
+    a_g.head<3>() = shift_W;
+    return contacts.fraction_ahead({{0, half_m.y() + height_m, 0}, Eigen::Quaterniond::Identity()}, a_g,
+                                   side);
+  };
+  EXPECT_NEAR(fraction(2e-4, {0, -4e-4, 0}, 1), (2e-4 - ClearWay::kTouch_m) / 4e-4, 1e-3);
+  EXPECT_EQ(fraction(2e-4, {0, -1e-4, 0}, 1), 1);
+  EXPECT_EQ(fraction(1.5e-6, {3e-4, -3e-7, 0}, 1), 1) << "along it";
+  EXPECT_EQ(fraction(-1e-4, {3e-4, -3e-7, 0}, 1), 0) << "in it";
+  for (const double height_m : {2e-4, -1e-4}) {
+    EXPECT_EQ(fraction(height_m, {0, 4e-4, 0}, 1), 1) << "away from it";
+    EXPECT_EQ(fraction(height_m, {0, -4e-4, 0}, -1), 1) << "its back";
+  }
+}
+
 }  // namespace
 }  // namespace remote_touch::continuous_contacts_test

@@ -85,6 +85,19 @@ TEST(DiskContact, NoPlaceOfADiskBelowACornerIsNearer) {
   }
 }
 
+// The field over a disk of one point is flat below a slope; over a disk of many it must not rise by much,
+// too.
+TEST(DiskContact, WhereTheFieldIsFlat) {
+  const double slope = 0.9 * disk_search::kFlatSlope, steep = 1.1 * disk_search::kFlatSlope;
+  const double small_m = 0.9 * disk_search::kFlatDepth_m / slope,
+               large_m = 1.1 * disk_search::kFlatDepth_m / slope;
+  for (const double extent_m : {0.0, 1e-3}) {
+    EXPECT_TRUE(is_flat(slope, small_m, extent_m));
+    EXPECT_FALSE(is_flat(steep, small_m, extent_m));
+    EXPECT_EQ(is_flat(slope, large_m, extent_m), extent_m == 0);
+  }
+}
+
 TEST(DiskContact, FarAwayItIsTheMiddleWithTheBoundAsDistance) {
   const SurfaceDisk disk = disk_at({0.001, -0.00625, 0.002}, Vec3(1, 2, 0).normalized());
   const ToolContact contact = far_contact(disk, lower_bound_m(disk));

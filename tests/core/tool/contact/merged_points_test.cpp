@@ -116,6 +116,28 @@ TEST(MergedPoints, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
   EXPECT_TRUE(merged_points({}, kCube_m).empty());
 }
 
+TEST(MergedPoints, PointsWithoutASpacingStandForThemselves) {
+  std::vector<CloudPoint> points = surface([](double, double) { return 5e-4; });
+  for (CloudPoint& point : points) point.spacing_m = 0;
+  EXPECT_TRUE(merged_points(points, kCube_m).empty());
+}
+
+// As many squares along a side as there can be, and a point on each end of the disk's axes: the last square
+// ends there.
+TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
+  constexpr int kHalf = 64;
+  constexpr double kStep_m = 1.0 / (1 << 16);
+  std::vector<CloudPoint> points;
+  for (int j = -kHalf; j <= kHalf; ++j)
+    for (int i = -kHalf; i <= kHalf; ++i)
+      if (i * i + j * j <= kHalf * kHalf)
+        points.push_back({{i * kStep_m, 0, j * kStep_m}, Vec3::UnitY(), kStep_m});
+  for (CloudPoint& point : points) point.p_W += Vec3::Constant(1.0 / 256);  // within one cube
+  const std::vector<MergedPoint> merged = merged_points(points, 1.0 / 128);
+  ASSERT_EQ(merged.size(), 1u);
+  EXPECT_EQ(merged[0].extent_m, kHalf * kStep_m);
+}
+
 TEST(MergedPoints, PointsWithoutNormalsStandForThemselves) {
   std::vector<CloudPoint> points = surface([](double, double) { return 0; });
   for (CloudPoint& point : points) point.n_W = Vec3::Constant(std::nan(""));

@@ -62,6 +62,28 @@ TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   }
 }
 
+// Against the eight nodes of every voxel, of a tool that is the same in no two directions.
+TEST(TouchFinder, KnowsTheLargestFieldInAVoxel) {
+  auto tool = std::make_shared<VoxelTool>(*scenes::box_tool(kHalf_m));
+  const auto& cells = tool->grid.cells;
+  const auto node = [&](int i, int j, int k) {
+    return static_cast<std::size_t>((k * (cells[1] + 1) + j) * (cells[0] + 1) + i);
+  };
+  for (int k = 0; k <= cells[2]; ++k)
+    for (int j = 0; j <= cells[1]; ++j)
+      for (int i = 0; i <= cells[0]; ++i)
+        tool->distance_m[node(i, j, k)] += static_cast<float>(1e-6 * i - 3e-6 * j + 2e-6 * k);
+  float max = -1;
+  std::size_t cell = 0;
+  for (int k = 0; k < cells[2]; ++k)
+    for (int j = 0; j < cells[1]; ++j)
+      for (int i = 0; i < cells[0]; ++i)
+        if (tool->voxels[cell++] != Voxel::free)
+          for (int corner = 0; corner < 8; ++corner)
+            max = std::max(max, tool->distance_m[node(i + corner % 2, j + corner / 2 % 2, k + corner / 4)]);
+  EXPECT_NEAR(TouchFinder(tool, scenes::kernels()).max_voxel_m(), static_cast<double>(max), 2e-9);
+}
+
 TEST(TouchFinder, MissesNothingWithinADistanceAndAddsLittle) {
   const PointCloud cloud = scenes::random_cloud(40000, 0.1, 12);
   const auto tool = scenes::box_tool(kHalf_m);

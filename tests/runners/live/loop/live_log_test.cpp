@@ -86,5 +86,17 @@ TEST(LiveLog, TheTraceEndsWhereItsRowsEndAndTheCountsGoOn) {
   EXPECT_FLOAT_EQ(static_cast<float>(report.times.front().greatest), 999e-6f);
 }
 
+TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {
+  LiveLog log;
+  LiveTick tick;
+  for (const int taken : {3, -1, 4, 4, -1, 2, 5}) {  // -1: no frame
+    tick.taken = taken;
+    log.append(tick, 1000);
+    ++tick.number;
+  }
+  EXPECT_EQ(log.reversed_frames, 2);
+  EXPECT_EQ(log.latency_s.size(), 5u);
+}
+
 }  // namespace
 }  // namespace remote_touch::live_log_test
