@@ -43,6 +43,12 @@ DeviceAddress::DeviceAddress(const std::string& scheme, const std::string& addre
   }
 }
 
+// A message begins with the address and a colon: one that ends with its scheme's colon has it already.
+InputError DeviceAddress::refusal(const std::string& problem) const {
+  const bool is_scheme = written_.back() == ':';
+  return InputError(is_scheme ? written_.substr(0, written_.size() - 1) : written_, problem);
+}
+
 std::string DeviceAddress::word(const std::string& key, const std::string& otherwise) const {
   const auto found = settings_.find(key);
   return found == settings_.end() ? otherwise : found->second;

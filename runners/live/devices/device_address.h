@@ -26,7 +26,7 @@ class DeviceAddress {
   std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
   double number(const std::string& key, double otherwise, double min, double max) const;
 
-  InputError refusal(const std::string& problem) const { return InputError(written_, problem); }
+  InputError refusal(const std::string& problem) const;
 
  private:
   std::string written_, place_;
