@@ -72,8 +72,8 @@ TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
 
 // Few points that are as many at every height of the noise: the profile has valleys all over, by chance.
 TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
-  constexpr double kSpacing_m = 0.006, kReach_m = 0.09;
-  for (unsigned seed = 1; seed <= 8; ++seed) {
+  constexpr double kSpacing_m = 0.004, kReach_m = 0.09, kSigma = 1.5;
+  for (unsigned seed = 1; seed <= 50; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> even(-std::sqrt(3.0), std::sqrt(3.0));  // standard deviation 1
     const auto noisy = [&](double height_m) {
@@ -81,7 +81,7 @@ TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
       for (double z = -kReach_m; z <= kReach_m; z += kSpacing_m)
         for (double x = -kReach_m; x <= kReach_m; x += kSpacing_m) {
           const double x_off = even(random), y_off = even(random), z_off = even(random);
-          cloud.append(Vec3(x, height_m, z) + kUnit * Vec3(x_off, y_off, z_off));
+          cloud.append(Vec3(x, height_m, z) + kSigma * kUnit * Vec3(x_off, y_off, z_off));
         }
       return cloud;
     };
