@@ -15,7 +15,7 @@ namespace {
 using namespace guided_scene;
 
 class GuidanceOverTime : public testing::TestWithParam<Inner> {};
-INSTANTIATE_TEST_SUITE_P(Guided, GuidanceOverTime, testing::Values(Inner::proxy, Inner::tool));
+INSTANTIATE_TEST_SUITE_P(Guided, GuidanceOverTime, testing::Values(Inner::proxy, Inner::tool), inner_name);
 
 Frame frame_at(double arrives_s, std::vector<GuidanceTarget> targets, int index) {
   Frame f = frame(std::move(targets), index);

@@ -23,7 +23,7 @@ using namespace guided_scene;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class EveryRenderer : public testing::TestWithParam<Inner> {};
-INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, Inner::tool));
+INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, Inner::tool), inner_name);
 
 // --- the wrench ---
 

@@ -18,6 +18,9 @@
 namespace remote_touch::guided_scene {
 
 enum class Inner { proxy, tool };
+inline std::string inner_name(const testing::TestParamInfo<Inner>& info) {
+  return info.param == Inner::proxy ? "proxy" : "tool";
+}
 
 inline std::unique_ptr<Renderer> inner(Inner kind) {
   if (kind == Inner::proxy)

@@ -35,32 +35,37 @@ Trace pressed(const std::string& renderer, double spacing_m, double depth_m) {
 constexpr double kDense_m = 0.0001;
 
 struct Pressed {
+  const char* name;
   const char* renderer;
   double spacing_m, depth_m;
 };
 const Pressed kHeld[] = {
-    {R"({"name": "proxy"})", kDense_m, 0.01},
-    {R"({"name": "proxy", "r1_m": 0.00199, "r2_m": 0.00201, "r3_m": 0.004})", kDense_m, 0.01},
-    {R"({"name": "tracked-sheet"})", kDense_m, 0.01},
-    {R"({"name": "god-object"})", kDense_m, 0.01},
-    {R"({"name": "god-object", "surface_offset_m": 0.001})", kDense_m, 0.01},
-    {R"({"name": "surfels"})", kDense_m, 0.01},
-    {R"({"name": "averaged-proxy"})", kDense_m, 0.01},
-    {R"({"name": "averaged-proxy", "average": "mean"})", kDense_m, 0.01},
-    {R"({"name": "density-proxy"})", kDense_m, 0.01},
-    {R"({"name": "oracle-proxy"})", kDense_m, 0.01},
-    {R"({"name": "penalty"})", kDense_m, -0.002},  // a HIP below the points pops through
-    {R"({"name": "penalty", "contact_radius_m": 0.003, "stiffness_N_per_m": 100})", kDense_m, -0.001},
-    {R"({"name": "implicit-surface", "surface": "surfels"})", kDense_m, 0.01},
-    {R"({"name": "implicit-surface"})", kReferenceSpacing_m, 0.01},
-    {R"({"name": "implicit-surface", "weight": "wendland", "threshold": 1})", kReferenceSpacing_m, 0.01},
-    {R"({"name": "implicit-surface", "support_radius_m": 0.015})", kReferenceSpacing_m, 0.01},
+    {"proxy", R"({"name": "proxy"})", kDense_m, 0.01},
+    {"proxy_with_other_radii", R"({"name": "proxy", "r1_m": 0.00199, "r2_m": 0.00201, "r3_m": 0.004})",
+     kDense_m, 0.01},
+    {"tracked_sheet", R"({"name": "tracked-sheet"})", kDense_m, 0.01},
+    {"god_object", R"({"name": "god-object"})", kDense_m, 0.01},
+    {"god_object_above_the_points", R"({"name": "god-object", "surface_offset_m": 0.001})", kDense_m, 0.01},
+    {"surfels", R"({"name": "surfels"})", kDense_m, 0.01},
+    {"averaged_proxy", R"({"name": "averaged-proxy"})", kDense_m, 0.01},
+    {"averaged_proxy_by_mean", R"({"name": "averaged-proxy", "average": "mean"})", kDense_m, 0.01},
+    {"density_proxy", R"({"name": "density-proxy"})", kDense_m, 0.01},
+    {"oracle_proxy", R"({"name": "oracle-proxy"})", kDense_m, 0.01},
+    {"penalty", R"({"name": "penalty"})", kDense_m, -0.002},  // a HIP below the points pops through
+    {"penalty_with_another_radius",
+     R"({"name": "penalty", "contact_radius_m": 0.003, "stiffness_N_per_m": 100})", kDense_m, -0.001},
+    {"surface_of_surfels", R"({"name": "implicit-surface", "surface": "surfels"})", kDense_m, 0.01},
+    {"implicit_surface", R"({"name": "implicit-surface"})", kReferenceSpacing_m, 0.01},
+    {"surface_by_wendland", R"({"name": "implicit-surface", "weight": "wendland", "threshold": 1})",
+     kReferenceSpacing_m, 0.01},
+    {"surface_with_a_wide_support", R"({"name": "implicit-surface", "support_radius_m": 0.015})",
+     kReferenceSpacing_m, 0.01},
 };
 
 class Held : public testing::TestWithParam<Pressed> {};
 
 TEST_P(Held, TheContactPointIsOnTheSurface) {
-  const auto& [renderer, spacing_m, depth_m] = GetParam();
+  const auto& [name, renderer, spacing_m, depth_m] = GetParam();
   const Trace trace = pressed(renderer, spacing_m, depth_m);
   ASSERT_TRUE(trace.has_contact());
   EXPECT_FALSE(trace.force_N.back().isZero(0));
@@ -68,7 +73,8 @@ TEST_P(Held, TheContactPointIsOnTheSurface) {
   EXPECT_NEAR(trace.contact.back().height_m, 0, 5e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Renderers, Held, testing::ValuesIn(kHeld));
+INSTANTIATE_TEST_SUITE_P(Renderers, Held, testing::ValuesIn(kHeld),
+                         [](const auto& pressed) { return pressed.param.name; });
 
 TEST(RendererContacts, EveryRendererOfThreeDegreesOfFreedomIsPressed) {
   for (const RendererEntry& entry : renderers()) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -19,6 +18,7 @@
 #include "scenarios/recordings/recording_part.h"
 #include "tests/support/recorded_data.h"
 #include "tests/support/test_files.h"
+#include "tests/support/test_name.h"
 
 namespace remote_touch::benchmark_plan_test {
 
@@ -75,12 +75,8 @@ TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
   EXPECT_EQ(plan.replicates, GetParam().noise.empty() ? 10 : 2);  // five levels have noise
 }
 
-INSTANTIATE_TEST_SUITE_P(OfData, Scenes, testing::ValuesIn(chosen_scenes({})), [](const auto& scene) {
-  std::string name = scene.param.name;
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(OfData, Scenes, testing::ValuesIn(chosen_scenes({})),
+                         [](const auto& scene) { return test_name(scene.param.name); });
 
 TEST(Benchmark, NamesAreThoseOfDataAndComeOnce) {
   const auto two = chosen_methods({"tracked-sheet", "proxy"});

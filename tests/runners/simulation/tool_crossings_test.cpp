@@ -15,6 +15,7 @@
 #include "tests/support/recorded_data.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
+#include "tests/support/test_name.h"
 
 namespace remote_touch::tool_crossings_test {
 namespace {
@@ -70,10 +71,12 @@ ToolAudit audited(const std::string& name, const std::string& rule, double toler
 }
 
 class ToolCrossings : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Experiments, ToolCrossings, testing::Values("fig6.3", "tool-slab", "tool-slot"));
+INSTANTIATE_TEST_SUITE_P(Experiments, ToolCrossings, testing::Values("fig6.3", "tool-slab", "tool-slot"),
+                         [](const auto& experiment) { return test_name(experiment.param); });
 // In scripts/test --full only.
 INSTANTIATE_TEST_SUITE_P(LongExperiments, ToolCrossings,
-                         testing::Values("tool-walk", "fig6.4", "fig6.4-organ", "fig6.4-box"));
+                         testing::Values("tool-walk", "fig6.4", "fig6.4-organ", "fig6.4-box"),
+                         [](const auto& experiment) { return test_name(experiment.param); });
 
 void expect_none(const std::string& name, const std::string& rule, double tolerance_m) {
   set_data_folder(data_root().string());

@@ -23,6 +23,7 @@ Eigen::Matrix3d turned() {
 }
 
 struct Shape {
+  const char* name;
   Vec3 semi_axes;
   Eigen::Matrix3d axes = turned();
 };
@@ -33,12 +34,17 @@ const Vec3 kCentre(0.02, -0.05, 0.03);
 
 // Round, nearly round, long, flat, and each axis the shortest once.
 const Shape kShapes[] = {
-    {{0.04, 0.036, 0.032}},  {{0.02, 0.036, 0.032}},
-    {{0.04, 0.01, 0.032}},   {{0.03, 0.03, 0.03}},
-    {{0.03, 0.03, 0.05}},    {{0.05, 0.03, 0.05}},
-    {{0.03, 0.03, 0.03001}}, {{0.03, 0.03 * (1 + 1e-12), 0.03}},
-    {{0.1, 0.1, 0.001}},     {{1, 0.001, 0.001}},
-    {{1, 0.03, 1e-4}},
+    {"shortest_z", {0.04, 0.036, 0.032}},
+    {"shortest_x", {0.02, 0.036, 0.032}},
+    {"shortest_y", {0.04, 0.01, 0.032}},
+    {"ball", {0.03, 0.03, 0.03}},
+    {"longer_ball", {0.03, 0.03, 0.05}},
+    {"flatter_ball", {0.05, 0.03, 0.05}},
+    {"nearly_a_ball", {0.03, 0.03, 0.03001}},
+    {"a_ball_but_for_rounding", {0.03, 0.03 * (1 + 1e-12), 0.03}},
+    {"disk", {0.1, 0.1, 0.001}},
+    {"needle", {1, 0.001, 0.001}},
+    {"blade", {1, 0.03, 1e-4}},
 };
 
 class EllipsoidTest : public testing::TestWithParam<Shape> {
@@ -198,7 +204,8 @@ TEST_P(EllipsoidTest, HeightIsTheUpperOutline) {
   EXPECT_GT(beside, 500);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, EllipsoidTest, testing::ValuesIn(kShapes));
+INSTANTIATE_TEST_SUITE_P(Shapes, EllipsoidTest, testing::ValuesIn(kShapes),
+                         [](const auto& shape) { return shape.param.name; });
 
 TEST(Ellipsoid, BallByHand) {
   const Ellipsoid ball({0, 1, 0}, {0.5, 0.5, 0.5});

@@ -156,7 +156,10 @@ TEST_P(ExtrusionTest, HeightIsTheUpperOutline) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Profiles, ExtrusionTest, testing::Values(kBox, kRamp, kOdd));
+INSTANTIATE_TEST_SUITE_P(Profiles, ExtrusionTest, testing::Values(kBox, kRamp, kOdd),
+                         [](const auto& profile) {
+                           return profile.param == kBox ? "box" : profile.param == kRamp ? "ramp" : "odd";
+                         });
 
 TEST(Extrusion, BoxByHand) {
   const Extrusion box(kBox, kLow, kHigh);

@@ -41,7 +41,17 @@ DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
 
 class EveryRule : public testing::TestWithParam<TouchRule> {};
 INSTANTIATE_TEST_SUITE_P(Tool, EveryRule,
-                         testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous));
+                         testing::Values(TouchRule::look_ahead, TouchRule::voxels, TouchRule::continuous),
+                         [](const auto& rule) {
+                           switch (rule.param) {
+                             case TouchRule::look_ahead:
+                               return "look_ahead";
+                             case TouchRule::voxels:
+                               return "voxels";
+                             default:
+                               return "continuous";
+                           }
+                         });
 
 TEST_P(EveryRule, InFreeSpaceTheToolIsTheDevice) {
   ToolRenderer r = renderer(GetParam());
