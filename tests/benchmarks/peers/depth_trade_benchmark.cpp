@@ -98,14 +98,16 @@ std::vector<Peer> published(const scenes::DepthScene& scene) {
   for (const auto& [name, how] : {std::pair{"3f2n_mean", Translator::three_filters_mean},
                                   {"3f2n_median", Translator::three_filters_median},
                                   {"d2nt", Translator::d2nt},
-                                  {"d2nt_dag", Translator::d2nt_discontinuities}})
+                                  {"d2nt_dag", Translator::d2nt_discontinuities},
+                                  {"d2nt_refined", Translator::d2nt_refined}})
     for (const auto& [before, prefilter] : peers::prefilters(*depth)) {
       const auto smooth = std::make_shared<std::vector<float>>();
       const auto normals = std::make_shared<std::vector<float>>();
+      const auto translator = std::make_shared<peers::NormalTranslator>();
       all.push_back({std::string(name) + "_" + before,
                      [=] {
                        prefilter(*smooth);
-                       peers::translate(how, *depth, *smooth, *normals);
+                       translator->run(how, *depth, *smooth, *normals);
                      },
                      [=] { return *normals; }});
     }

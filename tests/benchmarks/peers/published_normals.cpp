@@ -121,10 +121,48 @@ void all_rows(const DepthOfCamera& camera, const std::vector<float>& z_m, std::v
   }
 }
 
+// Of row v, from the second column to the last but one.
+void bend_row(const std::vector<float>& z_m, std::ptrdiff_t width, std::ptrdiff_t v, float* bend_m) {
+  const float* const z = z_m.data() + v * width;
+#pragma omp simd
+  for (std::ptrdiff_t u = 1; u < width - 1; ++u)
+    bend_m[u] = std::abs(z[u - 1] + z[u + 1] + z[u - width] + z[u + width] - 4 * z[u]);
+}
+
+// How many pixels away the least bent of a pixel and its neighbours is.
+void best_of_row(const float* above, const float* here, const float* below, int width, int* away) {
+#pragma omp simd
+  for (int u = 3; u < width - 3; ++u) {
+    float least_m = here[u];
+    int best = 0;
+    best = here[u - 1] < least_m ? -1 : best, least_m = std::min(here[u - 1], least_m);
+    best = here[u + 1] < least_m ? 1 : best, least_m = std::min(here[u + 1], least_m);
+    best = above[u] < least_m ? -width : best, least_m = std::min(above[u], least_m);
+    best = below[u] < least_m ? width : best;
+    away[u] = best;
+  }
+}
+
 }  // namespace
 
-void translate(Translator how, const DepthOfCamera& camera, const std::vector<float>& z_m,
-               std::vector<float>& normals) {
+void NormalTranslator::refine(const DepthOfCamera& camera, const std::vector<float>& z_m,
+                              std::vector<float>& normals) {
+  const std::ptrdiff_t width = camera.width, height = camera.height;
+  bend_m_.resize(static_cast<std::size_t>(3 * width)), away_.resize(static_cast<std::size_t>(width));
+  const auto bend = [&](std::ptrdiff_t v) { return bend_m_.data() + v % 3 * width; };
+  for (std::ptrdiff_t v = 2; v < 4; ++v) bend_row(z_m, width, v, bend(v));
+  for (std::ptrdiff_t v = 3; v < height - 3; ++v) {
+    bend_row(z_m, width, v + 1, bend(v + 1));
+    best_of_row(bend(v - 1), bend(v), bend(v + 1), camera.width, away_.data());
+    const float* const from = unrefined_.data() + 3 * v * width;
+    float* const to = normals.data() + 3 * v * width;
+    for (std::ptrdiff_t u = 3; u < width - 3; ++u)
+      std::copy_n(from + 3 * (u + away_[static_cast<std::size_t>(u)]), 3, to + 3 * u);
+  }
+}
+
+void NormalTranslator::run(Translator how, const DepthOfCamera& camera, const std::vector<float>& z_m,
+                           std::vector<float>& normals) {
   const std::size_t size = 3 * z_m.size();
   if (normals.size() != size) normals.assign(size, std::numeric_limits<float>::quiet_NaN());
   switch (how) {
@@ -136,6 +174,10 @@ void translate(Translator how, const DepthOfCamera& camera, const std::vector<fl
       return all_rows<d2nt<false>>(camera, z_m, normals);
     case Translator::d2nt_discontinuities:
       return all_rows<d2nt<true>>(camera, z_m, normals);
+    case Translator::d2nt_refined:
+      unrefined_.resize(size);
+      all_rows<d2nt<true>>(camera, z_m, unrefined_);
+      return refine(camera, z_m, normals);
   }
 }
 

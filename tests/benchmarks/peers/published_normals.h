@@ -27,11 +27,25 @@ class BoxFilter {
 // -(n_x dX + n_y dY) / dZ over the 8 neighbours.
 // D2NT: n = (f dZ/du, f dZ/dv, -(Z + (u - cx) dZ/du + (v - cy) dZ/dv)); with the discontinuity-aware
 // gradients each derivative is the mean of the differences to the pixel on either side, weighted by the
-// inverse of the second difference at that pixel. Its refinement by a Markov random field is not included.
-enum class Translator { three_filters_mean, three_filters_median, d2nt, d2nt_discontinuities };
+// inverse of the second difference at that pixel. Refined: every pixel then takes the normal of that pixel,
+// among itself and its 4 neighbours, whose depth is nearest to the mean of its own 4 neighbours (the paper's
+// Markov random field).
+enum class Translator { three_filters_mean, three_filters_median, d2nt, d2nt_discontinuities, d2nt_refined };
 
-// normals: three numbers a pixel, unit length, any sign; NaN in the outermost two rows and columns.
-void translate(Translator how, const DepthOfCamera& camera, const std::vector<float>& z_m,
-               std::vector<float>& normals);
+class NormalTranslator {
+ public:
+  // normals: three numbers a pixel, unit length, any sign; NaN in the outermost two rows and columns
+  // (refined: three). pre: normals is empty, or what run() wrote for an image of the same size in the same
+  // way.
+  void run(Translator how, const DepthOfCamera& camera, const std::vector<float>& z_m,
+           std::vector<float>& normals);
+
+ private:
+  void refine(const DepthOfCamera& camera, const std::vector<float>& z_m, std::vector<float>& normals);
+
+  std::vector<float> unrefined_;  // normals
+  std::vector<float> bend_m_;     // of three rows: how far a depth is from the mean around it, times 4
+  std::vector<int> away_;         // of one row: the pixel whose normal is taken
+};
 
 }  // namespace remote_touch::peers
