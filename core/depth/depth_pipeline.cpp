@@ -9,9 +9,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMaxHalf = 7;            // of a window
-constexpr int kBorder = 3 * kMaxHalf;  // what the kernels touch around the pixels asked for
-constexpr int kRightBorder = kBorder + 2 * kMaxLanes;
+constexpr int kMaxHalf = 7;  // of a window
 // Rows that one thread takes at a time. Weights of the window above are computed anew for each band; so few
 // as 60 cost 3 %.
 constexpr int kBandRows = 60;
@@ -55,9 +53,12 @@ struct DepthPipeline::Frame {
   double X_WC[12];
   bool keep_points;
   int normal_half = 0, filter_half = 0;       // 0: no filter
+  int shift = 0;                              // of windows beside a pixel; 0: none
   double filter_scale = 1, normal_scale = 1;  // units of a plane in a metre
 
-  int reach() const { return normal_half + filter_half; }
+  // How far from the rectangle filtered points are needed, and measured ones.
+  int wider() const { return shift + normal_half; }
+  int reach() const { return wider() + filter_half; }
   // Rows and columns of the rectangle widened by some, within the image, counted from the rectangle.
   int first_row(int wider) const { return std::max(-wider, -at.top); }
   int last_row(int wider) const { return std::min(at.height + wider, camera.height - at.top); }
@@ -76,12 +77,17 @@ bool fits(int first, int count, int all) {
 
 }  // namespace
 
+// What the kernels touch around the pixels asked for: with sharp edges normals are asked for beside them.
+DepthPipeline::DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
+    : DepthProcessor(settings), kernels_(kernels), border_((settings.sharp_edges ? 5 : 3) * kMaxHalf) {}
+
 DepthPipeline::Frame DepthPipeline::frame_of(const double* depth_m, const CameraIntrinsics& camera,
                                              const PixelRectangle& at, const RigidTransform& X_WC) const {
   Frame frame{depth_m, camera, at, {}, false};
   for (int i = 0; i < 12; ++i) frame.X_WC[i] = X_WC.matrix()(i / 4, i % 4);
   frame.normal_half = half(settings_.normal_window);
   frame.filter_half = settings_.filter ? half(settings_.filter_window) : 0;
+  frame.shift = settings_.sharp_edges ? frame.normal_half + frame.filter_half : 0;
   frame.filter_scale = std::sqrt(kFilterExponent / 2) / settings_.sigma_f_m;
   frame.normal_scale = 1 / settings_.normal_radius_m;
   return frame;
@@ -107,34 +113,42 @@ void DepthPipeline::process_frame(const DepthFrame& whole, PointCloud& cloud) {
 
 // Column 0 of row 0 in three planes, one after another; or another column of it.
 PointPlanes DepthPipeline::planes(std::vector<float>& values, int column) const {
-  float* const first = values.data() + kBorder * stride_ + kBorder + column;
+  float* const first = values.data() + first_pixel() + column;
   return {first, first + plane_size_, first + 2 * plane_size_, stride_};
+}
+
+// None unless edges are to be sharp.
+FitPlanes DepthPipeline::fit_planes(int column) {
+  if (!settings_.sharp_edges) return {};
+  float* const first = fits_.data() + first_pixel() + column;
+  return {first, first + plane_size_, first + 2 * plane_size_, first + 3 * plane_size_};
 }
 
 void DepthPipeline::prepare(const Frame& frame) {
   const PixelRectangle& at = frame.at;
-  stride_ = (at.width + kBorder + kRightBorder + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-  plane_size_ = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(at.height + 2 * kBorder);
+  stride_ = (at.width + 2 * border_ + 3 * kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+  plane_size_ = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(at.height + 2 * border_);
   const auto grow = [](auto& values, std::size_t size) {
     if (values.size() < size) values.resize(size);
   };
   for (std::vector<float>* each : {&raw_, &smooth_, &normals_}) grow(*each, 3 * plane_size_);
   grow(change_, plane_size_);
-  const int pool = band_count(at.height + 2 * frame.normal_half);
+  if (settings_.sharp_edges) grow(fits_, 4 * plane_size_);
+  const int pool = band_count(at.height + 2 * frame.wider());
   grow(scratch_,
-       static_cast<std::size_t>(pool) * weight_buffer_size(at.width + 2 * frame.normal_half,
-                                                           std::max(frame.normal_half, frame.filter_half)));
+       static_cast<std::size_t>(pool) *
+           weight_buffer_size(at.width + 2 * frame.wider(), std::max(frame.normal_half, frame.filter_half)));
   valid_.resize(static_cast<std::size_t>(at.width) * static_cast<std::size_t>(at.height));
   const auto rays = [&](std::vector<double>& wide, std::vector<float>& narrow, std::size_t count, int first,
                         double centre, double focal) {
     grow(wide, count), grow(narrow, count);
     for (std::size_t i = 0; i < count; ++i) {
-      wide[i] = (first + static_cast<int>(i) - kBorder - centre) / focal;
+      wide[i] = (first + static_cast<int>(i) - border_ - centre) / focal;
       narrow[i] = static_cast<float>(wide[i]);
     }
   };
   rays(wide_rays_x_, rays_x_, static_cast<std::size_t>(stride_), at.left, frame.camera.cx, frame.camera.fx);
-  rays(wide_rays_y_, rays_y_, static_cast<std::size_t>(at.height + 2 * kBorder), at.top, frame.camera.cy,
+  rays(wide_rays_y_, rays_y_, static_cast<std::size_t>(at.height + 2 * border_), at.top, frame.camera.cy,
        frame.camera.fy);
 }
 
@@ -162,48 +176,63 @@ void DepthPipeline::write_points(const Frame& frame, int row, int reach, double 
 }
 
 PixelRow DepthPipeline::pixels(const Frame& frame, int row, int first, int last, bool changed) const {
-  const float* const change = change_.data() + (kBorder + row) * stride_ + kBorder + first;
+  const float* const change = change_.data() + first_pixel() + row * stride_ + first;
   return {last - first,
-          wide_rays_x_.data() + kBorder + first,
-          wide_rays_y_[static_cast<std::size_t>(kBorder + row)],
+          wide_rays_x_.data() + border_ + first,
+          wide_rays_y_[static_cast<std::size_t>(border_ + row)],
           frame.depth(row, first),
           changed ? change : nullptr,
           1 / frame.filter_scale};
 }
 
 void DepthPipeline::filter_band(const Frame& frame, int first, int last, float* scratch) {
-  const int wider = frame.normal_half, width = frame.at.width + 2 * wider;
-  float* const change = change_.data() + kBorder * stride_ + kBorder - wider;
+  const int wider = frame.wider(), width = frame.at.width + 2 * wider;
+  float* const change = change_.data() + first_pixel() - wider;
   kernels_.depth.filter_depth({first, last, width, frame.filter_half, scratch}, planes(raw_, -wider), change);
   const PointPlanes smooth = planes(smooth_, 0);
   for (int row = first; row < last; ++row) write_points(frame, row, wider, frame.normal_scale, true, smooth);
 }
 
-void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* scratch, PointCloud& cloud) {
-  const int width = frame.at.width;
-  const PixelRays rays{rays_x_.data() + kBorder, rays_y_.data() + kBorder};
+// With sharp edges also of pixels beside the rectangle.
+void DepthPipeline::normals_band(const Frame& frame, int first, int last, float* scratch) {
+  const int beside = frame.shift;
+  const PixelRays rays{rays_x_.data() + border_ - beside, rays_y_.data() + border_};
   const float step[2] = {static_cast<float>(1 / frame.camera.fx), static_cast<float>(1 / frame.camera.fy)};
-  const PointPlanes points = planes(smooth_, 0), normals = planes(normals_, 0);
-  const RowBand band{first, last, width, frame.normal_half, scratch, settings_.normal_step};
-  const bool total = settings_.normal_fit == NormalFit::total_least_squares;
-  (total ? kernels_.depth.plane_normals : kernels_.depth.inverse_depth_normals)(band, points, rays, step,
-                                                                                normals);
-  for (int row = first; row < last; ++row) {
-    const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
-    const std::ptrdiff_t at = row * stride_;
-    const CloudRow out{cloud.x.data() + to,  cloud.y.data() + to,  cloud.z.data() + to, cloud.nx.data() + to,
-                       cloud.ny.data() + to, cloud.nz.data() + to, valid_.data() + to};
-    if (!frame.keep_points)
-      kernels_.depth.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
-    kernels_.depth.normals_to_cloud(
-        width, points.z + at, {normals.x + at, normals.y + at, normals.z + at, stride_}, frame.X_WC, out);
+  const PointPlanes points = planes(smooth_, -beside), normals = planes(normals_, -beside);
+  const RowBand band{
+      first, last, frame.at.width + 2 * beside, frame.normal_half, scratch, settings_.normal_step};
+  if (settings_.normal_fit == NormalFit::total_least_squares)
+    kernels_.depth.plane_normals(band, points, rays, step, normals);
+  else
+    kernels_.depth.inverse_depth_normals(band, points, rays, step, normals, fit_planes(-beside));
+}
+
+// normals: column 0 of row 0.
+void DepthPipeline::row_to_cloud(const Frame& frame, int row, const PointPlanes& normals, PointCloud& cloud) {
+  const int width = frame.at.width;
+  const std::size_t to = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+  const std::ptrdiff_t at = row * stride_;
+  const CloudRow out{cloud.x.data() + to,  cloud.y.data() + to,  cloud.z.data() + to, cloud.nx.data() + to,
+                     cloud.ny.data() + to, cloud.nz.data() + to, valid_.data() + to};
+  const float* const z = planes(smooth_, 0).z + at;
+  PointPlanes of_row{normals.x + at, normals.y + at, normals.z + at, stride_};
+  if (frame.shift > 0) {
+    const PointPlanes sharp = planes(raw_, 0);  // the measured points are not needed any more
+    const PointPlanes sharp_row{sharp.x + at, sharp.y + at, sharp.z + at, stride_};
+    const FitPlanes fits = fit_planes(0);
+    kernels_.depth.sharp_normals(width, frame.shift, z, of_row,
+                                 {fits.a + at, fits.b + at, fits.c + at, fits.error + at}, sharp_row);
+    of_row = sharp_row;
   }
+  if (!frame.keep_points)
+    kernels_.depth.points_to_cloud(pixels(frame, row, 0, width, settings_.filter), frame.X_WC, out);
+  kernels_.depth.normals_to_cloud(width, z, of_row, frame.X_WC, out);
 }
 
 void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
   prepare(frame);
   for (std::vector<double>* column : {&cloud.nx, &cloud.ny, &cloud.nz}) column->resize(cloud.size());
-  const int reach = frame.reach(), wider = frame.normal_half, height = frame.at.height;
+  const int reach = frame.reach(), wider = frame.wider(), height = frame.at.height;
   const PointPlanes first_planes = planes(settings_.filter ? raw_ : smooth_, 0);
   const double scale = settings_.filter ? frame.filter_scale : frame.normal_scale;
 #pragma omp parallel for schedule(static)
@@ -230,8 +259,16 @@ void DepthPipeline::run(const Frame& frame, PointCloud& cloud) {
     in_bands(frame.first_row(wider), frame.last_row(wider), frame.filter_half,
              [&](int first, int last, float* scratch) { filter_band(frame, first, last, scratch); });
   }
-  in_bands(0, height, frame.normal_half,
-           [&](int first, int last, float* scratch) { normals_band(frame, first, last, scratch, cloud); });
+  const PointPlanes normals = planes(normals_, 0);
+  const auto to_cloud = [&](int row) { row_to_cloud(frame, row, normals, cloud); };
+  const int beside = frame.shift;
+  in_bands(-beside, height + beside, frame.normal_half, [&](int first, int last, float* scratch) {
+    normals_band(frame, first, last, scratch);
+    for (int row = first; beside == 0 && row < last; ++row) to_cloud(row);
+  });
+  if (beside == 0) return;
+#pragma omp parallel for schedule(static)
+  for (int row = 0; row < height; ++row) to_cloud(row);
 }
 
 }  // namespace remote_touch

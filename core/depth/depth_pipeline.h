@@ -6,6 +6,11 @@
 // gives its normal: weights psi of (4.2) from 1 at the point to 0 at the radius, eigenvector of the smallest
 // eigenvalue of the covariance, towards the sensor.
 //
+// With sharp_edges eight windows beside that of a pixel, half a normal's and half a filter's window away, are
+// considered, too. Not in the dissertation. The pixel takes the normal of one of them if its mean square
+// error, that of the pixel's own point to its plane added, is a quarter of the own window's or less: so the
+// normals of a plane go on to its edge, where its own window averages both sides.
+//
 // A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: no point, and no influence.
 // Computed in single precision in the camera frame: normals are within 0.05 degrees of those in double. The
 // same bits on every machine, for any number of threads, and for a rectangle as for the whole frame.
@@ -28,8 +33,7 @@ struct PixelRectangle {
 // On the CPU, in the kernels of its instruction set.
 class DepthPipeline final : public DepthProcessor {
  public:
-  DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels)
-      : DepthProcessor(settings), kernels_(kernels) {}
+  DepthPipeline(const DepthPipelineSettings& settings, const Kernels& kernels);
 
   using DepthProcessor::process;
   // Only these pixels, at the cost of these: bit for bit as they are in the whole frame. The image layout is
@@ -53,14 +57,18 @@ class DepthPipeline final : public DepthProcessor {
                     const PointPlanes& to);
   PixelRow pixels(const Frame& frame, int row, int first, int last, bool changed) const;
   void filter_band(const Frame& frame, int first, int last, float* scratch);
-  void normals_band(const Frame& frame, int first, int last, float* scratch, PointCloud& cloud);
+  void normals_band(const Frame& frame, int first, int last, float* scratch);
+  void row_to_cloud(const Frame& frame, int row, const PointPlanes& normals, PointCloud& cloud);
+  std::ptrdiff_t first_pixel() const { return border_ * stride_ + border_; }  // of a plane
   PointPlanes planes(std::vector<float>& values, int column) const;
+  FitPlanes fit_planes(int column);
 
   const Kernels& kernels_;
+  const int border_;  // of a plane, around the pixels asked for
   std::ptrdiff_t stride_ = 0;
   std::size_t plane_size_ = 0;
   // Planes with a border: points in units of the filter, points in units of the normals, normals.
-  std::vector<float> raw_, smooth_, normals_, change_, rays_x_, rays_y_, scratch_;
+  std::vector<float> raw_, smooth_, normals_, fits_, change_, rays_x_, rays_y_, scratch_;
   std::vector<double> wide_rays_x_, wide_rays_y_;
   std::vector<std::uint8_t> valid_;
 };

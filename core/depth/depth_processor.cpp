@@ -30,6 +30,9 @@ Parameters parameters(DepthPipelineSettings& s) {
        "divides half of normal_window - 1"},
       {"normal_fit", choice(s.normal_fit, {"total-least-squares", "inverse-depth"}), 0, 0,
        "fit of a normal, 6.2.1; inverse-depth is faster and has weights (1 - q^2)^2 in place of (4.2)"},
+      {"sharp_edges", &s.sharp_edges, 0, 1,
+       "a pixel whose window, 6.2.1, reaches over an edge takes the normal of a window beside it that fits the pixel "
+       "clearly better; needs normal_fit = inverse-depth"},
   };
 }
 
@@ -37,6 +40,8 @@ std::string validate(const DepthPipelineSettings& s) {
   const std::string filter = wrong_window("filter_window", s.filter_window);
   const std::string normal = wrong_window("normal_window", s.normal_window);
   if (!filter.empty() || !normal.empty()) return filter.empty() ? normal : filter;
+  if (s.sharp_edges && s.normal_fit != NormalFit::inverse_depth)
+    return "sharp_edges = true: expected normal_fit = inverse-depth";
   if (s.normal_window / 2 % s.normal_step == 0) return {};
   return "normal_step = " + std::to_string(s.normal_step) + ": expected a divisor of " +
          std::to_string(s.normal_window / 2) + ", half of normal_window - 1";

@@ -26,6 +26,7 @@ struct DepthPipelineSettings {
   double normal_radius_m = 0.014;
   int normal_step = 1;
   NormalFit normal_fit = NormalFit::total_least_squares;
+  bool sharp_edges = false;
 
   bool operator==(const DepthPipelineSettings&) const = default;
 };
@@ -33,7 +34,7 @@ struct DepthPipelineSettings {
 // The fast setting: a quarter to a third of the default's time. Filter and steps together use every pixel of
 // 11 x 11.
 inline constexpr DepthPipelineSettings kFastDepthPipeline{
-    true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth};
+    true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth, true};
 
 Parameters parameters(DepthPipelineSettings& s);
 std::string validate(const DepthPipelineSettings& s);

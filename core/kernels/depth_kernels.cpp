@@ -8,6 +8,7 @@ Kernel<&DepthKernels::depth_to_points> depth_to_points;
 Kernel<&DepthKernels::filter_depth> filter_depth;
 Kernel<&DepthKernels::plane_normals> plane_normals;
 Kernel<&DepthKernels::inverse_depth_normals> inverse_depth_normals;
+Kernel<&DepthKernels::sharp_normals> sharp_normals;
 Kernel<&DepthKernels::points_to_cloud> points_to_cloud;
 Kernel<&DepthKernels::normals_to_cloud> normals_to_cloud;
 
@@ -16,6 +17,7 @@ const DepthKernels kDepthKernels = {
     .filter_depth = filter_depth,
     .plane_normals = plane_normals,
     .inverse_depth_normals = inverse_depth_normals,
+    .sharp_normals = sharp_normals,
     .points_to_cloud = points_to_cloud,
     .normals_to_cloud = normals_to_cloud,
 };

@@ -19,6 +19,16 @@ struct PointPlanes {
 
 inline constexpr float kNowhere = 1e12f;
 
+// Of each pixel the plane that was fitted to its window: 1 / z = a i + b j + c at i columns and j rows from
+// the pixel; and the weighted mean square of how far the points of the window are from it, divided by their
+// depth. NaN where there is no plane. Null: not wanted.
+struct FitPlanes {
+  float* a = nullptr;
+  float* b = nullptr;
+  float* c = nullptr;
+  float* error = nullptr;
+};
+
 // The point at depth z on the ray of pixel (u, v) is z * (x[u], y[v], 1).
 struct PixelRays {
   const float* x;
@@ -90,9 +100,16 @@ struct DepthKernels {
   // (1 / fx, 1 / fy).
   void (*plane_normals)(const RowBand&, const PointPlanes& points, const PixelRays&, const float step[2],
                         const PointPlanes& normals);
-  // The same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q.
+  // The same by a fit of the inverse depth, with weights (1 - q^2)^2 of the distance q. The fits have the
+  // stride of the normals.
   void (*inverse_depth_normals)(const RowBand&, const PointPlanes& points, const PixelRays&,
-                                const float step[2], const PointPlanes& normals);
+                                const float step[2], const PointPlanes& normals, const FitPlanes& fits);
+  // One row: of its own fit and those of the 8 pixels `shift` columns or rows away each takes the normal
+  // whose plane errs least, with the pixel's own point counted as an error of its own; another than its own
+  // only if its error is a quarter at most. z: depths of the points, of the stride of the normals. The planes
+  // of normals and fits go on for `shift` columns and rows on every side, and for kMaxLanes more columns.
+  void (*sharp_normals)(int width, int shift, const float* z, const PointPlanes& normals,
+                        const FitPlanes& fits, const PointPlanes& sharp);
   // One row into the cloud, m, world frame; X_WC is a row-major 3 x 4 matrix. z: depths of the points that
   // the normals belong to.
   void (*points_to_cloud)(const PixelRow&, const double X_WC[12], const CloudRow&);

@@ -32,14 +32,18 @@ struct Setting {
 };
 
 constexpr NormalFit kInverse = NormalFit::inverse_depth;
-const std::vector<Setting> kSettings = {{"ours_9_9_default", {}},
-                                        {"ours_7_7", {true, 7, 0.025, 7, 0.014}},
-                                        {"ours_5_5", {true, 5, 0.025, 5, 0.014}},
-                                        {"ours_9_9_step_2_inverse", {true, 9, 0.025, 9, 0.02, 2, kInverse}},
-                                        {"ours_5_9_step_2_inverse", {true, 5, 0.025, 9, 0.02, 2, kInverse}},
-                                        {"ours_3_7_step_3_inverse", {true, 3, 0.025, 7, 0.02, 3, kInverse}},
-                                        {"ours_5_9_step_2", {true, 5, 0.025, 9, 0.014, 2}},
-                                        {"ours_fast", kFastDepthPipeline}};
+const std::vector<Setting> kSettings = {
+    {"ours_9_9_default", {}},
+    {"ours_7_7", {true, 7, 0.025, 7, 0.014}},
+    {"ours_5_5", {true, 5, 0.025, 5, 0.014}},
+    {"ours_9_9_step_2_inverse", {true, 9, 0.025, 9, 0.02, 2, kInverse}},
+    {"ours_5_9_step_2_inverse", {true, 5, 0.025, 9, 0.02, 2, kInverse}},
+    {"ours_3_7_step_3_inverse", {true, 3, 0.025, 7, 0.02, 3, kInverse}},
+    {"ours_5_9_step_2", {true, 5, 0.025, 9, 0.014, 2}},
+    {"ours_fast_blunt", {true, 3, 0.025, 9, 0.02, 2, kInverse}},
+    {"ours_3_7_step_3_sharp", {true, 3, 0.025, 7, 0.02, 3, kInverse, true}},
+    {"ours_9_9_step_2_sharp", {true, 9, 0.025, 9, 0.02, 2, kInverse, true}},
+    {"ours_fast", kFastDepthPipeline}};
 
 // The pixels of each kind, and all of them, that have a normal: root of the mean square of the angle to the
 // truth, and their fraction of all.

@@ -56,7 +56,9 @@ Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
       continue;
     }
     EXPECT_TRUE(has_normal(cloud, i)) << i;
-    const double angle = angle_deg(cloud.normal(i), reference.cloud.normal(i));
+    double angle = kInfinity;
+    for (const Vec3& normal : reference.as_good[i])
+      angle = std::min(angle, angle_deg(cloud.normal(i), normal));
     d.max_deg = std::max(d.max_deg, angle), d.rms_deg += angle * angle, ++d.normals;
   }
   d.rms_deg = d.normals ? std::sqrt(d.rms_deg / static_cast<double>(d.normals)) : 0;

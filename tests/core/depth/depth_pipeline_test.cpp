@@ -20,7 +20,8 @@ TEST(DepthPipeline, SameBitsOnEveryLevelAndForAnyNumberOfThreads) {
   for (const Settings& settings :
        {Settings{}, Settings{true, 5, 0.02, 11, 0.01}, Settings{false, 9, 0.02, 9, 0.014},
         Settings{true, 3, 0.02, 9, 0.014, 2}, Settings{true, 7, 0.02, 13, 0.02, 3}, kFastDepthPipeline,
-        Settings{true, 5, 0.02, 13, 0.02, 3, NormalFit::inverse_depth}}) {
+        Settings{true, 5, 0.02, 13, 0.02, 3, NormalFit::inverse_depth},
+        Settings{false, 3, 0.02, 15, 0.02, 1, NormalFit::inverse_depth, true}}) {
     const PointCloud expected = processed(scene, settings);
     for (const Isa isa : {Isa::x86_64, Isa::x86_64_v3, Isa::x86_64_v4}) {
       if (isa > best_isa()) continue;
@@ -43,7 +44,8 @@ TEST(DepthPipeline, ARectangleHasTheBitsOfTheWholeFrame) {
   for (std::size_t i = 0; i < pixels; ++i) scene.depth.z_m.push_back(scene.depth.z_m[pixels - 200 + i % 200]);
   scene.depth.z_m.resize(pixels);
   const RigidTransform X_WC = some_pose();
-  for (const Settings& settings : {Settings{}, Settings{true, 5, 0.02, 13, 0.02, 3}, kFastDepthPipeline}) {
+  for (const Settings& settings : {Settings{}, Settings{true, 5, 0.02, 13, 0.02, 3}, kFastDepthPipeline,
+                                   Settings{true, 15, 0.02, 15, 0.02, 1, NormalFit::inverse_depth, true}}) {
     DepthPipeline pipeline(settings, best());
     const PointCloud whole = pipeline.process(scene.depth, scene.camera, X_WC);
     PointCloud part;
@@ -152,11 +154,13 @@ TEST(DepthPipeline, NormalsOfAPlaneAndASphere) {
 
 TEST(DepthPipeline, NormalsAreUnitVectorsTowardsTheSensor) {
   const RigidTransform X_WC = some_pose();
-  const PointCloud cloud = processed(with_holes(noisy_waves(160, 120, 0.01)), {}, X_WC);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!has_normal(cloud, i)) continue;
-    ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
-    ASSERT_GT(cloud.normal(i).dot(X_WC.translation() - cloud.point(i)), 0) << i;
+  for (const Settings& settings : {Settings{}, kFastDepthPipeline}) {
+    const PointCloud cloud = processed(with_holes(noisy_waves(160, 120, 0.01)), settings, X_WC);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!has_normal(cloud, i)) continue;
+      ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
+      ASSERT_GT(cloud.normal(i).dot(X_WC.translation() - cloud.point(i)), 0) << i;
+    }
   }
 }
 
@@ -255,6 +259,10 @@ TEST(DepthPipeline, RefusesWhatDoesNotFit) {
   odd_step.normal_step = 3;
   EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4, half of normal_window - 1");
   EXPECT_THROW(DepthPipeline(odd_step, best()), std::invalid_argument);
+  Settings sharp;
+  sharp.sharp_edges = true;
+  EXPECT_EQ(validate(sharp), "sharp_edges = true: expected normal_fit = inverse-depth");
+  EXPECT_THROW(DepthPipeline(sharp, best()), std::invalid_argument);
   EXPECT_EQ(validate(kFastDepthPipeline), "");
   EXPECT_EQ(validate(Settings{}), "");
   Settings settings;

@@ -1,8 +1,10 @@
 #include "tests/core/depth/reference_depth_pipeline.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace remote_touch {
 namespace {
@@ -56,6 +58,10 @@ double wendland(double q) {
 struct Plane {
   Vec3 normal{kNoValue, kNoValue, kNoValue};
   double gap = 0, middle = 0;
+  // Of the fit of the inverse depth: 1 / z = abc . (i, j, 1), and the weighted mean of (z abc . (i, j, 1) -
+  // 1)^2.
+  Vec3 abc{kNoValue, kNoValue, kNoValue};
+  double error = kNoValue;
 };
 
 Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, int v) {
@@ -98,10 +104,56 @@ Plane plane_of_inverse_depth(const DepthPipelineSettings& settings, const Points
   found.gap = 1, found.middle = covariance.determinant() / std::pow(covariance.trace(), 2);
   if (!(found.middle > kThinnest)) return found;
   const Vec3 solved = left.fullPivLu().solve(right);
+  double squares = 0;
+  points.window(u, v, settings.normal_window, settings.normal_step, [&](const Vec3& p, int i, int j) {
+    const double q = (p - p0).norm() / settings.normal_radius_m, weight = q < 1 ? std::pow(1 - q * q, 2) : 0;
+    squares += weight * std::pow(p.z() * solved.dot(Vec3(i, j, 1)) - 1, 2);
+  });
+  found.abc = solved, found.error = p0.z() * p0.z() * squares / left(2, 2);
   const double x = solved.x() * points.camera.fx, y = solved.y() * points.camera.fy;
   found.normal = -Vec3(x, y, solved.z() - x * p0.x() / p0.z() - y * p0.y() / p0.z()).normalized();
   if (found.normal.dot(p0) > 0) found.normal = -found.normal;
   return found;
+}
+
+// Which normals of `planes` a pixel may take: that of the least error, and others where errors differ by less
+// than the rounding of single precision.
+struct Taken {
+  Vec3 normal;
+  double gap;
+  std::vector<Vec3> as_good;
+};
+
+Taken sharp_normal(const DepthPipelineSettings& settings, const Points& points,
+                   const std::vector<Plane>& planes, int u, int v) {
+  constexpr double kRounding = 0.01, kLeastError = 1e-9;
+  const auto at = [&](int column, int row) {
+    return static_cast<std::size_t>(row * points.camera.width + column);
+  };
+  const Plane& own = planes[at(u, v)];
+  Taken best{own.normal, own.gap, {own.normal}};
+  if (!own.normal.allFinite()) return best;
+  const int shift = settings.normal_window / 2 + (settings.filter ? settings.filter_window / 2 : 0);
+  std::vector<std::pair<double, const Plane*>> all = {{std::min(own.error / 4, 1.0), &own}};
+  for (int j = -shift; j <= shift; j += shift)
+    for (int i = -shift; i <= shift; i += shift) {
+      const bool inside =
+          u + i >= 0 && u + i < points.camera.width && v + j >= 0 && v + j < points.camera.height;
+      if (!inside || (i == 0 && j == 0)) continue;
+      const Plane& plane = planes[at(u + i, v + j)];
+      if (!plane.normal.allFinite()) continue;
+      const double beside = points.p[at(u, v)].z() * plane.abc.dot(Vec3(-i, -j, 1)) - 1;
+      all.emplace_back(plane.error + beside * beside, &plane);
+    }
+  const auto least = *std::min_element(all.begin(), all.end(),
+                                       [](const auto& a, const auto& b) { return a.first < b.first; });
+  best = {least.second->normal, least.second->gap, {}};
+  for (const auto& [error, plane] : all) {
+    if (!(error <= least.first * (1 + kRounding) + kLeastError)) continue;
+    best.as_good.push_back(plane->normal);
+    if (plane->middle < 1e-3) best.gap = 0;  // its normal is not known well
+  }
+  return best;
 }
 
 }  // namespace
@@ -115,13 +167,18 @@ ReferenceDepth reference_depth_pipeline(const DepthPipelineSettings& settings, c
   const Points points = settings.filter ? filtered(settings, raw) : raw;
   ReferenceDepth reference;
   const auto fit = settings.normal_fit == NormalFit::inverse_depth ? plane_of_inverse_depth : plane;
+  std::vector<Plane> planes;
   for (int v = 0; v < camera.height; ++v)
-    for (int u = 0; u < camera.width; ++u) {
-      const Plane found = fit(settings, points, u, v);
-      const Vec3& p = points.p[static_cast<std::size_t>(v * camera.width + u)];
-      reference.cloud.append(X_WC * p, X_WC.linear() * found.normal);
-      reference.gap.push_back(found.gap), reference.middle.push_back(found.middle);
-    }
+    for (int u = 0; u < camera.width; ++u) planes.push_back(fit(settings, points, u, v));
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const int u = static_cast<int>(i) % camera.width, v = static_cast<int>(i) / camera.width;
+    Taken taken{planes[i].normal, planes[i].gap, {planes[i].normal}};
+    if (settings.sharp_edges) taken = sharp_normal(settings, points, planes, u, v);
+    for (Vec3& normal : taken.as_good) normal = X_WC.linear() * normal;
+    reference.cloud.append(X_WC * points.p[i], X_WC.linear() * taken.normal);
+    reference.gap.push_back(taken.gap), reference.middle.push_back(planes[i].middle);
+    reference.as_good.push_back(std::move(taken.as_good));
+  }
   reference.cloud.image = ImageLayout{camera, X_WC, 1e-6};
   return reference;
 }
