@@ -114,6 +114,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;
   if (!good) ::unlink(temporary.c_str());
   if (good && kind.max_bytes == 0) shrink_cache(folder, max_cache_bytes());
+  if (good && kind.max_bytes > 0) remove_abandoned(folder);
   return good;
 }
 

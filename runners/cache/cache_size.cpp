@@ -74,10 +74,14 @@ CacheSize cache_size(const fs::path& folder) {
   return size;
 }
 
-CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
-  std::vector<CachedFile> files = files_in(folder);
-  for (const CachedFile& file : files)
+void remove_abandoned(const fs::path& folder) {
+  for (const CachedFile& file : files_in(folder))
     if (is_abandoned(file)) removed(file);
+}
+
+CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
+  remove_abandoned(folder);
+  std::vector<CachedFile> files = files_in(folder);
   std::erase_if(files, [](const CachedFile& file) { return !is_ours(file.path); });
   std::sort(files.begin(), files.end(),
             [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });

@@ -17,8 +17,11 @@ std::uintmax_t max_cache_bytes();
 
 CacheSize cache_size(const std::filesystem::path& folder);
 
-// Removes the files that were used longest ago, until so many bytes are left at most; also what killed
-// programs left half written an hour ago or earlier. Files of other kinds stay. Returns what is left.
+// Removes what killed programs left half written an hour ago or earlier.
+void remove_abandoned(const std::filesystem::path& folder);
+
+// The same, then the files that were used longest ago, until so many bytes are left at most. Files of other
+// kinds stay. Returns what is left.
 CacheSize shrink_cache(const std::filesystem::path& folder, std::uintmax_t max_bytes);
 
 }  // namespace remote_touch

@@ -15,13 +15,17 @@ FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library 
                      r"vector::|malloc")
 # The C library says so by itself, before the program's line, where the HDF5 library damaged the heap after it found no
 # memory, and so does that of OpenMP, which ends the program. They cannot be told not to.
-DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\))[^\n]*\n"
-                          r"(?=remote-touch: the HDF5 library failed: out of memory)"
+DAMAGED_HEAP = re.compile(r"\A(?:corrupted|malloc\(\)|free\(\)|realloc\(\)|double free|munmap_chunk\(\)|Fatal glibc error: "
+                          r"malloc)[^\n]*\n(?=remote-touch: (?:the HDF5 library failed: out of memory"
+                          r"|[^\n]*: damaged \(its reader ended with signal 6, perhaps without memory\)))"
                           r"|\A\nlibgomp: Out of memory allocating \d+ bytes\n(?=remote-touch: )")
 # OpenMP ends the program by itself where it finds no memory for its threads, and its library has no call to prevent it.
 ENDED_BY_OPENMP = re.compile(r"\A\nlibgomp: Out of memory allocating \d+ bytes\n\Z")
 # It ended the program at once, as did a lack of memory where no exception may leave, such as in the destructor of JSON.
 ENDED_AT_ONCE = re.compile(r"the HDF5 library failed|\Aremote-touch: out of memory\n\Z")
+# What a program that was killed left in the cache, where others may be writing: one that writes there an hour later
+# removes it.
+ABANDONED = re.compile(r"cache/[^/]*\.partial-")
 # What the message of each failure has to say.
 REASON = {"ENOSPC": "No space left on device", "EIO": "Input/output error", "ENOMEM": "memory"}
 
@@ -201,7 +205,8 @@ class Trials:
         now = state_of(self.folder)
         if not self.command.same_bytes:
             now[self.command.result] = self.scene.after[self.command.result]
-        different = sorted(name for name in {*now, *self.scene.after} if now.get(name) != self.scene.after.get(name))
+        different = sorted(name for name in {*now, *self.scene.after} if now.get(name) != self.scene.after.get(name)
+                           and not ABANDONED.match(name))
         if different:
             return f"the same command again gives other files: {different}"
         return "" if self.command.same_bytes else self.unreadable()
