@@ -12,19 +12,20 @@ import remote_touch as rt
 from conftest import EXAMPLES, PAGE, ROOT
 from remote_touch import _core, calls, classes
 
-IMPORT = ("import time; t = time.perf_counter(); import remote_touch; print(time.perf_counter() - t); import sys; "
+IMPORT = ("import time; t = time.process_time(); import remote_touch; print(time.process_time() - t); import sys; "
           "print('numpy' in sys.modules, 'xarray' in sys.modules)")
 
 
 def test_import_takes_at_most_0_3_s():
-    """Of 5 imports the median: the machine may do other things. NumPy and xarray are imported by who needs them."""
+    """Of the processor's time, the median of 5: the machine may do other things, which must not fail a test. NumPy and
+    xarray are imported by who needs them."""
     times = []
     for _ in range(5):
         seconds, loaded = subprocess.run([sys.executable, "-B", "-c", IMPORT], capture_output=True, text=True,
                                          check=True).stdout.splitlines()
         times.append(float(seconds))
         assert loaded == "False False"
-    print(f"\nimport remote_touch: {min(times):.3f} to {max(times):.3f} s, median {statistics.median(times):.3f} s")
+    print(f"\nimport remote_touch: CPU time {min(times):.3f} to {max(times):.3f} s, median {statistics.median(times):.3f} s")
     assert statistics.median(times) <= 0.3
 
 
