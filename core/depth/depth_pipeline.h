@@ -6,10 +6,11 @@
 // gives its normal: weights psi of (4.2) from 1 at the point to 0 at the radius, eigenvector of the smallest
 // eigenvalue of the covariance, towards the sensor.
 //
-// With sharp_edges eight windows beside that of a pixel, half a normal's and half a filter's window away, are
-// considered, too. Not in the dissertation. The pixel takes the normal of one of them if its mean square
-// error, that of the pixel's own point to its plane added, is a quarter of the own window's or less: so the
-// normals of a plane go on to its edge, where its own window averages both sides.
+// With sharp_edges (not in the dissertation) a pixel may take the normal of one of eight windows around its
+// own. Each is away by half the width of the normal's window and half that of the filter's. The pixel takes
+// the one that fits best, if that fits clearly better: if its mean square error and the squared distance of
+// the pixel's own point from its plane are together a quarter of the own window's error or less. At an edge
+// the own window averages both sides; a window that ends there has one side only.
 //
 // A depth that is NaN, infinite, zero, negative, or 1 km and more is a hole: no point, and no influence.
 // Computed in single precision in the camera frame: normals are within 0.05 degrees of those in double. The

@@ -53,6 +53,11 @@ bool removed(const CachedFile& file) {
   return fs::remove(file.path, refused);
 }
 
+void remove_abandoned(const std::vector<CachedFile>& files) {
+  for (const CachedFile& file : files)
+    if (is_abandoned(file)) removed(file);
+}
+
 }  // namespace
 
 std::uintmax_t max_cache_bytes() {
@@ -75,13 +80,12 @@ CacheSize cache_size(const fs::path& folder) {
 }
 
 void remove_abandoned(const fs::path& folder) {
-  for (const CachedFile& file : files_in(folder))
-    if (is_abandoned(file)) removed(file);
+  remove_abandoned(files_in(folder));
 }
 
 CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
-  remove_abandoned(folder);
   std::vector<CachedFile> files = files_in(folder);
+  remove_abandoned(files);
   std::erase_if(files, [](const CachedFile& file) { return !is_ours(file.path); });
   std::sort(files.begin(), files.end(),
             [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });

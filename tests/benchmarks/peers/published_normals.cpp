@@ -133,12 +133,12 @@ void bend_row(const std::vector<float>& z_m, std::ptrdiff_t width, std::ptrdiff_
 void best_of_row(const float* above, const float* here, const float* below, int width, int* away) {
 #pragma omp simd
   for (int u = 3; u < width - 3; ++u) {
-    float least_m = here[u];
+    float min_m = here[u];
     int best = 0;
-    best = here[u - 1] < least_m ? -1 : best, least_m = std::min(here[u - 1], least_m);
-    best = here[u + 1] < least_m ? 1 : best, least_m = std::min(here[u + 1], least_m);
-    best = above[u] < least_m ? -width : best, least_m = std::min(above[u], least_m);
-    best = below[u] < least_m ? width : best;
+    best = here[u - 1] < min_m ? -1 : best, min_m = std::min(here[u - 1], min_m);
+    best = here[u + 1] < min_m ? 1 : best, min_m = std::min(here[u + 1], min_m);
+    best = above[u] < min_m ? -width : best, min_m = std::min(above[u], min_m);
+    best = below[u] < min_m ? width : best;
     away[u] = best;
   }
 }

@@ -126,7 +126,7 @@ struct Taken {
 
 Taken sharp_normal(const DepthPipelineSettings& settings, const Points& points,
                    const std::vector<Plane>& planes, int u, int v) {
-  constexpr double kRounding = 0.01, kLeastError = 1e-9;
+  constexpr double kRounding = 0.01, kMinError = 1e-9;
   const auto at = [&](int column, int row) {
     return static_cast<std::size_t>(row * points.camera.width + column);
   };
@@ -145,11 +145,11 @@ Taken sharp_normal(const DepthPipelineSettings& settings, const Points& points,
       const double beside = points.p[at(u, v)].z() * plane.abc.dot(Vec3(-i, -j, 1)) - 1;
       all.emplace_back(plane.error + beside * beside, &plane);
     }
-  const auto least = *std::min_element(all.begin(), all.end(),
-                                       [](const auto& a, const auto& b) { return a.first < b.first; });
-  best = {least.second->normal, least.second->gap, {}};
+  const auto min = *std::min_element(all.begin(), all.end(),
+                                     [](const auto& a, const auto& b) { return a.first < b.first; });
+  best = {min.second->normal, min.second->gap, {}};
   for (const auto& [error, plane] : all) {
-    if (!(error <= least.first * (1 + kRounding) + kLeastError)) continue;
+    if (!(error <= min.first * (1 + kRounding) + kMinError)) continue;
     best.as_good.push_back(plane->normal);
     if (plane->middle < 1e-3) best.gap = 0;  // its normal is not known well
   }
