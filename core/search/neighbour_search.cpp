@@ -165,7 +165,7 @@ void UniformGridSearch::gather(const Ball& ball, const Kernels& kernels, Gathere
   const double reach = widened(ball).radius * (1 + 1e-9);
   int first[3], last[3];
   for (int axis = 0; axis < 3; ++axis) {
-    if (ball.centre[axis] + reach < low_[axis] || ball.centre[axis] - reach > high_[axis]) return;
+    if (!(ball.centre[axis] + reach >= low_[axis] && ball.centre[axis] - reach <= high_[axis])) return;
     first[axis] = cell_along(axis, ball.centre[axis] - reach);
     last[axis] = cell_along(axis, ball.centre[axis] + reach);
   }

@@ -15,8 +15,9 @@ namespace remote_touch {
 class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
-  // Adds the points whose regions meet the ball to out, which has capacity for size() points. Does not call
-  // finish(). One reader at a time: an implementation may cache results for the next call.
+  // Adds the points whose regions meet the ball to out, which has capacity for size() points; none for a ball
+  // that is nowhere (NaN). Does not call finish(). One reader at a time: an implementation may cache results
+  // for the next call.
   virtual void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const = 0;
   virtual std::size_t size() const = 0;
   // Every measured point, in the order of the search. The default writes what gather() finds into buffer:

@@ -52,6 +52,7 @@ void SheetSearch::finish() {
 }
 
 void SheetSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
+  if (!ball.centre.allFinite()) return;
   const Ball wide{ball.centre, ball.radius + max_fixture_radius_m()};
   // Points lie in the cells of their rounded places.
   const PatchPlace c = region_.frame.place(ball.centre);

@@ -84,14 +84,16 @@ SheetPatches::Lowest SheetPatches::lowest(const Patch& patch, const ToolPose& po
     }
   };
   Lowest low;
-  each([&](const Vec3&, double clearance) {
-    if (!low.found || clearance < low.clearance) low.found = true, low.clearance = clearance;
+  each([&](const Vec3& p_W, double clearance) {
+    if (!low.found || clearance < low.clearance) low = {true, clearance, p_W};
   });
+  Vec3 sum_W = Vec3::Zero();
   double count = 0;
   each([&](const Vec3& p_W, double clearance) {
-    if (clearance <= low.clearance + kNearlyAsLow) low.p_W += p_W, count += 1;
+    if (clearance <= low.clearance + kNearlyAsLow) sum_W += p_W, count += 1;
   });
-  if (low.found) low.p_W /= count;
+  const PatchPlace mean = region.frame.place(sum_W / count);
+  if (low.found && map.covers(mean.u, mean.v)) low.p_W = sum_W / count;
   return low;
 }
 

@@ -76,8 +76,10 @@ class SheetPatches final : public PointChange {
   };
   struct Lowest {
     bool found = false;
-    double clearance = 0;     // above the sheet, units
-    Vec3 p_W = Vec3::Zero();  // the mean of the places that are nearly as low
+    double clearance = 0;  // above the sheet, units
+    // The mean of the places that are nearly as low, or the lowest one where the sheet is not seen below the
+    // mean, as over a hole.
+    Vec3 p_W = Vec3::Zero();
   };
   bool explains(const Patch& patch, const Vec3& p_W, const Vec3& n_W) const;
   Lowest lowest(const Patch& patch, const ToolPose& pose) const;

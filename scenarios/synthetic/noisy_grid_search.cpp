@@ -87,7 +87,7 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
 
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   const double reach = ball.radius + kMaxNormal * sigma_m_ + kRounding_m;
-  if (std::abs(ball.centre.y() - height_m_) > reach) return;
+  if (!ball.centre.allFinite() || std::abs(ball.centre.y() - height_m_) > reach) return;
   const double spare_m = ball.radius <= kMaxOfProxy_m ? kSpareMargin_m : 0;
   if (!cached_cylinder_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
   out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);

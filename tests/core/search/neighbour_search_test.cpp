@@ -170,6 +170,17 @@ TEST(NeighbourSearch, EmptyAndMissingPoints) {
   EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball, scenes::kernels()).empty());
 }
 
+TEST(NeighbourSearch, ABallThatIsNowhereHoldsNoPoint) {
+  const PointCloud cloud = image_cloud(), unordered = scenes::random_cloud(500, 0.05, 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    Ball ball{Vec3::Zero(), 10};
+    ball.centre[axis] = std::nan("");
+    EXPECT_TRUE(found(BruteForceSearch(unordered), ball, scenes::kernels()).empty());
+    EXPECT_TRUE(found(UniformGridSearch(unordered, 0.01), ball, scenes::kernels()).empty());
+    EXPECT_TRUE(found(ImageWindowSearch(cloud), ball, scenes::kernels()).empty());
+  }
+}
+
 TEST(NeighbourSearch, ChosenByTheCloud) {
   EXPECT_NE(dynamic_cast<ImageWindowSearch*>(make_search(image_cloud()).get()), nullptr);
   EXPECT_NE(dynamic_cast<BruteForceSearch*>(make_search(scenes::random_cloud(10, 1, 1)).get()), nullptr);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "core/tracked_sheet/patch_points.h"
@@ -69,6 +70,7 @@ TEST(SheetSearch, InsideTheRegionOnlyWhatWasAddedIsThere) {
   shown.start(region, frame, buffer);
   shown.finish();
   EXPECT_TRUE(found(shown, {Vec3::Zero(), 0.03}).empty());
+  EXPECT_TRUE(found(shown, {Vec3(std::nan(""), 0, 0), 1}).empty());
   const auto outside = found(shown, {Vec3(0.05, 0, 0), 0.03});
   EXPECT_FALSE(outside.empty());
   const PointCloud cloud = scenes::flat_grid(100);

@@ -102,6 +102,28 @@ TEST(TrackedTool, OnANoisyPlaneErrorsAreThoseOfAFit) {
   }
 }
 
+// The rim is as high on all sides, so that the middle of what is lowest is over the hole, where no sheet is
+// seen. Over a wide hole the plate lies on points as they were measured, within their noise.
+TEST(TrackedTool, LiesOnTheRimOfAHole) {
+  for (const double radius_m : {0.01, 0.014, 0.018}) {
+    TrackedToolRenderer r = renderer();
+    const double sigma_m = 0.3 * kUnit_m;
+    Panels panels(sigma_m, 6);
+    for (int frame = 0; frame < 20; ++frame) {
+      const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity(), 100).take();
+      PointCloud rim;
+      for (std::size_t i = 0; i < floor.size(); ++i)
+        if (std::hypot(floor.x[i], floor.z[i]) > radius_m) rim.append(floor.point(i), Vec3::UnitY());
+      r.on_frame(frame_at(frame, rim));
+      const RenderOutput out =
+          ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0.0005 * frame, -0.003, 0})));
+      ASSERT_TRUE(out.proxy_W.allFinite()) << frame;
+      if (frame < 10) continue;
+      EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 3 * sigma_m) << radius_m << " " << frame;
+    }
+  }
+}
+
 // Without noise and at rest nothing is changed: every bit is that of the tool of chapter 6.
 TEST(TrackedTool, WithoutNoiseAndAtRestItIsThePlainTool) {
   TrackedToolRenderer r = renderer();

@@ -271,6 +271,9 @@ TEST(MovingShape, SearchesShowTheCloud) {
         EXPECT_EQ(found.size(), expected.size());
         EXPECT_GT(found.size(), 0u);
       }
+      found.clear();
+      points->gather({Vec3(0, 0, std::nan("")), 1}, scenes::kernels(), found);
+      EXPECT_EQ(found.size(), 0u);
     }
   }
 }
