@@ -52,7 +52,7 @@ ToolContact RegionContacts::contact(const ChosenPair& pair, const Eigen::Quatern
 
 // What a leaf was deepest in a look ago, or its neighbour now, bounds how deep it is, and with that what is
 // worth a look: deep inside the half of all pairs. Which pairs are chosen does not depend on it.
-NearContacts RegionContacts::near(const ToolPose& pose, double) {
+NearContacts RegionContacts::near(const ToolPose& pose, double, double) {
   choice_.begin();
   std::uint32_t neighbours = kNone;
   double min_m = kInfinite;

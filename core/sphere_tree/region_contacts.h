@@ -40,8 +40,10 @@ class RegionContacts final : public NearContactSource {
   void reserve(std::size_t points);                          // for clouds of so many points
   const RegionTree& regions() const { return *regions_; }
 
-  // side has no effect: a region has only one outside. deepest_m is over all pairs, not only the contacts.
-  NearContacts near(const ToolPose& pose, double side) override;
+  // All within the look-ahead, always. side has no effect: a region has only one outside. deepest_m is over
+  // all pairs, not only the contacts.
+  using NearContactSource::near;
+  NearContacts near(const ToolPose& pose, double side, double within_m) override;
 
   // own_stiffness_N_per_m: k_s of points that have none.
   RegionTouch touched(const ToolPose& pose, double own_stiffness_N_per_m);

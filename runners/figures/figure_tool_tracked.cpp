@@ -35,7 +35,7 @@ constexpr TrackedMethod kLookAheadAsIs{
     R"(renderer={"name": "tool", "tool_mesh": "slab-10", "contact_rule": "look-ahead"})"};
 
 // The renderer's parameters were fixed with seeds 1 to 20; no run of these had been looked at then.
-constexpr int kTrackedSeeds[] = {101, 102, 103};
+constexpr int kTrackedSeeds[] = {101, 102, 103, 104, 105, 106, 107, 108, 109, 110};
 constexpr int kOtherSeed = 101;
 
 std::string seeded_run(int number) {
@@ -248,7 +248,7 @@ std::vector<Claim> tracked_tool_claims(const Survived& ours, const Survived& pri
       of_map(claim_at_least(f, "success of tracked sheets over the whole map" + beside, "-", ours.share(),
                             0.99, "fraction")),
       of_map(claim_at_least(f, "lower end of its 95 % Wilson interval", "-",
-                            wilson_interval(ours.held, ours.runs).first, 0.96, "fraction"))};
+                            wilson_interval(ours.held, ours.runs).first, 0.97, "fraction"))};
   for (const Table& table : jumps)
     for (const char* what : {"_force", "_torque"})
       claims.push_back(claim_at_most(f,
@@ -283,7 +283,7 @@ Figure figure_tool_tracked(const FigureContext& context) {
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "
       "Fig 4.13; frames at 30 Hz; simulated. A filled square is a lift that did not pop through. Below: "
       "what the frames do to force and torque. The three contact rules have a velocity estimate, and "
-      "look-ahead also none. Parameters were fixed with seeds 1 to 20; shown are seeds 101 to 103."};
+      "look-ahead also none. Parameters were fixed with seeds 1 to 20; tracked sheets: seeds 101 to 110, others: seed 101."};
   std::vector<std::pair<std::string, Survived>> success;
   Survived ours, printed;
   for (const int seed : kTrackedSeeds) {

@@ -97,11 +97,12 @@ void ContactList::gather_deepest(double side) {
   contacts_.resize(nearest_.size());
 }
 
-NearContacts ContactList::near(const ToolPose& pose, double side) {
-  const double reach_m = std::min(p_.look_ahead_m + max_near_disk_m_, kMaxReach_m);
-  NearContacts found{{}, -std::numeric_limits<double>::infinity()};
+NearContacts ContactList::near(const ToolPose& pose, double side, double within_m) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const double near_m = std::min(within_m, p_.look_ahead_m);
+  NearContacts found{{}, -kInfinite, within_m < p_.look_ahead_m ? within_m : kInfinite};
   contacts_.clear();
-  disks_.query(finder_, kernels_, pose, reach_m, p_.look_ahead_m);
+  disks_.query(finder_, kernels_, pose, std::min(near_m + max_near_disk_m_, kMaxReach_m), near_m);
   if (disks_.size() > ContactThinning::kMaxCount) {
     gather_deepest(side);
   } else {

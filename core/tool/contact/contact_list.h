@@ -39,9 +39,10 @@ class ContactList final : public NearContactSource {
   // and at most look_ahead_m and the radius of the largest disk. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
-  // Every disk that the tool could touch within look_ahead_m, or as far as the field reaches; side as for
-  // near_contact().
-  NearContacts near(const ToolPose& pose, double side) override;
+  // Every disk that the tool could touch within within_m or look_ahead_m, or as far as the field reaches;
+  // side as for near_contact().
+  using NearContactSource::near;
+  NearContacts near(const ToolPose& pose, double side, double within_m) override;
   // The points in shell and interior voxels. Those without a normal are left out.
   VoxelContacts in_voxels(const ToolPose& pose);
   // Points in shell or interior voxels, and unless the rule is voxels those whose disk is touched.

@@ -26,7 +26,8 @@ class ContinuousContacts final : public NearContactSource {
 
   // With the gap. Points that have stopped the tool since begin() are contacts of their own: a step that runs
   // against one of them is not tried again.
-  NearContacts near(const ToolPose& pose, double side) override;
+  using NearContactSource::near;
+  NearContacts near(const ToolPose& pose, double side, double within_m) override;
   // A point is in the tool, also where near() has a disk for many that is not.
   bool has_points_inside(const ToolPose& pose) const;
   double clear_fraction(const ToolPose& pose, const Vector6& a_g) override;

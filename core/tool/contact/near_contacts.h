@@ -1,6 +1,7 @@
 // What the look-ahead rule needs from a scene: everything that the tool could touch soon.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "core/tool/dynamics/motion_program.h"
@@ -10,16 +11,22 @@ namespace remote_touch {
 struct NearContacts {
   std::span<const ToolContact> contacts;
   double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing is near
+  // A contact that is not listed is farther away than this; infinity: all within the look-ahead are listed.
+  double within_m = std::numeric_limits<double>::infinity();
 };
 
 // The interface between the look-ahead rule and what holds a tool: the points of a surface, or regions.
 class NearContactSource {
  public:
   virtual ~NearContactSource() = default;
-  // The contacts of a pose within the look-ahead, no more than the motion program takes. side: +1 or -1, the
-  // side of the surface that the tool was on before a frame put points into it; 0: not known. Valid until the
-  // next call.
-  virtual NearContacts near(const ToolPose& pose, double side) = 0;
+  // The contacts of a pose within within_m, or more of them, but none beyond the look-ahead; no more than the
+  // motion program takes. side: +1 or -1, the side of the surface that the tool was on before a frame put
+  // points into it; 0: not known. Valid until the next call.
+  virtual NearContacts near(const ToolPose& pose, double side, double within_m) = 0;
+  // All within the look-ahead.
+  NearContacts near(const ToolPose& pose, double side) {
+    return near(pose, side, std::numeric_limits<double>::infinity());
+  }
   // How much of a motion from this pose the tool may go; sources that know no better allow all of it. pre:
   // pose is that of the last call of near().
   virtual double clear_fraction(const ToolPose&, const Vector6&) { return 1; }

@@ -3,7 +3,7 @@
 // out of what it is in. Not in the dissertation.
 #pragma once
 
-#include "core/tool/contact/near_contacts.h"
+#include "core/tool/motion/look_ahead_program.h"
 #include "core/tool/motion/tool_motion.h"
 
 namespace remote_touch {
@@ -12,7 +12,7 @@ class LookAheadMotion {
  public:
   // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
   LookAheadMotion(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
-      : p_(parameters), reach_m_(reach_m), program_(parameters, tool) {}
+      : p_(parameters), reach_m_(reach_m), program_(parameters, tool, reach_m) {}
   // As ToolMotion::move(). detections: what the tick has used of its budget before.
   ToolMotionReport move(ToolPose& pose, const ToolPose& device, NearContactSource& source, bool updated,
                         int detections = 0);
@@ -21,12 +21,11 @@ class LookAheadMotion {
   double side() const { return side_; }
 
  private:
-  Vector6 step_towards(const Vector6& a_gu, const ToolPose& pose, const NearContacts& near,
-                       ToolMotionReport& report);
+  Vector6 step_of(const LookAheadProgram::Look& look, const ToolPose& pose, ToolMotionReport& report);
 
   const ToolParameters p_;
   const double reach_m_;
-  MotionProgram program_;
+  LookAheadProgram program_;
   double side_ = 1;
   bool settling_ = false;  // a frame came, and the tool is still in its points
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -98,6 +99,27 @@ TEST(ContactList, FewContactsAreAllThere) {
     deepest_m = std::max(deepest_m, all[i].contact.depth_m);
   }
   EXPECT_EQ(near.deepest_m, deepest_m);
+}
+
+// Whatever was asked for before.
+TEST(ContactList, WhatIsAskedForIsThereAndNothingFartherAway) {
+  const PointCloud cloud = cloud_of(800);
+  ContactList list(kTool, {}, scenes::kernels());
+  list.on_frame(formatted<TiledCloud>(cloud));
+  std::size_t last = 0;
+  for (const double within_m : {1e-4, 2e-3, 5e-4, 1e-3, 3e-4, 1.0}) {
+    ToolParameters p;
+    const bool is_all = within_m >= p.look_ahead_m;
+    if (!is_all) p.look_ahead_m = within_m;
+    const std::vector<Found> expected = all_contacts(cloud, p);
+    const NearContacts near = list.near(kPose, 0, within_m);
+    EXPECT_EQ(near.within_m, is_all ? std::numeric_limits<double>::infinity() : within_m);
+    ASSERT_EQ(near.contacts.size(), expected.size()) << within_m;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_TRUE(same(near.contacts[i], expected[i].contact)) << i << " " << within_m;
+    EXPECT_NE(near.contacts.size(), last);
+    last = near.contacts.size();
+  }
 }
 
 // Most disks are never searched, and still it is the deepest contact of a cell that is kept: the lower bound
