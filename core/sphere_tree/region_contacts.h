@@ -40,8 +40,8 @@ class RegionContacts final : public NearContactSource {
   void reserve(std::size_t points);                          // for clouds of so many points
   const RegionTree& regions() const { return *regions_; }
 
-  // All within the look-ahead, always. side has no effect: a region has only one outside. deepest_m is over
-  // all pairs, not only the contacts.
+  // within_m has no effect: they are always chosen among all pairs within the look-ahead. Nor has side: a
+  // region has only one outside. deepest_m is over all pairs, not only the contacts.
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
 

@@ -99,8 +99,9 @@ void ContactList::gather_deepest(double side) {
 
 NearContacts ContactList::near(const ToolPose& pose, double side, double within_m) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  const double near_m = std::min(within_m, p_.look_ahead_m);
-  NearContacts found{{}, -kInfinite, within_m < p_.look_ahead_m ? within_m : kInfinite};
+  // Of a disk that is searched the lower bound is not what counts: in a notch of the tool it can be deeper.
+  const double near_m = std::min(std::max(within_m, NearDisks::kSearch_m), p_.look_ahead_m);
+  NearContacts found{{}, -kInfinite, near_m < p_.look_ahead_m ? near_m : kInfinite};
   contacts_.clear();
   disks_.query(finder_, kernels_, pose, std::min(near_m + max_near_disk_m_, kMaxReach_m), near_m);
   if (disks_.size() > ContactThinning::kMaxCount) {

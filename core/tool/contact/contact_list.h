@@ -39,8 +39,8 @@ class ContactList final : public NearContactSource {
   // and at most look_ahead_m and the radius of the largest disk. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
 
-  // Every disk that the tool could touch within within_m or look_ahead_m, or as far as the field reaches;
-  // side as for near_contact().
+  // Every disk that the tool could touch within the smaller of within_m, but at least NearDisks::kSearch_m,
+  // and look_ahead_m, and no farther than the field reaches; side as for near_contact().
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
   // The points in shell and interior voxels. Those without a normal are left out.

@@ -10,8 +10,9 @@ namespace remote_touch {
 
 struct NearContacts {
   std::span<const ToolContact> contacts;
-  double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing is near
-  // A contact that is not listed is farther away than this; infinity: all within the look-ahead are listed.
+  double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing was found
+  // A contact that is not listed is farther away than this, or was left out because there were too many;
+  // infinity: farther away than the look-ahead.
   double within_m = std::numeric_limits<double>::infinity();
 };
 

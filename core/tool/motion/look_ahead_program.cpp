@@ -40,8 +40,7 @@ LookAheadProgram::Look LookAheadProgram::look(const ToolPose& pose, const Vector
       return look;
     }
     solve(pose, a_gu, look);
-    // The place of a contact is within the look-ahead of the tool.
-    const double motion_m = max_point_displacement_m(look.a_g, reach_m_ + look_ahead_m_);
+    const double motion_m = max_point_displacement_m(look.a_g, contact_reach_m_);
     first_m_ = std::max(kMinFirst_m, kSpare * motion_m);
     if (is_all || motion_m < look.near.within_m) return look;
     within_m = std::max(first_m_, 2 * within_m);

@@ -16,29 +16,33 @@ class LookAheadProgram {
   static constexpr double kMinFirst_m = 1.5e-4;  // nothing less is asked for
 
   struct Look {
-    // Contacts that are deeper than minus kMinFirst_m are all listed; of others those that were asked for.
-    // None: nothing is within the look-ahead.
+    // Contacts nearer than kMinFirst_m, and of those farther away what was asked for. None: nothing is within
+    // the look-ahead.
     NearContacts near;
     // The admissible motion, world axes; where nothing is near, towards the device by the look-ahead at most.
     Vector6 a_g = Vector6::Zero();
-    ConstrainedMotion motion;  // the same in tool axes, and what held it
+    ConstrainedMotion motion;  // the same in tool axes, and what held it; zero where nothing is near
   };
 
   // reach_m: of the farthest place of the tool from its centre of mass, as the source of contacts sees it.
   LookAheadProgram(const ToolParameters& parameters, const VoxelTool& tool, double reach_m)
-      : look_ahead_m_(parameters.look_ahead_m), reach_m_(reach_m), program_(parameters, tool) {}
+      : look_ahead_m_(parameters.look_ahead_m),
+        reach_m_(reach_m),
+        // The place of a contact is where the field is known.
+        contact_reach_m_(reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
+        program_(parameters, tool) {}
 
-  // A frame can put points anywhere: the next look asks for all within the look-ahead.
+  // After a frame much can be near: the next look asks for all at once, which is faster.
   void on_frame();
   // a_gu: the motion to the device, world axes. side: as for near(). Out of a collision, (6.7), else towards
-  // the device, (6.4). Its list of contacts is valid until the source is asked again. Up to rounding the
-  // motion does not depend on earlier looks; what they asked for only makes this one faster.
+  // the device, (6.4). Its list of contacts is valid until the source is asked again. While no contact is
+  // left out because there are too many, the motion does not depend on earlier looks, up to rounding.
   Look look(const ToolPose& pose, const Vector6& a_gu, NearContactSource& source, double side);
 
  private:
   void solve(const ToolPose& pose, const Vector6& a_gu, Look& look);
 
-  const double look_ahead_m_, reach_m_;
+  const double look_ahead_m_, reach_m_, contact_reach_m_;
   MotionProgram program_;
   double first_m_ = kMinFirst_m;  // what the next look asks for first
 };

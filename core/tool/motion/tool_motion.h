@@ -12,7 +12,7 @@ namespace remote_touch {
 
 struct ToolMotionReport {
   int steps = 0;
-  int detections = 0;
+  int detections = 0;           // poses whose contacts were asked for
   bool at_rest = false;         // the tool has converged; else the budget of detections was used up
   int active_count = 0;         // contacts that pushed in the last step
   Vec3 push_W = Vec3::Zero();   // sum of their multipliers times normals: the direction of contact

@@ -20,7 +20,7 @@
 namespace remote_touch::tool_crossings_test {
 namespace {
 
-// Less than this deep is no collision for the look-ahead rule (look_ahead_motion.cpp).
+// Less than this deep is no collision for the look-ahead rule (look_ahead_program.h).
 constexpr double kLookAhead_m = 1e-4;
 constexpr double kContinuous_m = 1e-5;
 // The printed rule lets points into the shell: a point of it is within 1.5 sqrt(3) voxels of the centre of a

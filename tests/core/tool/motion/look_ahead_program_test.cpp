@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include "core/tool/contact/contact_list.h"
+#include "core/tool/mesh/generated_tools.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"
@@ -66,8 +68,8 @@ Vector6 random_motion(std::mt19937& random, double size_m) {
 }
 
 // The definition: one program of all contacts.
-ConstrainedMotion allowed_by_all(NearContactSource& source, const Vector6& a_gu) {
-  MotionProgram program({}, *kTool);
+ConstrainedMotion allowed_by_all(const VoxelTool& tool, NearContactSource& source, const Vector6& a_gu) {
+  MotionProgram program({}, tool);
   const NearContacts near = source.near(kPose, 0);
   const Vector6 desired_T = rotated(kPose.q_WT.conjugate(), a_gu);
   const bool collides = near.deepest_m > LookAheadProgram::kCollision_m;
@@ -85,7 +87,7 @@ TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
       LookAheadProgram program({}, *kTool, kTool->reach_m);
       for (const double size_m : {1e-5, 1e-4, 1e-3, 1e-2}) {
         const Vector6 a_gu = random_motion(random, size_m);
-        const ConstrainedMotion expected = allowed_by_all(planes, a_gu);
+        const ConstrainedMotion expected = allowed_by_all(*kTool, planes, a_gu);
         planes.asked_m.clear();
         const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
         if (look.near.contacts.empty()) continue;
@@ -134,22 +136,42 @@ TEST(LookAheadProgram, AsksForAllBeforeItSaysThatNothingIsNear) {
   EXPECT_FALSE(std::isfinite(none.asked_m.back()));
 }
 
-// Points around a box, with normals in all directions: fewer than a program takes, so that none is left out.
-TEST(LookAheadProgram, OfPointsItFindsTheMotionThatAllAllow) {
-  PointCloud cloud = scenes::random_cloud(800, 0.012, 21);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 n = cloud.point(i).normalized();
-    cloud.nx.push_back(n.x()), cloud.ny.push_back(n.y()), cloud.nz.push_back(n.z());
+// Points outside a tool, with normals roughly towards it.
+PointCloud around(const VoxelTool& tool, std::size_t count, double radius_m) {
+  const PointCloud all = scenes::random_cloud(count, radius_m, 21),
+                   directions = scenes::random_cloud(count, 1, 22);
+  PointCloud cloud;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 p_T = kPose.q_WT.conjugate() * (all.point(i) - kPose.p_W);
+    const FieldSample at = sample_field(tool, p_T);
+    if (at.distance_m < 1e-4) continue;
+    const Vec3 n_T = -at.gradient_T + 0.3 * directions.point(i);
+    cloud.append(all.point(i), kPose.q_WT * n_T.normalized());
   }
-  ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(formatted<TiledCloud>(cloud));
-  LookAheadProgram program({}, *kTool, kTool->reach_m);
-  std::mt19937 random(8);
-  for (int i = 0; i < 100; ++i) {
-    const Vector6 a_gu = random_motion(random, i % 2 == 0 ? 1e-4 : 1e-3);
-    const Vector6 expected = allowed_by_all(list, a_gu).a_g;
-    const LookAheadProgram::Look look = program.look(kPose, a_gu, list, 0);
-    EXPECT_LE(max_point_displacement_m(look.motion.a_g - expected, kTool->reach_m), kSame_m) << i;
+  return cloud;
+}
+
+// Fewer points than a program takes, so that none is left out. In a fork, which is not convex, a disk can be
+// nearer than its lower bound.
+TEST(LookAheadProgram, OfPointsItFindsTheMotionThatAllAllow) {
+  ToolReport report;
+  const auto fork =
+      std::make_shared<const VoxelTool>(make_voxel_tool(find_generated_tool("fork")->make(), {}, report));
+  for (const auto& [tool, count, reach_m] : {std::tuple(kTool, 800u, 0.012), std::tuple(fork, 4000u, 0.03)}) {
+    ContactList list(tool, {}, scenes::kernels());
+    list.on_frame(formatted<TiledCloud>(around(*tool, count, reach_m)));
+    LookAheadProgram program({}, *tool, tool->reach_m);
+    std::mt19937 random(8);
+    int in_part = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Vector6 a_gu = random_motion(random, i % 2 == 0 ? 1e-4 : 1e-3);
+      const Vector6 expected = allowed_by_all(*tool, list, a_gu).a_g;
+      EXPECT_LT(list.near(kPose, 0).contacts.size(), 256u);
+      const LookAheadProgram::Look look = program.look(kPose, a_gu, list, 0);
+      EXPECT_LE(max_point_displacement_m(look.motion.a_g - expected, tool->reach_m), kSame_m) << i;
+      in_part += std::isfinite(look.near.within_m) ? 1 : 0;
+    }
+    EXPECT_GT(in_part, 20) << count;
   }
 }
 
