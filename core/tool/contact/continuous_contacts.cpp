@@ -42,8 +42,8 @@ void ContinuousContacts::add_stop(const Vec3& p_W) {
   if (!is_known && stops_W_.size() < kMaxStops) stops_W_.push_back(p_W);
 }
 
-NearContacts ContinuousContacts::near(const ToolPose& pose, double side, double within_m) {
-  const NearContacts found = points_->near(pose, side, within_m + kGap_m);
+NearContacts ContinuousContacts::near(const ToolPose& pose, double side, double) {
+  const NearContacts found = points_->near(pose, side);
   contacts_.clear();
   for (ToolContact contact : found.contacts) {
     contact.depth_m += kGap_m;
@@ -51,7 +51,7 @@ NearContacts ContinuousContacts::near(const ToolPose& pose, double side, double 
   }
   thinning_.thin(contacts_, ContactThinning::kMaxCount - stops_W_.size());
   add_stops(pose);
-  return {contacts_, found.deepest_m + kGap_m, found.within_m - kGap_m};
+  return {contacts_, found.deepest_m + kGap_m};
 }
 
 bool ContinuousContacts::has_points_inside(const ToolPose& pose) const {

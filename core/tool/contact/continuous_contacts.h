@@ -24,8 +24,8 @@ class ContinuousContacts final : public NearContactSource {
   // it.
   void begin(ContactList& points);
 
-  // With the gap. Points that have stopped the tool since begin() are contacts of their own: a step that runs
-  // against one of them is not tried again.
+  // All within the look-ahead, whatever is asked for, with the gap. Points that have stopped the tool since
+  // begin() are contacts of their own: a step that runs against one of them is not tried again.
   using NearContactSource::near;
   NearContacts near(const ToolPose& pose, double side, double within_m) override;
   // A point is in the tool, also where near() has a disk for many that is not.

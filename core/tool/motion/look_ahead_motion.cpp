@@ -48,7 +48,6 @@ ToolMotionReport LookAheadMotion::move(ToolPose& pose, const ToolPose& device, N
   bool same_state = true;
   ContactState first = ContactState::free;
   settling_ |= updated;
-  if (updated) program_.on_frame();
   MotionProgress progress(p_.rest_threshold_m, kLookAheadPatience);
   int stopped = 0;  // looks in a row after which the tool could not move
   while (true) {

@@ -23,10 +23,6 @@ void LookAheadProgram::solve(const ToolPose& pose, const Vector6& a_gu, Look& lo
   look.a_g = rotated(pose.q_WT, look.motion.a_g);
 }
 
-void LookAheadProgram::on_frame() {
-  first_m_ = kAll_m;
-}
-
 LookAheadProgram::Look LookAheadProgram::look(const ToolPose& pose, const Vector6& a_gu,
                                               NearContactSource& source, double side) {
   Look look;

@@ -32,8 +32,6 @@ class LookAheadProgram {
         contact_reach_m_(reach_m + kFieldMargin_m + 3 * tool.grid.size_m),
         program_(parameters, tool) {}
 
-  // After a frame much can be near: the next look asks for all at once, which is faster.
-  void on_frame();
   // a_gu: the motion to the device, world axes. side: as for near(). Out of a collision, (6.7), else towards
   // the device, (6.4). Its list of contacts is valid until the source is asked again. While no contact is
   // left out because there are too many, the motion does not depend on earlier looks, up to rounding.

@@ -115,10 +115,6 @@ TEST(LookAheadProgram, AsksOnlyForWhatIsNearAsLongAsTheToolMovesLittle) {
   const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
   EXPECT_EQ(look.near.contacts.size(), 1u);
   EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
-  planes.asked_m.clear();
-  program.on_frame();
-  EXPECT_EQ(program.look(kPose, a_gu, planes, 0).near.contacts.size(), 2u);
-  EXPECT_EQ(planes.asked_m.size(), 1u);
 }
 
 TEST(LookAheadProgram, AsksForAllBeforeItSaysThatNothingIsNear) {
