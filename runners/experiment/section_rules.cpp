@@ -1,6 +1,7 @@
 #include "runners/experiment/section_rules.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
