@@ -111,7 +111,6 @@ TEST(LookAheadProgram, AsksOnlyForWhatIsNearAsLongAsTheToolMovesLittle) {
   LookAheadProgram program({}, *kTool, kTool->reach_m);
   Vector6 a_gu = Vector6::Zero();
   a_gu.head<3>() = kPose.q_WT * Vec3(5e-5, -0.01, 0);  // along the plane, and pressed against it
-  a_gu.tail<3>().setZero();
   const LookAheadProgram::Look look = program.look(kPose, a_gu, planes, 0);
   EXPECT_EQ(look.near.contacts.size(), 1u);
   EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
