@@ -283,8 +283,8 @@ Figure figure_tool_tracked(const FigureContext& context) {
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "
       "Fig 4.13; frames at 30 Hz; simulated. A filled square is a lift that did not pop through. Below: "
       "what the frames do to force and torque. The three contact rules have a velocity estimate, and "
-      "look-ahead also none. Parameters were fixed with seeds 1 to 20; tracked sheets: seeds 101 to 110, "
-      "others: seed 101."};
+      "look-ahead also none. Parameters were fixed with seeds 1 to 20; the maps are of seed 101, "
+      "the claims about tracked sheets of seeds 101 to 110."};
   std::vector<std::pair<std::string, Survived>> success;
   Survived ours, printed;
   for (const int seed : kTrackedSeeds) {
