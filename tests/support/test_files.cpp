@@ -16,11 +16,12 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// The process id keeps tests apart that run at the same time.
-TestFolder::TestFolder(const std::string& name)
-    : path_(fs::temp_directory_path() / (name + "_" + std::to_string(::getpid()))) {
-  fs::remove_all(path_);
-  fs::create_directories(path_);
+// The process id keeps tests apart that run at the same time. A folder of that name may exist nevertheless: a
+// test was killed, or runs in another container with the same temporary folder.
+TestFolder::TestFolder(const std::string& name) {
+  const fs::path wanted = fs::temp_directory_path() / (name + "_" + std::to_string(::getpid()));
+  path_ = wanted;
+  for (int i = 1; !fs::create_directory(path_); ++i) path_ = wanted.string() + "_" + std::to_string(i);
 }
 
 TestFolder::~TestFolder() {

@@ -1,7 +1,7 @@
 // A camera that exists only here, as a driver for the run-time library of OpenNI 2: it shows pattern.h at 30
 // Hz. The environment variable VIRTUAL_CAMERA tells it what to do, as words with commas between them:
 //   absent           no camera is plugged in
-//   stop_after=N     sends no frame after frame N
+//   stop_after=N     sends no frame after frame N, which is not missing
 //   lose_after=N     likewise, and reports that it was unplugged
 //   small_after=N    depth after frame N has half of the rows
 //   stays_mirrored   shows a mirrored image, whatever it is told
@@ -13,6 +13,7 @@
 #include <Driver/OniDriverAPI.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
@@ -25,6 +26,8 @@
 
 namespace remote_touch::virtual_camera {
 namespace {
+
+std::atomic<int> sent{0};  // the number of the newest frame; 0: none since the camera was opened
 
 // The number behind the word; without one 1; without the word 0.
 int told(const std::string& word) {
@@ -98,7 +101,7 @@ class Stream : public oni::driver::StreamBase {
 // One thread sends the frames of both streams, colour first.
 class Device : public oni::driver::DeviceBase {
  public:
-  explicit Device(void (*lose)(void*), void* driver) : lose_(lose), driver_(driver) {}
+  explicit Device(void (*lose)(void*), void* driver) : lose_(lose), driver_(driver) { sent = 0; }
   ~Device() override {
     {
       const std::lock_guard lock(mutex_);
@@ -166,8 +169,12 @@ void Device::run() {
   const int stop_after = told("stop_after"), lose_after = told("lose_after");
   const auto period = std::chrono::nanoseconds(1'000'000'000 / kRate_hz);
   const auto start = Clock::now();
+  const auto after = [&](int number) {
+    const int due = std::max<int>(number + 1, (Clock::now() - start) / period);
+    return number < stop_after ? std::min(due, stop_after) : due;
+  };
   std::unique_lock lock(mutex_);
-  for (int number = 1; !is_closed_; number = std::max<int>(number + 1, (Clock::now() - start) / period)) {
+  for (int number = 1; !is_closed_; number = after(number)) {
     changed_.wait_until(lock, start + number * period, [this] { return is_closed_; });
     if (lose_after > 0 && number > lose_after) {
       lock.unlock();
@@ -178,7 +185,7 @@ void Device::run() {
     OniFrame* colour = colour_ ? colour_->see(number) : nullptr;
     OniFrame* depth = depth_ ? depth_->see(number) : nullptr;
     if (colour) colour_->send(colour);
-    if (depth) depth_->send(depth);
+    if (depth) depth_->send(depth), sent = number;
   }
 }
 
@@ -296,3 +303,8 @@ class Driver : public oni::driver::DriverBase {
 }  // namespace remote_touch::virtual_camera
 
 ONI_EXPORT_DRIVER(remote_touch::virtual_camera::Driver)
+
+// For sent_frames.h.
+extern "C" int virtual_camera_sent() {
+  return remote_touch::virtual_camera::sent;
+}

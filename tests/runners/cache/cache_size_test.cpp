@@ -17,6 +17,7 @@ namespace {
 
 class CacheSizeTest : public testing::Test {
  protected:
+  CacheSizeTest() { ::unsetenv("REMOTE_TOUCH_CACHE_MB"); }  // the user may have set it
   ~CacheSizeTest() override { ::unsetenv("REMOTE_TOUCH_CACHE_MB"); }
 
   void add(const std::string& name, std::size_t bytes, int used_s_ago) const {

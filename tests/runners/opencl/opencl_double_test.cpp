@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <thread>
 
 #include "core/parameters/input_error.h"
 #include "runners/opencl/built_kernels.h"
@@ -14,6 +13,7 @@
 #include "tests/core/depth/depth_cases.h"
 #include "tests/doubles/opencl_double.h"
 #include "tests/runners/opencl/coloured_frames.h"
+#include "tests/support/wait_until.h"
 
 namespace remote_touch::opencl_double_test {
 namespace {
@@ -37,9 +37,7 @@ class OpenClDoubleTest : public testing::Test {
   }
   // A device that failed is tidied up by a thread that nobody waits for.
   static bool everything_is_released() {
-    for (int i = 0; i < 2000 && library().objects > 0; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return library().objects == 0;
+    return wait_until([] { return library().objects == 0; });
   }
   // As in a new process.
   static void begin_anew() {
@@ -136,11 +134,10 @@ TEST_F(OpenClDoubleTest, TheCpuTakesOverFromADriverThatHangs) {
   auto pipeline = opened();
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   library().failing = "clFinish", library().failing_call = 1, library().hangs = true;
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  EXPECT_GE(took.count(), 2);
-  EXPECT_LT(took.count(), 4);  // a busy machine
+  const double begin_s = steady_clock().now_s();
+  EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));  // while the driver hangs
+  EXPECT_GE(steady_clock().now_s() - begin_s, 2);
+  EXPECT_TRUE(DevicePipeline::kFrameLimit == std::chrono::seconds(2));
   EXPECT_TRUE(same_bits(processed_by(*pipeline), expected_));
   ASSERT_EQ(told_.size(), 1u);
   EXPECT_NE(told_[0].find("no answer within 2 s"), std::string::npos) << told_[0];
@@ -195,19 +192,20 @@ TEST_F(OpenClDoubleTest, TheNameOfTheDeviceIsKnownForTheProvenance) {
 TEST_F(OpenClDoubleTest, DriversThatHangWhenTheyListTheirDevicesAreGivenUp) {
   library().failing = "clGetPlatformIDs", library().failing_call = 1, library().hangs = true;
   EXPECT_THROW(listed_devices(std::chrono::milliseconds(50)), OpenClTimeout);
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_THROW(listed_devices(), OpenClTimeout);  // at once, while they still hang
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  // At once, while they still hang: that long ctest does not wait for a test.
+  EXPECT_THROW(listed_devices(std::chrono::hours(10)), OpenClTimeout);
   EXPECT_NE(refusal("opencl").find("did not list their devices"), std::string::npos) << refusal("opencl");
   EXPECT_TRUE(refusal("auto").empty());
   library().let_go = true;
   std::vector<OpenClDevice> again;
-  for (int i = 0; i < 2000 && again.empty(); ++i) try {
-      library().failing = "";
+  EXPECT_TRUE(wait_until([&] {
+    library().failing = "";
+    try {
       again = listed_devices();
     } catch (const OpenClTimeout&) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    return !again.empty();
+  }));
   EXPECT_EQ(again.size(), 1u);
 }
 

@@ -33,7 +33,10 @@ void expect_equal(const ToolSpheres& a, const ToolSpheres& b) {
 
 class SpheresCacheTest : public testing::Test {
  protected:
-  SpheresCacheTest() { ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1); }
+  SpheresCacheTest() {
+    ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1);
+    ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // the user may have set it
+  }
   ~SpheresCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"); }
 
   fs::path spheres_file() const {

@@ -37,6 +37,7 @@ class ToolCacheTest : public testing::Test {
  protected:
   ToolCacheTest() {
     ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1);
+    ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // the user may have set it
     set_data_folder(folder_.path().string());
   }
   ~ToolCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"), set_data_folder({}); }

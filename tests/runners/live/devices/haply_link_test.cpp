@@ -1,9 +1,11 @@
 // The WebSocket to Haply's service, over a real socket to a service that is simulated
-// (tests/doubles/haply_service.h). Times are those of the machine: what has to end by a deadline is held to
-// seconds.
+// (tests/doubles/haply_service.h). Times are those of the machine: what does not end by its deadline hangs.
 #include "runners/live/devices/haply_link.h"
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <string>
 #include <thread>
@@ -57,7 +59,6 @@ TEST(HaplyLink, AServiceThatHangsIsWaitedForUntilTheDeadlineAndMayComeBack) {
   const double start_s = now_s();
   EXPECT_EQ(receive(*link, kSoon_s), kLate);
   EXPECT_GE(now_s() - start_s, kSoon_s);
-  EXPECT_LT(now_s() - start_s, kPatience_s);
   service.resume();
   EXPECT_HAS(receive(*link), "cursor_position");
 }
@@ -85,9 +86,7 @@ TEST(HaplyLink, PingsWithoutEnd) {
   service.ping_without_end();
   const auto link = open_and_send(service);
   ASSERT_TRUE(wait_until([&] { return service.misbehaves(); }));
-  const double start_s = now_s();
   EXPECT_EQ(receive(*link, kSoon_s), "the Haply service stopped in the middle of a message");
-  EXPECT_LT(now_s() - start_s, kPatience_s);
 }
 
 TEST(HaplyLink, TextThatEndsTheConnection) {
@@ -112,10 +111,31 @@ TEST(HaplyLink, ACutEndsACallUnderWay) {
   other.join();
 }
 
+// A port of this machine that nobody listens at, and that no other program gets meanwhile.
+class SilentPort {
+ public:
+  SilentPort() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(socket_, reinterpret_cast<const sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    number_ = ntohs(address.sin_port);
+  }
+  ~SilentPort() { ::close(socket_); }
+  SilentPort(const SilentPort&) = delete;
+  SilentPort& operator=(const SilentPort&) = delete;
+  int number() const { return number_; }
+
+ private:
+  const int socket_;
+  int number_ = 0;
+};
+
 TEST(HaplyLink, WhatCannotBeOpened) {
-  int free_port = 0;
-  { free_port = HaplyService().port(); }
-  const std::string gone = "ws://127.0.0.1:" + std::to_string(free_port);
+  const SilentPort silent;
+  const std::string gone = "ws://127.0.0.1:" + std::to_string(silent.number());
   EXPECT_HAS(refusal([&] { open_link(gone); }), "haply:" + gone + ": no Haply service at " + gone + "/ (");
   EXPECT_HAS(refusal([&] { open_link(gone); }), "start the Inverse service");
   EXPECT_HAS(refusal([&] { open_link("http://127.0.0.1"); }), "write ws://HOST:PORT");

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
 #include <cstdlib>
-#include <thread>
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
@@ -14,6 +13,7 @@
 #include "tests/doubles/opencl_double.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/test_files.h"
+#include "tests/support/wait_until.h"
 
 namespace remote_touch::depth_device_loss_test {
 namespace {
@@ -122,34 +122,37 @@ TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
 }
 
 // In real time, with the threads of a live run: the camera's waits 2 s for the driver, the haptic loop does
-// not.
+// not. In the eleventh frame the driver hangs, and the CPU goes on with the twelfth.
 TEST_F(DepthDeviceLoss, NoTickWaitsForADriverThatHangs) {
   const Experiment experiment = at_the_valves("opencl");
   std::vector<std::string> told;
-  int frames = 0;
+  std::vector<double> captured_s;
+  std::atomic<bool> stop = false;
   LiveOptions options;
   options.kernels = &scenes::kernels();
-  options.duration_s = 4;
-  options.stall_s =
-      0.5;  // a busy machine delays ticks too, but not for a quarter of the time that the driver hangs
+  options.stop = &stop;
   options.report_line = [&](const std::string& line) { told.push_back(line); };
-  options.on_frame = [&](const Frame&) {
-    if (++frames == 10) library().hangs = true, fail_in("clFinish");
+  options.on_frame = [&](const Frame& frame) {
+    captured_s.push_back(frame.captured_s);
+    if (captured_s.size() == 10) library().hangs = true, fail_in("clFinish");
+    if (captured_s.size() == 12) stop = true;
   };
   const LiveResult result = run_live(experiment, options);
   EXPECT_FALSE(result.failed) << result.ended;
-  EXPECT_GT(frames, 10);                             // the CPU went on
-  EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // and this is what the hand had no frames for
+  ASSERT_GE(captured_s.size(), 12u);
+  EXPECT_GT(result.counts.camera.max_pause_s, 1.9);  // this is what the hand had no frames for
   const auto takeovers = std::count_if(told.begin(), told.end(), [](const std::string& line) {
     return line.find(kTakeover) != std::string::npos;
   });
   EXPECT_EQ(takeovers, 1);
-  EXPECT_LT(result.log.interval_s.greatest(), options.stall_s);
-  EXPECT_EQ(result.counts.stalls, 0);
+  // There is time for 1700 ticks. A busy machine leaves many of them out, and a loop that waits for the
+  // driver all.
+  const auto ticks = std::count_if(
+      result.log.trace.time_s.begin(), result.log.trace.time_s.end(),
+      [&](double time_s) { return time_s > captured_s[10] + 0.1 && time_s < captured_s[11] - 0.1; });
+  EXPECT_GT(ticks, 20);
   library().let_go = true;
-  for (int i = 0; i < 2000 && library().objects > 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_EQ(library().objects, 0);
+  EXPECT_TRUE(wait_until([] { return library().objects == 0; }));
 }
 
 }  // namespace

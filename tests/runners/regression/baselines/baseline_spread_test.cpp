@@ -295,11 +295,10 @@ TEST_F(MeasureSpread, TheRunningHashIsNotJudged) {
   for (const Column& column : judged) EXPECT_NE(column.name, kRunningHash);
 }
 
+// The program would work for longer than ctest waits for a test.
 TEST_F(MeasureSpread, AnInterruptionEndsTheProgramAtWork) {
   const std::atomic<bool> stop = true;
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_THROW(measure({program("slow", "exec sleep 60")}, {"x", "run", "fig4.11"}, &stop), Interrupted);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_THROW(measure({program("slow", "exec sleep 36000")}, {"x", "run", "fig4.11"}, &stop), Interrupted);
 }
 
 // --- what is refused before any program runs ---
