@@ -3,7 +3,7 @@ import os
 import pathlib
 import re
 
-FOLDERS_WITHOUT_PAGES = {".git", "build", "node_modules", "out"}
+FOLDERS_WITHOUT_PAGES = {"build", "node_modules", "out"}
 LANGUAGES = {"sh", "json", "text", "cmake", "cpp", "python"}
 
 
@@ -12,9 +12,9 @@ class PageError(Exception):
 
 
 def pages(root):
-    """Every .md below the root, in order."""
+    """Every .md below the root, in order. Folders with a dot are those of programs, such as .git and .pytest_cache."""
     for folder, subfolders, files in os.walk(root):
-        subfolders[:] = sorted(set(subfolders) - FOLDERS_WITHOUT_PAGES)
+        subfolders[:] = sorted(name for name in subfolders if name not in FOLDERS_WITHOUT_PAGES and name[0] != ".")
         yield from (pathlib.Path(folder, name) for name in sorted(files) if name.endswith(".md"))
 
 

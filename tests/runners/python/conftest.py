@@ -6,7 +6,10 @@ import subprocess
 import sys
 
 import pytest
-import remote_touch as rt
+
+for name in ("REMOTE_TOUCH_ISA", "REMOTE_TOUCH_DATA", "OMP_NUM_THREADS", "PYTHONWARNINGS"):  # settings of the user
+    os.environ.pop(name, None)
+import remote_touch as rt  # noqa: E402: it reads the first two
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "runners" / "python" / "examples"

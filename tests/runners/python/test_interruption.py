@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from class_scripts import COMMON
 
 RUN = '''
 import remote_touch as rt, sys
@@ -42,7 +43,7 @@ def test_ctrl_c(call, tmp_path):
         assert child.stdout.readline() == "go\n"
         assert child.stdout.readline() == "begun\n"  # the work goes on in its thread
         child.send_signal(signal.SIGINT)
-        out, problems = child.communicate(timeout=60)
+        out, problems = child.communicate(timeout=600)  # which only ends a test that hangs
     assert out.replace("begun\n", "") == "interrupted\n50\n", problems
     assert child.returncode == 0
     assert [*tmp_path.iterdir()] == []
@@ -64,47 +65,56 @@ else:
 
 
 def test_other_threads_of_python_go_on(in_python):
-    """The lock of the interpreter is free while C++ runs."""
-    in_python('''
+    """The lock of the interpreter is free while C++ runs: another thread counts on between two reports of the progress. It
+    could count once if it had the lock during a report only. The run takes minutes unless that ends it."""
+    in_python(f'''
 import threading
 import remote_touch as rt
-rt.run("fig4.12", set={"duration_s": 0.05})
-counted, ended = [0], threading.Event()
+counted, at_report, ended = [0], [], threading.Event()
 def count():
     while not ended.is_set():
         counted[0] += 1
         ended.wait(0.001)
 other = threading.Thread(target=count)
+def look(fraction):
+    at_report.append(counted[0])
+    if len(at_report) > 1 and at_report[-1] - at_report[-2] >= 3:
+        raise KeyboardInterrupt
 other.start()
-at_start = counted[0]
-rt.run("fig4.12", set={"duration_s": 200})
-at_end = counted[0]
-ended.set()
-other.join()
-assert at_end - at_start > 20, at_end - at_start
+try:
+    rt.run("fig4.12", set={LONG}, progress=look)
+except KeyboardInterrupt:
+    pass
+else:
+    raise AssertionError(f"counted at each report: {{at_report}}")
+finally:
+    ended.set()
+    other.join()
 ''')
 
 
 @pytest.mark.parametrize("threads", (1, 2, 3))
 def test_a_sweep_takes_as_many_threads_as_it_may(in_python, threads):
-    """Seen in the list of the process's threads while runs go on; the calling thread only waits for them.
-
-    One process for each: threads of a sweep that has ended go a little later, and would be counted as there before.
-    """
-    out = in_python(f'''
-import os
-import remote_touch as rt
-def threads_now():
-    return len(os.listdir("/proc/self/task"))
-before, most = threads_now(), 0
-def look(fraction):
-    global most
-    most = max(most, threads_now() - before)
-    if most >= {threads}:
-        raise KeyboardInterrupt
-try:
-    rt.sweep({SWEEP}, threads={threads}, progress=look)
-except KeyboardInterrupt:
-    print(most)
+    """As many runs wait for each other in their first tick, and no thread has more of them than its turn."""
+    out = in_python(COMMON + f'''
+import threading
+meeting, seen = threading.Barrier({threads}), set()
+@rt.register
+class Meets(rt.Renderer):
+    def __init__(self):
+        self.has_met = False
+    def step(self, device, time_s):
+        if not self.has_met:
+            self.has_met = True
+            seen.add(threading.get_ident())
+            meeting.wait(600)  # seconds, which only end a test that hangs
+        return rt.Output()
+    def max_stiffness_N_per_m(self):
+        return 0
+sweep = rt.sweep({{"title": "meetings", "experiment": {{**PRESS, "renderer": {{"name": "meets"}}}}, "replicates": {threads},
+                   "axes": [{{"parameter": "scenario.noise_sigma_m", "values": [0, 0.001]}}], "measures": ["max_force"]}},
+                 threads={threads})
+assert (sweep.state == 2).all()
+print(len(seen))
 ''')
     assert int(out) == threads

@@ -136,7 +136,7 @@ def test_timing_and_progress():
     seen = []
     run = rt.run("fig4.12", set={"duration_s": 20}, timing=True, progress=seen.append)
     assert run.step_duration.dims == ("time",) and run.step_duration.attrs["units"] == "s"
-    assert (run.step_duration > 0).all()
+    assert (run.step_duration >= 0).all() and run.step_duration.max() > 0  # a clock may be too coarse for one tick
     assert seen[-1] == 1 and seen == sorted(seen)
     assert run.attrs["digest"] == rt.run("fig4.12", set={"duration_s": 20}).attrs["digest"]
 

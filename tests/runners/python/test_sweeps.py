@@ -88,7 +88,7 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path):
             raise KeyboardInterrupt
     longer = {**SWEEP, "replicates": 20, "experiment": {**PRESS, "duration_s": 5}}
     with pytest.raises(KeyboardInterrupt):
-        rt.sweep(longer, output=file, progress=stop_half_way)
+        rt.sweep(longer, threads=1, output=file, progress=stop_half_way)
     part = rt.open(file)
     done = int((part.state == 2).sum())
     assert 0 < done < part.state.size

@@ -44,7 +44,7 @@ class Tools:
             own.update({name: value for name, value in given.items() if value})
         return own
 
-    def call(self, folder, arguments, timeout_s=60, **failing):
+    def call(self, folder, arguments, timeout_s=600, **failing):
         """What it answers, in the folder. None: it did not end in time."""
         try:
             return subprocess.run([self.program, "-q", *arguments], cwd=folder, capture_output=True,

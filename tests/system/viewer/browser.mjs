@@ -3,15 +3,17 @@ import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
+export const patience = 600000; // ms: only ends a test that hangs
 const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 export async function openBrowser(executablePath, args = software) {
-  return chromium.launch({ executablePath, args: ["--no-sandbox", "--hide-scrollbars", ...args] });
+  return chromium.launch({ executablePath, args: ["--no-sandbox", "--hide-scrollbars", ...args], timeout: patience });
 }
 
 // A page that is ready, with everything that it complained about or asked from a network.
 export async function openPage(browser, file, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  context.setDefaultTimeout(patience);
   const page = await context.newPage(), complaints = [];
   page.on("console", (message) => {
     if (["error", "warning"].includes(message.type()) && !message.text().includes("GPU stall")) complaints.push(message.text());
@@ -22,7 +24,7 @@ export async function openPage(browser, file, options = {}) {
   });
   const begin = performance.now();
   await page.goto(pathToFileURL(file).href);
-  await page.waitForSelector("body[data-ready=yes]", { timeout: 20000 });
+  await page.waitForSelector("body[data-ready=yes]");
   await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
   const firstPictureS = (performance.now() - begin) / 1000;
   return { page, context, complaints, firstPictureS };

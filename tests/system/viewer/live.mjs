@@ -1,10 +1,12 @@
-// A live run in a browser: the mouse as the hand, and who is refused. Usage: node live.mjs PROGRAM CHROMIUM
+// A live run in a browser: the mouse as the hand, and who is refused. Usage: node live.mjs PROGRAM CHROMIUM [all]
+// Without all: of the two experiments with a recording only the one with a tool.
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { test } from "node:test";
-import { openBrowser, picture } from "./browser.mjs";
+import { openBrowser, patience, picture } from "./browser.mjs";
 
-const [program, chromium] = process.argv.slice(2);
+const [program, chromium, all] = process.argv.slice(2);
+const limit = { timeout: 6 * patience };
 const browser = await openBrowser(chromium);
 const children = [], pages = []; // those of a test that failed are left
 test.afterEach(async () => {
@@ -38,12 +40,13 @@ async function startLive(...args) {
 async function openLive(address) {
   const page = await browser.newPage({ viewport: { width: 480, height: 320 } }), complaints = [];
   pages.push(page);
+  page.setDefaultTimeout(patience);
   page.on("console", (message) => {
     if (["error", "warning"].includes(message.type()) && !message.text().includes("GPU stall")) complaints.push(message.text());
   });
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(address);
-  await page.waitForSelector("body[data-ready=yes]", { timeout: 30000 });
+  await page.waitForSelector("body[data-ready=yes]");
   return { page, complaints };
 }
 
@@ -55,8 +58,8 @@ const newest = (page) => page.evaluate(() => {
   };
 });
 
-async function until(page, holds, act, seconds = 30) {
-  const end = Date.now() + 1000 * seconds;
+async function until(page, holds, act) {
+  const end = Date.now() + patience;
   for (let now = await newest(page); Date.now() < end; now = await newest(page)) {
     if (holds(now)) return now;
     await act();
@@ -96,7 +99,7 @@ async function touches(page) {
   await page.mouse.move(x, y);
   return until(page, (now) => now.contacts > 0 && now.force > 0.3, async () => {
     for (let i = 0; i < 4; ++i) await page.mouse.wheel(0, -100);
-  }, 90);
+  });
 }
 
 // Each slider to another place; what the run then has stands beside it.
@@ -108,7 +111,7 @@ async function changesParameters(page) {
     else await row.click();
     await page.waitForFunction(([name, old]) => [...document.querySelectorAll(".sliders label")].some((label) =>
       label.querySelector("span").textContent === name && label.querySelector("output").textContent !== old),
-    [await row.locator("span").textContent(), before], { timeout: 5000 });
+    [await row.locator("span").textContent(), before]);
     changed.push(`${await row.locator("span").textContent()}: ${before} -> ${await row.locator("output").textContent()}`);
   }
   assert.ok(changed.length > 0, "there are no sliders");
@@ -121,10 +124,10 @@ function digestOffline(session) {
   return /digest ([0-9a-f]{64})/.exec(out)[1];
 }
 
-for (const [name, ...more] of [["fig5.8-recorded"], ["fig4.16"], ["fig6.4-organ"]])
-  test(`${name}: the mouse touches, and the recording gives the same digest`, { timeout: 400000 }, async (t) => {
+for (const name of [...(all ? ["fig5.8-recorded"] : []), "fig4.16", "fig6.4-organ"])
+  test(`${name}: the mouse touches, and the recording gives the same digest`, limit, async (t) => {
     if (!process.env.REMOTE_TOUCH_DATA && name !== "fig4.16") return t.skip("needs a recording below REMOTE_TOUCH_DATA");
-    const { address, stop } = await startLive(name, ...more, "--record", `${name}.session.h5`, "--force");
+    const { address, stop } = await startLive(name, "--record", `${name}.session.h5`, "--force");
     const { page, complaints } = await openLive(address);
     await dragMovesTheHand(page);
     const touched = await touches(page);
@@ -134,19 +137,19 @@ for (const [name, ...more] of [["fig5.8-recorded"], ["fig4.16"], ["fig6.4-organ"
     console.log(`${name}: ${(await changesParameters(page)).join("; ")}`);
     const { uploads, draws, pictures, frames } = await page.evaluate(countWork);
     assert.equal(draws, pictures, "one picture, one draw of the points");
-    assert.ok(uploads > 0 && uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
+    assert.ok(uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
     console.log(`${name}: ${JSON.stringify({ ...touched, drawn: shown.drawn })}`);
     const { code, out } = await stop();
     assert.equal(code, 0, out);
     assert.deepEqual(complaints, []);
-    await page.waitForSelector("body[data-ended]", { state: "attached", timeout: 10000 });
+    await page.waitForSelector("body[data-ended]", { state: "attached" });
     assert.match(await page.evaluate(() => document.body.dataset.ended), /has ended/);
     assert.ok(await page.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nothing is left to set");
     assert.equal(digestOffline(`${name}.session.h5`), /digest of the trace: ([0-9a-f]{64})/.exec(out)[1]);
     await page.close();
   });
 
-// In two seconds: draws of all points, uploads of their positions, and pictures.
+// Until three frames came and their points were uploaded three times: uploads, draws of all points, pictures and frames.
 function countWork() {
   return new Promise((done) => {
     const { scene, page } = window.remoteTouch, gl = document.querySelector(".picture canvas").getContext("webgl2");
@@ -161,8 +164,13 @@ function countWork() {
       if (data.BYTES_PER_ELEMENT === 2 && length >= 4 * scene.clouds[0].pointCount()) ++uploads;
       bufferSubData(target, at, data, offset, length);
     };
-    const before = page.pictures;
-    setTimeout(() => done({ points: window.remoteTouch.run.frameAt().positions.length / 3, draws, uploads, pictures: page.pictures - before, frames: window.remoteTouch.run.frameCount - frames }), 2000);
+    const before = page.pictures, begin = performance.now();
+    const look = () => {
+      const came = window.remoteTouch.run.frameCount - frames;
+      if (uploads < 3 || came < 3) setTimeout(look, 20);
+      else done({ points: window.remoteTouch.run.frameAt().positions.length / 3, draws, uploads, pictures: page.pictures - before, frames: came, seconds: (performance.now() - begin) / 1000 });
+    };
+    look();
   });
 }
 
@@ -174,19 +182,19 @@ test("what cannot run has no address", () => {
 });
 
 // 300 000 points: a picture draws them once, and a frame is uploaded once.
-test("fig4.16 with 880 x 660 pixels", { timeout: 400000 }, async () => {
+test("fig4.16 with 880 x 660 pixels", limit, async () => {
   const { address, stop } = await startLive("fig4.16", "--set", "scenario.width=880", "--set", "scenario.height=660", "--set", "scenario.focal_px=722");
   const { page, complaints } = await openLive(address);
-  const { uploads, draws, pictures, frames, points } = await page.evaluate(countWork);
+  const { uploads, draws, pictures, frames, points, seconds } = await page.evaluate(countWork);
   assert.ok(points > 250000, `${points} points`);
   assert.equal(draws, pictures, "one picture, one draw of the points");
-  assert.ok(uploads > 0 && uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
-  console.log(`880 x 660: ${points} points a frame, ${pictures / 2} pictures/s and ${frames / 2} frames/s with software graphics`);
+  assert.ok(uploads <= frames + 1, `${uploads} uploads of points for ${frames} frames`);
+  console.log(`880 x 660: ${points} points a frame, ${(pictures / seconds).toFixed(1)} pictures/s and ${(frames / seconds).toFixed(1)} frames/s with software graphics`);
   assert.equal((await stop()).code, 0);
   assert.deepEqual(complaints, []);
 });
 
-test("who is refused, and the run goes on", { timeout: 400000 }, async () => {
+test("who is refused, and the run goes on", limit, async () => {
   const { address, stop } = await startLive("fig4.16");
   const { page } = await openLive(address);
   const port = new URL(address).port, wrong = address.replace(/[0-9a-f]{32}/, "0".repeat(32));
