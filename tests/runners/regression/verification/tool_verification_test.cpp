@@ -1,5 +1,5 @@
 // Every renderer of a tool in the catalog stands the metamorphic checks, and each check can fail. The long
-// ones run with scripts/test --full.
+// ones run with scripts/test --evidence.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -1,0 +1,62 @@
+# Tests of some rooms under sanitizers, in the build folder of the release preset: each of these rooms is compiled a second
+# time with the sanitizer, and all others are linked as they are. So a mistake is seen where it happens in such a room. The
+# test tests_under_sanitizers has a build of its own, of everything.
+option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers" OFF)
+
+# Rooms that read what others wrote or call libraries of others, and rooms where a sanitizer or a crash found a mistake.
+set(rooms_under_address
+  analysis/storage core/search runners/live/devices runners/live/sensors runners/opencl runners/plugins
+  runners/tool_files scenarios/recordings scenarios/recordings/bags scenarios/recordings/messages scenarios/recordings/pcd
+  scenarios/recordings/png)
+# Rooms whose threads share memory.
+set(rooms_under_thread
+  runners/live/devices runners/live/loop runners/live/sensors runners/live/timing runners/opencl)
+# The other checks take a third of the time to compile, and the fuzz targets have them.
+set(flags_for_address -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
+  -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)
+set(flags_for_thread -fsanitize=thread)
+
+function(sanitizers_of path result)
+  set(found "")
+  if(REMOTE_TOUCH_SANITIZED_TESTS)
+    foreach(sanitizer address thread)
+      if(path IN_LIST rooms_under_${sanitizer})
+        list(APPEND found ${sanitizer})
+      endif()
+    endforeach()
+  endif()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+# compile_again(TARGET SANITIZER [REGEX]): TARGET_SANITIZER gets the sources of TARGET (those that match, if REGEX is given)
+# with its options and the sanitizer. Called in the folder of TARGET, since properties of sources belong to a folder.
+function(compile_again target sanitizer)
+  get_target_property(sources ${target} SOURCES)
+  if(ARGN)
+    list(FILTER sources INCLUDE REGEX "${ARGN}")
+  endif()
+  target_sources(${target}_${sanitizer} PRIVATE ${sources})
+  precompile_headers_as(headers_under_${sanitizer} ${target}_${sanitizer})
+  target_compile_definitions(${target}_${sanitizer} PRIVATE $<TARGET_PROPERTY:${target},COMPILE_DEFINITIONS>)
+  target_compile_options(${target}_${sanitizer} PRIVATE
+    $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> -O1 ${flags_for_${sanitizer}})
+  target_include_directories(${target}_${sanitizer} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_include_directories(${target}_${sanitizer} SYSTEM PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+endfunction()
+
+function(room_under_sanitizers path name)
+  sanitizers_of(${path} sanitizers)
+  foreach(sanitizer ${sanitizers})
+    add_library(${name}_${sanitizer} OBJECT EXCLUDE_FROM_ALL)
+    compile_again(${name} ${sanitizer})
+  endforeach()
+endfunction()
+
+if(REMOTE_TOUCH_SANITIZED_TESTS)
+  foreach(sanitizer address thread)
+    add_library(headers_under_${sanitizer} STATIC EXCLUDE_FROM_ALL scripts/cmake/room_headers.cpp)
+    target_link_libraries(headers_under_${sanitizer} PRIVATE build_settings)
+    target_compile_options(headers_under_${sanitizer} PRIVATE -O1 ${flags_for_${sanitizer}})
+    precompile_headers(headers_under_${sanitizer})
+  endforeach()
+endif()
