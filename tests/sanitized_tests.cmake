@@ -5,11 +5,10 @@ set(rooms_with_threads runners/live/devices runners/live/loop)
 set(threaded_of_runners_live_loop_tests "LiveRun.*RealTime*:*LiveThreads*:TripleBuffer.*:Ring.*")
 set(threaded_sources_of_runners_live_loop_tests "live_(exchange|run|threads)_test|doubles/")
 set(threaded_of_runners_live_devices_tests "*ReleaseBesideTicks*:HaplyLink.*:HaplyOverTheSocket.*")
-set(threaded_sources_of_runners_live_devices_tests "(haply_link|haply|release)_test|doubles/")
-# Leaks are left to tests_under_sanitizers, which knows those of libraries. OpenMP: the thread sanitizer does not know how
-# its threads wait for each other.
-set(environment_of_address "ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0")
-set(environment_of_thread "OMP_NUM_THREADS=1")
+set(threaded_sources_of_runners_live_devices_tests "(haply_link|release)_test|doubles/")
+# OpenMP has one thread: the thread sanitizer does not know how its threads wait for each other.
+set(properties_under_address LABELS ci)
+set(properties_under_thread LABELS ci ENVIRONMENT OMP_NUM_THREADS=1)
 
 # rooms_linked_to(TARGET RESULT): itself and all rooms that it uses, directly or not.
 function(rooms_linked_to target result)
@@ -64,17 +63,16 @@ endfunction()
 function(tests_under sanitizer path name)
   program_under(${sanitizer} ${path} ${name})
   set(program ${name}_${sanitizer})
-  set(properties LABELS ci TIMEOUT 3600 ENVIRONMENT "${environment_of_${sanitizer}}")
   if(name MATCHES "_tests$")
     set(filter "*")
     if(sanitizer STREQUAL thread)
       set(filter "${threaded_of_${name}}")
     endif()
     add_test(NAME ${path}.under_${sanitizer} COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
-    set_tests_properties(${path}.under_${sanitizer} PROPERTIES ${properties})
+    set_tests_properties(${path}.under_${sanitizer} PROPERTIES ${properties_under_${sanitizer}})
   else()
     gtest_discover_tests(${program} TEST_PREFIX ${path}.under_${sanitizer}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 600
-                         NO_PRETTY_VALUES PROPERTIES ${properties})
+                         NO_PRETTY_VALUES PROPERTIES ${properties_under_${sanitizer}})
   endif()
 endfunction()
 

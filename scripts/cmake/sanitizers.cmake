@@ -1,5 +1,5 @@
 # Tests of some rooms under sanitizers, in the build folder of the release preset: each of these rooms is compiled a second
-# time with the sanitizer, and all others are linked as they are. So a mistake is seen where it happens in such a room. The
+# time with the sanitizer, and all others are linked as they are. A sanitizer therefore sees only mistakes in these rooms. The
 # test tests_under_sanitizers has a build of its own, of everything.
 option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers" OFF)
 
@@ -15,18 +15,6 @@ set(rooms_under_thread
 set(flags_for_address -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
   -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)
 set(flags_for_thread -fsanitize=thread)
-
-function(sanitizers_of path result)
-  set(found "")
-  if(REMOTE_TOUCH_SANITIZED_TESTS)
-    foreach(sanitizer address thread)
-      if(path IN_LIST rooms_under_${sanitizer})
-        list(APPEND found ${sanitizer})
-      endif()
-    endforeach()
-  endif()
-  set(${result} ${found} PARENT_SCOPE)
-endfunction()
 
 # compile_again(TARGET SANITIZER [REGEX]): TARGET_SANITIZER gets the sources of TARGET (those that match, if REGEX is given)
 # with its options and the sanitizer. Called in the folder of TARGET, since properties of sources belong to a folder.
@@ -45,10 +33,11 @@ function(compile_again target sanitizer)
 endfunction()
 
 function(room_under_sanitizers path name)
-  sanitizers_of(${path} sanitizers)
-  foreach(sanitizer ${sanitizers})
-    add_library(${name}_${sanitizer} OBJECT EXCLUDE_FROM_ALL)
-    compile_again(${name} ${sanitizer})
+  foreach(sanitizer address thread)
+    if(REMOTE_TOUCH_SANITIZED_TESTS AND path IN_LIST rooms_under_${sanitizer})
+      add_library(${name}_${sanitizer} OBJECT EXCLUDE_FROM_ALL)
+      compile_again(${name} ${sanitizer})
+    endif()
   endforeach()
 endfunction()
 

@@ -75,8 +75,7 @@ def rooms_to_test(files):
     return tested, with_further_users(changed, users) - tested
 
 
-def programs(build):
-    """Test programs by the room that they belong to, and targets of the build."""
+def targets_of_build(build):
     return {line.split(":")[0] for line in subprocess.run(
         ["ninja", "-C", build, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout.splitlines()}
 
@@ -90,11 +89,11 @@ def main():
     print(f"{len(files)} files changed. Rooms whose tests run: {', '.join(with_tests) or 'none'}")
     print(f"Tests of the whole program: {', '.join(ALWAYS + of_program)}")
     print(f"Left to scripts/test --ci: {', '.join(sorted(left)) or 'nothing that includes what changed'}", flush=True)
-    known = programs(build)
+    known = targets_of_build(build)
     targets = [room.replace("/", "_") + "_tests" for room in with_tests] + ["remote-touch"]
     own_main = [file.stem for room in with_tests for file in (ROOT / "tests" / room).glob("*_test.cpp")]
     wanted = [each for each in targets + own_main if each in known]
-    if "plot" in of_program or "figures_quick" in of_program or of_program or with_tests:
+    if of_program or with_tests:
         code = subprocess.run(["cmake", "--build", build, "--parallel", "2", "--target", *wanted], check=False).returncode
         if code != 0:
             print("test: FAILED: the build (see above)")

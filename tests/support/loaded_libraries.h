@@ -1,4 +1,4 @@
-// Which libraries this process has loaded.
+// This header asks which libraries the process has loaded.
 #pragma once
 
 #include <link.h>
@@ -7,7 +7,8 @@
 
 namespace remote_touch {
 
-// True if it has a library of that name, in any version: "libHD.so.3.5" is one of the name "libHD.so".
+// Returns true if the process has loaded a library of that name, in any version: "libHD.so.3.5" has the name
+// "libHD.so".
 inline bool has_loaded(const std::string& name) {
   std::string beginning = "/" + name.substr(0, name.find(".so")) + ".so";
   const auto is_it = [](dl_phdr_info* one, std::size_t, void* wanted) {

@@ -304,7 +304,7 @@ class Driver : public oni::driver::DriverBase {
 
 ONI_EXPORT_DRIVER(remote_touch::virtual_camera::Driver)
 
-// For sent_frames.h.
+// sent_frames.h calls it by this name.
 extern "C" int virtual_camera_sent() {
   return remote_touch::virtual_camera::sent;
 }

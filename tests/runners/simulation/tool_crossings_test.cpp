@@ -73,7 +73,7 @@ ToolAudit audited(const std::string& name, const std::string& rule, double toler
 class ToolCrossings : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, ToolCrossings, testing::Values("fig6.3", "tool-slab", "tool-slot"),
                          [](const auto& experiment) { return test_name(experiment.param); });
-// In scripts/test --evidence only.
+// Only scripts/test --evidence runs it.
 INSTANTIATE_TEST_SUITE_P(LongExperiments, ToolCrossings,
                          testing::Values("tool-walk", "fig6.4", "fig6.4-organ", "fig6.4-box"),
                          [](const auto& experiment) { return test_name(experiment.param); });

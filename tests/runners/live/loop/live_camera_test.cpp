@@ -48,7 +48,7 @@ class LiveCamera : public testing::Test {
     };
     return run_live(press_experiment(), options);
   }
-  // What was said last of the frames. Of the loop a busy machine may make it say more.
+  // Returns the last message about frames. A busy machine may cause more messages about the loop.
   std::string told() {
     const std::lock_guard lock(mutex_);
     return told_;

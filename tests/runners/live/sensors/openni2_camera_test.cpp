@@ -262,7 +262,7 @@ TEST_F(Openni2Recording, DamagedFilesAreRefused) {
   }
 }
 
-// In a process of its own: says why the recording ended, and closes it.
+// Plays the recording in a process of its own, prints why it ended, and closes it.
 [[noreturn]] void play_zeroed_frames(const std::string& file) {
   auto source = open_openni2(file, steady_clock());
   std::vector<SensorFrame> frames;
