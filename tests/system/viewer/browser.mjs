@@ -12,7 +12,7 @@ export async function openBrowser(executablePath, args = software) {
 
 // A page that is ready, with everything that it complained about or asked from a network.
 export async function openPage(browser, file, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  const context = await browser.newContext({ viewport: { width: 960, height: 540 }, ...options });
   context.setDefaultTimeout(patience);
   const page = await context.newPage(), complaints = [];
   page.on("console", (message) => {
