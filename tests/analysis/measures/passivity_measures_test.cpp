@@ -26,18 +26,20 @@ Trace trace_of(const std::vector<Tick>& ticks) {
 }
 
 TEST(PassivityMeasures, ASpringGivesBackWhatItTookAndNoMore) {
+  constexpr int kStiffer = 528;  // on the way out
   std::vector<Tick> ticks;
-  double squares = 0;
+  double before = 0, after = 0;  // sums of squared steps
   for (int i = 0; i <= 1000; ++i) {
     const double depth = 0.01 * std::sin(3.14159265358979 * i / 1000);
-    if (i > 0) squares += (depth + ticks.back().hip_position_m) * (depth + ticks.back().hip_position_m);
+    if (i > 0) (i <= kStiffer ? before : after) += std::pow(depth + ticks.back().hip_position_m, 2);
     ticks.push_back({600 * depth, -depth, i / 33});
   }
   // But for what sampling feeds in: each force is held while the hand moves on, k / 2 (sum of steps^2) in
   // all.
-  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * squares, 1e-9);
-  for (Tick& tick : ticks) tick.force_N *= tick.frame < 16 ? 1 : 1.5;  // stiffer on the way out
-  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 0.5 * 0.03, 2e-3);
+  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), 300 * (before + after), 1e-14);
+  for (int i = kStiffer; i <= 1000; ++i) ticks[static_cast<std::size_t>(i)].force_N *= 1.5;
+  const double more = 150 * std::pow(ticks[kStiffer].hip_position_m, 2);  // half the stiffness that came
+  EXPECT_NEAR(max_energy_injected_J(trace_of(ticks)), more + 300 * before + 450 * after, 1e-14);
 }
 
 // A spring that is pressed and let go gives back what it took; one that grows in between gives more.
@@ -101,6 +103,22 @@ TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
   EXPECT_EQ(max_energy_per_update_J(trace), 3);
   EXPECT_TRUE(std::isnan(mean_energy_per_update_J(trace_of({{9, 0, 0}, {9, 1, 1}}))));
   EXPECT_TRUE(std::isnan(max_energy_per_update_J(trace_of({}))));
+}
+
+// Updates at 1, 3 and 5; the hand turns by 0.1 rad a tick, and the tool exerts a torque of 0.5 N m between
+// the first two of them alone, and never a force.
+TEST(PassivityMeasures, APieceWithATorqueAloneHasItsEnergy) {
+  Trace trace;
+  for (int i = 0; i < 7; ++i) {
+    RenderOutput out;
+    out.frame_index = (i + 1) / 2;
+    out.tool.emplace().torque_Nm = {0, i == 1 || i == 2 ? 0.5 : 0, 0};
+    DeviceState device{Vec3(0.01 * i, 0, 0)};
+    device.orientation_W = rotation({0, 0.1 * i, 0});
+    trace.append(0.001 * i, device, out, {});
+  }
+  EXPECT_NEAR(mean_energy_per_update_J(trace), 2 * 0.5 * 0.1, 1e-15);
+  EXPECT_NEAR(max_energy_per_update_J(trace), 2 * 0.5 * 0.1, 1e-15);
 }
 
 }  // namespace

@@ -84,6 +84,21 @@ TEST(VirtualCoupling, MinusMakesTheForceContinuousAtAFrame) {
   EXPECT_NEAR(jump(VelocityForce::plus), 2 * kStiffness * speed * interval, 1e-12);
 }
 
+// (4.16) takes the difference to the tick before, also to one without a force: the damper is there with the
+// first tick of a contact.
+TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
+  const double damping = 5;
+  VirtualCoupling c = coupling(damping);
+  const auto pull_N = [&](double length_m) { return -still(c, {0, length_m, 0}).y(); };
+  const auto expected_N = [&](double length_m, double before_m) {
+    return kStiffness * (length_m - kContactRadius) + damping * kRate * (length_m - before_m);
+  };
+  EXPECT_EQ(pull_N(0.004), 0);
+  EXPECT_NEAR(pull_N(0.006), expected_N(0.006, 0.004), 1e-12);
+  EXPECT_EQ(pull_N(0.003), 0);
+  EXPECT_NEAR(pull_N(0.007), expected_N(0.007, 0.003), 1e-12);
+}
+
 // HIP distance 2 cm + 5 mm sin(2 pi t), sampled at the haptic rate.
 double distance(double time) {
   return 0.02 + 0.005 * std::sin(6.283185307179586 * time);

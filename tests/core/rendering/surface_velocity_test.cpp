@@ -133,6 +133,23 @@ TEST(SurfaceVelocity, PredictionIsBoundedWhenFramesStayAway) {
   EXPECT_NEAR(velocity.on_frame(2 * kInterval + 60, kUp).y(), velocity.m_per_s() * kInterval, 1e-15);
 }
 
+// The next frame of a slow stream comes later than max_interval_s, and until then v_hat is all that is known.
+TEST(SurfaceVelocity, IsTrustedForAFrameIntervalOfASlowStream) {
+  SurfaceVelocity estimated(0.1), measured(0.1);
+  double time_s = 3;
+  const auto horizon_after = [&](double interval_s) {
+    time_s += interval_s;
+    estimated.on_frame(time_s, kUp), estimated.on_step(Vec3::Zero());
+    measured.on_measured(time_s, 0.2, kUp);
+    EXPECT_EQ(measured.horizon_s(), estimated.horizon_s());
+    return estimated.horizon_s();
+  };
+  EXPECT_EQ(estimated.horizon_s(), 0.1);
+  EXPECT_EQ(horizon_after(0), 0.1) << "the first frame has no interval";
+  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(0.25), 0.25);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(kInterval), 0.1);
+}
+
 // More frames than steps: they count as one, over their whole time.
 TEST(SurfaceVelocity, FramesWithoutAStepBetweenThemCountAsOne) {
   SurfaceVelocity velocity(0.1);

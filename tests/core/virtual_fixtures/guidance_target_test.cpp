@@ -85,6 +85,29 @@ TEST(GuidanceTarget, OneOrTwoPointsHaveAPlaceAndNoPlane) {
   EXPECT_FALSE(whole(cloud).is_flat());
 }
 
+// Two points lie in a line, but for rounding, which is all that there is between points that are nearly one.
+TEST(GuidanceTarget, TwoPointsHaveNoPlaneHoweverNearTheyAre) {
+  std::mt19937 random(21);
+  const auto share = [&] { return (random() + 1.0) / 4294967296.0; };
+  for (int run = 0; run < 1000; ++run) {
+    const Vec3 p = kCentre + 0.1 * Vec3(share(), share(), share());
+    PointCloud pair;
+    pair.append(p), pair.append(p + 0x1p-52 * Vec3(share(), share(), share()));
+    EXPECT_FALSE(guidance_target(pair, {share(), share()}).is_flat()) << run;
+  }
+}
+
+TEST(GuidanceTarget, ThreePointsHaveThePlaneThroughThem) {
+  for (const Vec3& turned : {Vec3(0, 0, 0), Vec3(0.7, -0.3, 0.2), Vec3(-1.1, 0.4, 2)}) {
+    const Eigen::Matrix3d R = turn(turned);
+    PointCloud cloud;
+    for (const Vec3& p : {Vec3(0.05, 0.01, 0), Vec3(-0.02, 0.03, 0), Vec3(-0.04, -0.06, 0)})
+      cloud.append(kCentre + R * p);
+    const GuidanceTarget target = guidance_target(cloud, {1, 0.5, 0.25});
+    EXPECT_NEAR(std::abs(target.normal_W.dot(R.col(2))), 1, 1e-12);
+  }
+}
+
 TEST(GuidanceTarget, PointsThatAreNowhereHaveNoPart) {
   PointCloud cloud = chessboard(turn({0.4, 0.1, 0}), 4, 0);
   const GuidanceTarget expected = whole(cloud);

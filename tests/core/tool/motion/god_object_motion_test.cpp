@@ -154,7 +154,7 @@ TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
   EXPECT_EQ(out.proxy_W.y(), 0.006);
   out = settled(r, at({0, 0.004, 0}));
   EXPECT_NEAR(out.proxy_W.y(), 0.006, 1e-4);
-  EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 0.1);
+  EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 600 * 1e-4);
   out = settled(r, at({0, 0.02, 0}));
   EXPECT_EQ(out.proxy_W.y(), 0.02);
 }
@@ -169,7 +169,7 @@ TEST(GodObjectMotion, BetweenWallsThatAreTooNearItWaits) {
   r.on_frame(scenes::frame(walls));
   const RenderOutput out = settled(r, at({0, -0.002, 0}));
   EXPECT_NEAR(out.proxy_W.y(), 0, 3e-5);
-  EXPECT_NEAR(out.force_N.y(), 1.2, 0.05);
+  EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 600 * 3e-5);
 }
 
 }  // namespace

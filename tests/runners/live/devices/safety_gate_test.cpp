@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -52,6 +53,21 @@ TEST(SafetyGate, ATorqueKeepsItWaitingToo) {
   Loop loop;
   EXPECT_TRUE(loop.tick(Vec3::Zero(), {0.1, 0, 0}).torque_Nm.isZero(0));
   EXPECT_EQ(loop.gate.state(), GateState::waiting);
+}
+
+// Below means below, and what is compared is the length: of the torque 0.3 / 5 of its limit, 12 mN m.
+TEST(SafetyGate, ForceAndTorqueMustBothBeShorterThanTheirThresholds) {
+  const auto begins = [](const Vec3& force_N, const Vec3& torque_Nm) {
+    Loop loop;
+    loop.tick(force_N, torque_Nm);
+    return loop.gate.state() == GateState::ramping;
+  };
+  EXPECT_TRUE(begins({0.299, 0, 0}, {0, -0.0119, 0}));
+  EXPECT_FALSE(begins({0.3, 0, 0}, Vec3::Zero()));
+  EXPECT_FALSE(begins({0, -0.301, 0}, Vec3::Zero()));
+  EXPECT_FALSE(begins({0.2, -0.2, 0.2}, Vec3::Zero())) << "0.35 N";
+  EXPECT_FALSE(begins(Vec3::Zero(), {0, -0.0121, 0}));
+  EXPECT_FALSE(begins(Vec3::Zero(), {0.008, -0.008, 0.008})) << "14 mN m";
 }
 
 TEST(SafetyGate, ATorqueThatTheDeviceNeverGetsDoesNotKeepItWaiting) {
@@ -143,6 +159,20 @@ TEST(SafetyGate, AfterALongPauseItBeginsAnew) {
   EXPECT_EQ(loop.gate.state(), GateState::waiting);
   for (int i = 0; i < 20; ++i) loop.tick({5, 0, 0});
   EXPECT_TRUE(loop.tick({5, 0, 0}).force_N.isZero(0));
+}
+
+// The device holds what was written last through a pause: the tick after it takes off no more than 2 ms of
+// the slew rates allow, whether the command turned round meanwhile or is too old to count.
+TEST(SafetyGate, TheTickAfterAPauseMakesNoLargerStep) {
+  for (const double gap_s : {0.0005, 0.001, 0.002, 0.003, 0.015, 0.03, 10.0}) {
+    Loop loop;
+    loop.engage();
+    for (int i = 0; i < 50; ++i) loop.tick({5, 0, 0}, {0, 0, 0.2});
+    const Wrench after = loop.tick({-5, 0, 0}, {0, 0, -0.2}, gap_s);
+    const double slewed_s = std::min(gap_s, 0.002);
+    EXPECT_NEAR((after.force_N - Vec3(5 - 1000 * slewed_s, 0, 0)).norm(), 0, 1e-9) << gap_s;
+    EXPECT_NEAR((after.torque_Nm - Vec3(0, 0, 0.2 - 40 * slewed_s)).norm(), 0, 1e-9) << gap_s;
+  }
 }
 
 TEST(SafetyGate, RestartLeavesNoForce) {

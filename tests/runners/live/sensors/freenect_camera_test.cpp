@@ -26,9 +26,12 @@ int shift_at(int number, int u, int v) {
 
 // The metres of http://openkinect.org/wiki/Imaging_Information are a fit; this is the triangulation that it
 // fits.
+constexpr double kStep_mm = 1.042 / 4, kBase_mm = 75, kReference_mm = 1200;
+double triangulated_mm(int shift) {
+  return kReference_mm * kBase_mm / (kBase_mm - (shift - 800 - 4 * 0.375) * kStep_mm);
+}
 int depth_of(int shift) {
-  const double across_mm = ((shift - 800) / 4.0 - 0.375) * 1.042;
-  const double z_mm = 1200 * 75 / (75 - across_mm);
+  const double z_mm = triangulated_mm(shift);
   return shift >= 2047 || z_mm <= 0 || z_mm >= 10000 ? 0 : static_cast<int>(z_mm);
 }
 
@@ -89,8 +92,11 @@ class FreenectCamera : public testing::Test {
 TEST_F(FreenectCamera, Depths) {
   EXPECT_EQ(depth_of(2047), 0);
   EXPECT_EQ(depth_of(1100), 0);
-  EXPECT_NEAR(depth_of(600), 123.6 * std::tan(600 / 2842.5 + 1.1863), 10);
-  EXPECT_NEAR(depth_of(1000), 123.6 * std::tan(1000 / 2842.5 + 1.1863), 100);
+  // From 0.7 to 1.8 m: within one step of the shift, to which the readings of a fit are rounded.
+  for (int shift = 600; shift <= 900; shift += 50) {
+    const double z_mm = triangulated_mm(shift), step_mm = z_mm * z_mm * kStep_mm / (kReference_mm * kBase_mm);
+    EXPECT_NEAR(z_mm, 123.6 * std::tan(shift / 2842.5 + 1.1863), step_mm) << shift;
+  }
 }
 
 // One test: fakenect keeps its file open until the program ends, and a second camera goes on where the first
