@@ -10,7 +10,7 @@ namespace {
 Experiment steady_rise(const std::string& sign) {
   return Experiment::from_json(R"({
     "title": "a noise-free plane rises at 0.1 m/s under a HIP that keeps its depth",
-    "scenario": {"name": "moving-lift", "noise_sigma_m": 0, "rise_frames": 60, "acceleration_frames": 0},
+    "scenario": {"name": "moving-lift", "noise_sigma_m": 0, "rise_s": 2, "acceleration_s": 0},
     "renderer": {"name": "proxy"},
     "trajectory": {"name": "press", "press_at_s": 0.5, "depth_m": 0.03, "per_frame": false},
     "duration_s": 1.9})",

@@ -107,14 +107,13 @@ double rms_from(const PrintedFit& printed, const std::vector<double>& noise_m,
 Experiment rise(int steps, double step_m, double velocity_m_per_s) {
   const bool fast = steps == kFastSteps;
   return Experiment::load(
-      "fig4.12",
-      {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0",
-       "scenario.start_velocity_m_per_s=" + std::to_string(velocity_m_per_s),
-       "scenario.start_depth_m=" + std::to_string(velocity_m_per_s / 2), "scenario.rise_frames=120",
-       "scenario.acceleration_frames=0", "duration_s=4", "renderer.velocity_estimate=false",
-       "renderer.step_rule=fixed", "renderer.fixed_step_m=" + std::to_string(step_m * 1e9) + "e-9",
-       "renderer.steps_per_tick=" + std::to_string(fast ? 3 : 1),
-       "haptic_rate_hz=" + std::to_string(fast ? 10000 : steps * kFrames_hz)});
+      "fig4.12", {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=0",
+                  "scenario.start_velocity_m_per_s=" + std::to_string(velocity_m_per_s),
+                  "scenario.start_depth_m=" + std::to_string(velocity_m_per_s / 2), "scenario.rise_s=4",
+                  "scenario.acceleration_s=0", "duration_s=4", "renderer.velocity_estimate=false",
+                  "renderer.step_rule=fixed", "renderer.fixed_step_m=" + std::to_string(step_m * 1e9) + "e-9",
+                  "renderer.steps_per_tick=" + std::to_string(fast ? 3 : 1),
+                  "haptic_rate_hz=" + std::to_string(fast ? 10000 : steps * kFrames_hz)});
 }
 
 struct Predecessor {

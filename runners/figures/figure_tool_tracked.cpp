@@ -120,14 +120,12 @@ struct JumpMotion {
   std::vector<std::string> overrides;
 };
 const std::vector<JumpMotion> kJumpMotions = {
-    {"at_rest",
-     "Surface at rest",
-     {"scenario.wait_frames=60", "scenario.rise_frames=0", "scenario.acceleration_frames=0"}},
+    {"at_rest", "Surface at rest", {"scenario.wait_s=2", "scenario.rise_s=0", "scenario.acceleration_s=0"}},
     {"carried",
      "Rises with the hand",
-     {"scenario.rise_frames=25", "scenario.acceleration_frames=0",
+     {"scenario.rise_s=0.8333333333333334", "scenario.acceleration_s=0",
       "trajectory.poses=[[0,0.03,0,0,0,0,0],[0,-0.002,0,0,0,0,0.2],[0,-0.002,0,0,0,0,0.2],[0,0.078,0,0,0,0,0.8]]"}},
-    {"left", "Rises, the hand stays", {"scenario.rise_frames=25", "scenario.acceleration_frames=0"}}};
+    {"left", "Rises, the hand stays", {"scenario.rise_s=0.8333333333333334", "scenario.acceleration_s=0"}}};
 
 // Rms over the runs of each noise.
 std::vector<ToolJump> jumps(const FigureContext& context, const TrackedMethod& method,

@@ -209,45 +209,77 @@ Json number_or_text(const std::string& text) {
 
 }  // namespace
 
-void apply_override(Json& configuration, const std::string& assignment) {
+std::pair<std::string, Json> read_assignment(const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError("--set " + assignment, "expected key=value, for example renderer.r1_m=0.004");
   const std::string text = assignment.substr(equals + 1);
   if (!is_utf8(assignment)) throw InputError("--set " + assignment, "expected UTF-8");
-  const std::string path = assignment.substr(0, equals);
+  std::string path = assignment.substr(0, equals);
   const std::optional<Json> value = json_or_none(text, "--set " + path);
-  set_value(configuration, path, value ? *value : number_or_text(text), "--set " + assignment);
+  return {std::move(path), value ? *value : number_or_text(text)};
+}
+
+void apply_override(Json& configuration, const std::string& assignment) {
+  const auto [path, value] = read_assignment(assignment);
+  set_value(configuration, path, value, "--set " + assignment);
+}
+
+std::vector<std::string> path_keys(const std::string& path) {
+  std::vector<std::string> keys;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    keys.push_back(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return keys;
 }
 
 namespace {
 
-Json& element(Json& list, const std::string& key, const std::string& subject) {
+// The place in the list that a key names, if the list has it.
+std::optional<std::size_t> place_in(const Json& list, const std::string& key) {
   std::size_t i = 0;
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
-  if (error != std::errc() || end != key.data() + key.size() || i >= list.size())
-    throw InputError(subject,
-                     "expected 0 to " + std::to_string(list.size() - 1) + " for its place in a list");
-  return list[i];
+  if (error != std::errc() || end != key.data() + key.size() || i >= list.size()) return std::nullopt;
+  return i;
 }
 
 }  // namespace
+
+const Json* find_value(const Json& json, std::span<const std::string> keys) {
+  const Json* value = &json;
+  for (const std::string& key : keys) {
+    if (value->is_array()) {
+      const auto place = place_in(*value, key);
+      if (!place) return nullptr;
+      value = &(*value)[*place];
+    } else {
+      const auto member = value->find(key);  // of what is no object the end
+      if (member == value->end()) return nullptr;
+      value = &*member;
+    }
+  }
+  return value;
+}
 
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject) {
   if (std::count(path.begin(), path.end(), '.') >= kMaxJsonDepth)
     throw InputError(subject.substr(0, 64) + "...",
                      "expected at most " + std::to_string(kMaxJsonDepth) + " levels");
   Json* place = &configuration;
-  std::stringstream keys(path);
-  keys.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
-  for (std::string key; std::getline(keys, key, '.');) {
+  for (const std::string& key : path_keys(path)) {
+    if (place->is_null()) *place = Json::object();
     if (place->is_array() && !place->empty()) {
-      place = &element(*place, key, subject);
+      const auto i = place_in(*place, key);
+      if (!i)
+        throw InputError(subject,
+                         "expected 0 to " + std::to_string(place->size() - 1) + " for its place in a list");
+      place = &(*place)[*i];
       continue;
     }
     if (!place->is_object()) throw InputError(subject, "the path leads through a value");
     place = &(*place)[key];
-    if (place->is_null() && !keys.eof()) *place = Json::object();
   }
   *place = value;
 }

@@ -1,7 +1,9 @@
 // Parameters from and to JSON, with the checks that every configuration shares.
 #pragma once
 
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/parameters/parameter.h"
@@ -22,12 +24,21 @@ void write_parameters(const Parameters& parameters, Json& object);
 std::string allowed(const Parameter& parameter);
 std::string value_text(const Parameter& parameter);
 
+// The keys of a path like "renderer.r1_m" or "axes.0.count": names of members, places in lists.
+std::vector<std::string> path_keys(const std::string& path);
+
+// The value that the keys lead to; null: there is none.
+const Json* find_value(const Json& json, std::span<const std::string> keys);
+
 // Sets the value at a path like "renderer.r1_m" or "axes.0.count"; creates missing objects on the path.
 // Throws InputError, about the subject, if the path leads through a value or past the end of a list.
 void set_value(Json& configuration, const std::string& path, const Json& value, const std::string& subject);
 
-// Applies "renderer.r1_m=0.004" to a configuration. The value is read as JSON or as a number such as .3
-// and 3., else it is plain text.
+// Path and value of "renderer.r1_m=0.004". The value is read as JSON or as a number such as .3 and 3., else
+// it is plain text. Throws InputError.
+std::pair<std::string, Json> read_assignment(const std::string& assignment);
+
+// Sets the value of such an assignment in a configuration.
 void apply_override(Json& configuration, const std::string& assignment);
 
 }  // namespace remote_touch

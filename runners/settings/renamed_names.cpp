@@ -8,6 +8,7 @@ namespace {
 
 constexpr RenamedName kRenamed[] = {
     {"above", "threshold"},
+    {"acceleration_frames", "acceleration_s"},
     {"at_rest_m", "rest_threshold_m"},
     {"bridged_frames", "max_missed_frames"},
     {"camera_m", "camera_position_m"},
@@ -21,6 +22,7 @@ constexpr RenamedName kRenamed[] = {
     {"dropout", "dropout_probability"},
     {"dropout_share", "dropout_probability"},
     {"edge_limit_m", "max_edge_length_m"},
+    {"empty_frame", "empty_frame_at_s"},
     {"engage_below_N", "engage_force_N"},
     {"farthest_m", "max_depth_m"},
     {"fastest_m_per_s", "max_speed_m_per_s"},
@@ -62,6 +64,7 @@ constexpr RenamedName kRenamed[] = {
     {"reopening_at_s", "open_start_s"},
     {"repeat_share", "repeat_probability"},
     {"right_m", "right_valve_position_m"},
+    {"rise_frames", "rise_s"},
     {"rise_m", "rise_height_m"},
     {"shear_s", "rolling_shutter_s"},
     {"stale_s", "max_command_age_s"},
@@ -76,7 +79,9 @@ constexpr RenamedName kRenamed[] = {
     {"turns_y", "torque_y"},
     {"turns_z", "torque_z"},
     {"unconverged_share", "unconverged_fraction"},
+    {"vanish_at_frame", "vanish_at_s"},
     {"view", "view_direction"},
+    {"wait_frames", "wait_s"},
     {"widest_gate_m", "max_gate_m"},
     {"within_m", "inner_radius_m"},
 };

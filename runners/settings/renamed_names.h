@@ -1,4 +1,4 @@
-// Names of version 0.1 that changed in version 0.2, for hints about old files and scripts.
+// Names of earlier versions that have changed, for hints about old files and scripts.
 #pragma once
 
 #include <optional>

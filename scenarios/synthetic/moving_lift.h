@@ -7,6 +7,7 @@
 
 #include "scenarios/interface/scenario.h"
 #include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/lift_motion.h"
 
 namespace remote_touch {
 
@@ -17,33 +18,37 @@ class MovingLift final : public Scenario {
     Grid grid{200, 200, 0.0015, 0, 0};
     double frame_rate_hz = 30;
     double noise_sigma_m = 0.003;
-    double start_depth_m = 0.05;
-    double start_velocity_m_per_s = 0.1;
-    int rise_frames = 15;
-    double acceleration_m_per_s2 = 3;
-    int acceleration_frames = 10;
+    LiftMotion::Settings lift{.start_depth_m = 0.05,
+                              .start_velocity_m_per_s = 0.1,
+                              .rise_s = 0.5,
+                              .acceleration_m_per_s2 = 3,
+                              .acceleration_s = 1.0 / 3};
     Truth truth = Truth::newest_frame;
   };
 
   MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
-  int frame_count() const override { return settings_.rise_frames + settings_.acceleration_frames + 1; }
+  int frame_count() const override { return lift_.frame_count(settings_.frame_rate_hz); }
+  std::vector<Phase> phases() const override { return lift_.phases(); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane of the newest frame, because pop-through is judged against what the camera has
-  // seen; or (Truth::moving) over the plane as it moves between frames.
+  // seen; or (Truth::moving) over the plane as it moves.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Of the plane as it moves linearly from one frame's height to the next; constant after the last.
-  double surface_height(double, double, double time_s) const override { return height(time_s); }
+  double truth_time_s(double time_s) const override {
+    return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
+  }
+  // Of the plane as it moves, whatever the frames.
+  double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }
 
  private:
-  double height(double time_s) const;
+  double height_m(int frame) const { return lift_.height_of_frame_m(frame, settings_.frame_rate_hz); }
 
   const Settings settings_;
   const NoiseKey key_;
   const Kernels& kernels_;
-  std::vector<double> height_m_;  // of each frame
+  const LiftMotion lift_;
 };
 
 Parameters parameters(MovingLift::Settings& s);

@@ -27,6 +27,9 @@ class MovingPlane final : public Scenario {
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Up to the first frame in which the plane has come to rest, and stays.
   int frame_count() const override { return frame_count_; }
+  std::vector<Phase> phases() const override {
+    return {{"the rise of the plane", settings_.wait_s, settings_.wait_s + rising_s_}};
+  }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // Height over the plane as it is at that time, between frames too.

@@ -26,6 +26,11 @@ double height_over(double x, double z, const Shape& shape, const ShapePose& pose
   return high;
 }
 
+// The first frame from that time on; -1, no frame, if the time is negative.
+int first_frame_from(double time_s, double frame_rate_hz) {
+  return time_s < 0 ? -1 : static_cast<int>(std::ceil((time_s - kSameTime_s) * frame_rate_hz));
+}
+
 }  // namespace
 
 Parameters parameters(MovingShape::Settings& s) {
@@ -40,8 +45,9 @@ Parameters parameters(MovingShape::Settings& s) {
       {"normals", &s.normals, 0, 0, "the points have the normals of the true surface, as tools need them"},
       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
       {"redraw_noise", &s.redraw_noise, 0, 1, "true: new noise in every frame; false: the same noise in all"},
-      {"vanish_at_frame", &s.vanish_at_frame, -1, 1000000, "first frame of those without points; -1: never"},
-      {"empty_frame", &s.empty_frame, -1, 1000000, "this one frame has no points; -1: none"},
+      {"vanish_at_s", &s.vanish_at_s, -1, 10000, "frames from this time on have no points; negative: never"},
+      {"empty_frame_at_s", &s.empty_frame_at_s, -1, 10000,
+       "the first frame from this time on has no points; negative: none"},
       {"truth", choice(s.truth, {"newest_frame", "moving"}), 0, 0,
        "true surface: newest_frame: as at the last capture; moving: as it moves between frames"},
   });
@@ -61,7 +67,9 @@ MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Ke
       key_(key),
       kernels_(kernels),
       shape_(settings.shape, settings.grid),
-      motion_(settings.motion, settings.frame_rate_hz) {
+      motion_(settings.motion, settings.frame_rate_hz),
+      vanish_frame_(first_frame_from(settings.vanish_at_s, settings.frame_rate_hz)),
+      empty_frame_(first_frame_from(settings.empty_frame_at_s, settings.frame_rate_hz)) {
   const Grid& grid = settings_.grid;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
@@ -70,9 +78,9 @@ MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Ke
 }
 
 int MovingShape::frame_count() const {
-  if (settings_.vanish_at_frame >= 0) return settings_.vanish_at_frame + 1;
+  if (vanish_frame_ >= 0) return vanish_frame_ + 1;
   if (!motion_.ever_rests()) return std::numeric_limits<int>::max();
-  return std::max(motion_.lift_frames(), settings_.empty_frame + 2);
+  return std::max(motion_.lift_frames(), empty_frame_ + 2);
 }
 
 NoiseStream MovingShape::noise(int frame) const {
@@ -121,8 +129,7 @@ double MovingShape::signed_distance(const Vec3& p_W, double time_s) const {
 }
 
 double MovingShape::surface_height(double x, double z, double time_s) const {
-  const bool vanishes = settings_.vanish_at_frame >= 0;
-  const double until_s = vanishes ? captured_s(settings_.vanish_at_frame) : time_s;
+  const double until_s = settings_.vanish_at_s >= 0 ? settings_.vanish_at_s : time_s;
   return height_over(x, z, shape_, motion_.at(std::min(time_s, until_s)));
 }
 

@@ -28,8 +28,8 @@ class MovingShape final : public Scenario {
     bool normals = false;
     double noise_sigma_m = 0;
     bool redraw_noise = true;
-    int vanish_at_frame = -1;
-    int empty_frame = -1;
+    double vanish_at_s = -1;
+    double empty_frame_at_s = -1;
     Truth truth = Truth::newest_frame;
   };
 
@@ -38,21 +38,23 @@ class MovingShape final : public Scenario {
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Up to the last frame that differs from the one before; noise is redrawn in those frames alone.
   int frame_count() const override;
+  std::vector<Phase> phases() const override { return motion_.phases(); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   // Without points where the frame is empty.
   PointCloud cloud(int frame) const override;
   // To the first sheet, positive above it, see Shape::signed_distance(): where the newest frame shows it (or,
   // if that is empty, would have shown it), or as it moves between frames. NaN once it has vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
+  double truth_time_s(double time_s) const override {
+    return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
+  }
   // Of the first sheet as it moves, continued beyond its border, so that a scripted hand always has a surface
   // to press; after it has vanished, the height that it had then.
   double surface_height(double x, double z, double time_s) const override;
 
  private:
-  bool has_vanished(int frame) const {
-    return settings_.vanish_at_frame >= 0 && frame >= settings_.vanish_at_frame;
-  }
-  bool is_empty(int frame) const { return has_vanished(frame) || frame == settings_.empty_frame; }
+  bool has_vanished(int frame) const { return vanish_frame_ >= 0 && frame >= vanish_frame_; }
+  bool is_empty(int frame) const { return has_vanished(frame) || frame == empty_frame_; }
   NoiseStream noise(int frame) const;
   bool is_a_level_grid() const;
 
@@ -61,6 +63,7 @@ class MovingShape final : public Scenario {
   const Kernels& kernels_;
   const Shape shape_;
   const ShapeMotion motion_;
+  const int vanish_frame_, empty_frame_;   // -1: none
   std::vector<Vec3> nodes_S_, normals_S_;  // of the first sheet
 };
 

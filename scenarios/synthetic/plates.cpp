@@ -100,7 +100,7 @@ PointCloud Plates::cloud(int frame) const {
 }
 
 double Plates::signed_distance(const Vec3& p_W, double time_s) const {
-  const FlatPanel panel = plate(0, settings_.true_motion ? time_s : captured_s(newest_frame(time_s)));
+  const FlatPanel panel = plate(0, truth_time_s(time_s));
   return remote_touch::signed_distance(std::span(&panel, 1), p_W);
 }
 

@@ -38,6 +38,9 @@ class Plates final : public Scenario {
   // To the first plate, positive above it; beyond its border the distance to the border with the sign of the
   // side of its plane.
   double signed_distance(const Vec3& p_W, double time_s) const override;
+  double truth_time_s(double time_s) const override {
+    return settings_.true_motion ? time_s : captured_s(newest_frame(time_s));
+  }
   // Of the first plate, continued beyond its border.
   double surface_height(double x, double z, double time_s) const override;
 

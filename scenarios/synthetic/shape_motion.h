@@ -1,11 +1,11 @@
-// How a shape moves: a lift from frame to frame, 4.3.2, and added to it a slide, a shake and a rotation back
-// and forth.
+// How a shape moves: a lift, 4.3.2, and added to it a slide, a shake and a rotation back and forth.
 #pragma once
 
 #include <vector>
 
 #include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "scenarios/synthetic/lift_motion.h"
 
 namespace remote_touch {
 
@@ -31,38 +31,32 @@ class ShapeMotion {
  public:
   struct Settings {
     double tilt_deg = 0;
-    // As in moving-lift: rise_frames updates at constant velocity, then acceleration_frames with a.
-    double start_depth_m = 0;
-    double start_velocity_m_per_s = 0;
-    int rise_frames = 0;
-    double acceleration_m_per_s2 = 0;
-    int acceleration_frames = 0;
+    LiftMotion::Settings lift;
     // Sines begin with phase 0.
     double slide_velocity_m_per_s = 0;
     double shake_amplitude_m = 0, shake_hz = 5;
     double rock_deg = 0, rock_hz = 1;
     double motion_from_s = 0;
-    int wait_frames = 0;  // updates at rest before the rise
   };
 
   ShapeMotion(const Settings& settings, double frame_rate_hz);
 
   ShapePose of_frame(int frame) const;
-  // The lift is linear from one frame's height to the next, and constant after the last; the other motions
-  // are functions of time.
   ShapePose at(double time_s) const;
 
-  int lift_frames() const { return static_cast<int>(height_m_.size()); }
+  // Number of frames up to the first after the lift.
+  int lift_frames() const { return lift_.frame_count(frame_rate_hz_); }
+  // Those of the lift; then all else that moves, which never ends.
+  std::vector<Phase> phases() const;
   bool ever_rests() const;
   bool is_a_lift_alone() const;  // neither rotated nor moved along x
 
  private:
-  double lift_m(double time_s) const;
   ShapePose moved(double lift_m, double time_s) const;
 
   const Settings settings_;
   const double frame_rate_hz_;
-  std::vector<double> height_m_;  // of each frame of the lift
+  const LiftMotion lift_;
 };
 
 Parameters parameters(ShapeMotion::Settings& s);

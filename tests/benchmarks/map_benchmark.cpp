@@ -66,7 +66,7 @@ class Map {
   Cell cell(std::size_t noise, std::size_t acceleration) const {
     Cell cell{sweep_.experiment(plan_.cell_at({noise, acceleration}), 0), {}};
     cell.lift.scene.noise_sigma_m = values(0)[noise];
-    cell.lift.scene.acceleration_m_per_s2 = values(1)[acceleration];
+    cell.lift.scene.lift.acceleration_m_per_s2 = values(1)[acceleration];
     return cell;
   }
 
@@ -134,7 +134,7 @@ bool outcomes_are_known(const Map& map) {
   for (const bool pops : {false, true}) {
     const Cell cell = map.cell(0, pops ? 60 : 30);
     const std::vector<Vec3> plain_W = naive::proxies(cell.lift, naive::standard_noise(cell.lift.scene, 1));
-    right &= cell.lift.scene.acceleration_m_per_s2 == (pops ? 6 : 3);
+    right &= cell.lift.scene.lift.acceleration_m_per_s2 == (pops ? 6 : 3);
     right &= naive::popped_through(cell.lift, plain_W) == pops;
     right &= (popped_through(simulate(cell.experiment)) > 0) == pops;
   }

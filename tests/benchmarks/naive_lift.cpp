@@ -1,6 +1,7 @@
 #include "tests/benchmarks/naive_lift.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/benchmarks/naive_proxy.h"
@@ -11,10 +12,14 @@ namespace {
 
 // (4.20): of every frame
 std::vector<double> heights(const MovingLift::Settings& scene) {
-  double velocity = scene.start_velocity_m_per_s, height = -scene.start_depth_m;
+  const LiftMotion::Settings& lift = scene.lift;
+  double velocity = lift.start_velocity_m_per_s, height = -lift.start_depth_m;
   std::vector<double> out{height};
-  for (int j = 0; j < scene.rise_frames + scene.acceleration_frames; ++j) {
-    if (j >= scene.rise_frames) velocity += scene.acceleration_m_per_s2 / scene.frame_rate_hz;
+  const auto frames = [&](double time_s) {
+    return static_cast<int>(std::lround(time_s * scene.frame_rate_hz));
+  };
+  for (int j = 0; j < frames(lift.rise_s) + frames(lift.acceleration_s); ++j) {
+    if (j >= frames(lift.rise_s)) velocity += lift.acceleration_m_per_s2 / scene.frame_rate_hz;
     out.push_back(height += velocity / scene.frame_rate_hz);
   }
   return out;

@@ -50,11 +50,15 @@ Lift made(double noise_rc, MovingLift::Settings settings) {
 }
 
 Lift lift_with_noise(double noise_rc) {
-  return made(noise_rc, {.acceleration_m_per_s2 = 1.5});
+  MovingLift::Settings settings;
+  settings.lift.acceleration_m_per_s2 = 1.5;
+  return made(noise_rc, settings);
 }
 
 Lift cloud_at_rest() {
-  return made(0, {.start_velocity_m_per_s = 0, .acceleration_m_per_s2 = 0});
+  MovingLift::Settings settings;
+  settings.lift.start_velocity_m_per_s = settings.lift.acceleration_m_per_s2 = 0;
+  return made(0, settings);
 }
 
 double time_of(int tick) {

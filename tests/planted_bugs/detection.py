@@ -35,7 +35,7 @@ def first_difference(found):
         first = found["sweep"]["first_difference"]
         cell = ",".join(map(str, first["cell"]))
         return [f"cell {cell} run {first['replicate']}", first["measure"] or "-", configuration]
-    return ["-", "-", configuration if found["outcome"] == "regressed" else "not comparable"]
+    return ["-", "-", configuration if found["outcome"] in ("regressed", "changed") else "not comparable"]
 
 
 def baseline_entries(program, names, scratch, env, arguments):

@@ -105,8 +105,8 @@ TEST(LiftUpdates, FiguresStateTheExperimentTheyAreOf) {
   EXPECT_EQ(kContactRadius_m, 0.005);
   EXPECT_TRUE(holds("\"frame_rate_hz\":30.0,") && kLift.frame_rate_hz == 30) << json;
   EXPECT_TRUE(holds("\"start_velocity_m_per_s\":0.1,") && kLift.start_velocity_m_per_s == 0.1) << json;
-  EXPECT_TRUE(holds("\"acceleration_frames\":10,") && kLift.updates == 10) << json;
-  EXPECT_TRUE(holds("\"rise_frames\":15,") && kRiseFrames == 15) << json;
+  EXPECT_TRUE(holds("\"acceleration_s\":0.3333333333333333,") && kLift.updates == 10) << json;
+  EXPECT_TRUE(holds("\"rise_s\":0.5,") && kRiseFrames == 15) << json;
 }
 
 }  // namespace

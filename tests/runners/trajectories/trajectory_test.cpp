@@ -112,7 +112,8 @@ TEST(Press, FollowsFramesOrTheMovingPlane) {
   expect_at(stepwise.at(16 / 30.0).position_W, {0.01, frame_16 - 0.03, 0.03});
   expect_at(stepwise.at(0.566).position_W, {0.01, frame_16 - 0.03, 0.03});
   expect_at(smooth.at(16 / 30.0).position_W, {0.01, frame_16 - 0.03, 0.03});
-  expect_at(smooth.at(16.5 / 30).position_W, {0.01, 0.5 * (frame_16 + frame_17) - 0.03, 0.03});
+  const double sag = 3.0 / 8 / 900;  // of the parabola in the middle between two updates
+  expect_at(smooth.at(16.5 / 30).position_W, {0.01, 0.5 * (frame_16 + frame_17) - sag - 0.03, 0.03});
 }
 
 TEST(FollowSurface, KeepsItsDepthAndSpeedOnAFlat) {

@@ -45,7 +45,7 @@ MovingShape::Settings busy(Kind kind) {
   MovingShape::Settings s;
   s.grid = {41, 31, 0.0015, 0.25, -0.5};
   s.shape.kind = kind, s.shape.slope_deg = 25, s.shape.radius_m = 0.025;
-  s.motion = {8, 0.02, 0.1, 4, -1, 4, 0.05, 0.004, 3, 6, 1.5, 0.1};
+  s.motion = {8, {0, 0.02, 0.1, 4 / 30.0, -1, 4 / 30.0}, 0.05, 0.004, 3, 6, 1.5, 0.1};
   s.truth = MovingShape::Truth::moving;
   return s;
 }
@@ -56,11 +56,7 @@ TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
   MovingLift::Settings lift;
   MovingShape::Settings shape;
   shape.grid = lift.grid, shape.noise_sigma_m = lift.noise_sigma_m;
-  shape.motion.start_depth_m = lift.start_depth_m;
-  shape.motion.start_velocity_m_per_s = lift.start_velocity_m_per_s;
-  shape.motion.rise_frames = lift.rise_frames;
-  shape.motion.acceleration_m_per_s2 = lift.acceleration_m_per_s2;
-  shape.motion.acceleration_frames = lift.acceleration_frames;
+  shape.motion.lift = lift.lift;
   for (const bool moving : {false, true}) {
     if (moving) lift.truth = MovingLift::Truth::moving, shape.truth = MovingShape::Truth::moving;
     const MovingLift one(lift, kKey, scenes::kernels());
@@ -81,7 +77,7 @@ TEST(MovingShape, AFlatLiftRendersAsAMovingLift) {
   const std::string renderer = R"("renderer": {"name": "proxy"}, "trajectory": {"name": "press"},
       "duration_s": 0.7)";
   const std::string grid = R"("columns": 60, "rows": 60, "noise_sigma_m": 0.002, "start_depth_m": 0.03,
-      "start_velocity_m_per_s": 0.1, "rise_frames": 12, "acceleration_m_per_s2": 2, "acceleration_frames": 8)";
+      "start_velocity_m_per_s": 0.1, "rise_s": 0.4, "acceleration_m_per_s2": 2, "acceleration_s": 0.25)";
   const auto run = [&](const std::string& name) {
     const std::string text = R"({"scenario": {"name": ")" + name + "\", " + grid + "}, " + renderer + "}";
     return simulate(Experiment::from_json(text, name), {});
@@ -94,7 +90,8 @@ TEST(MovingShape, AFlatLiftRendersAsAMovingLift) {
 
 TEST(MovingShape, ReceedingAndStartingAboveZero) {
   MovingShape::Settings s;
-  s.motion.start_depth_m = -0.02, s.motion.start_velocity_m_per_s = -0.3, s.motion.rise_frames = 3;
+  s.motion.lift.start_depth_m = -0.02, s.motion.lift.start_velocity_m_per_s = -0.3,
+  s.motion.lift.rise_s = 0.1;
   const MovingShape shape = made(s);
   for (int frame = 0; frame < 4; ++frame) {
     EXPECT_NEAR(shape.cloud(frame).y[5], 0.02 - 0.01 * frame, 1e-15);
@@ -105,9 +102,9 @@ TEST(MovingShape, ReceedingAndStartingAboveZero) {
 
 TEST(MovingShape, MayWaitBeforeItRises) {
   MovingShape::Settings s;
-  s.motion.start_depth_m = 0.01, s.motion.start_velocity_m_per_s = 0.3, s.motion.rise_frames = 3;
+  s.motion.lift.start_depth_m = 0.01, s.motion.lift.start_velocity_m_per_s = 0.3, s.motion.lift.rise_s = 0.1;
   const MovingShape at_once = made(s);
-  s.motion.wait_frames = 5;
+  s.motion.lift.wait_s = 5 / 30.0;
   const MovingShape later = made(s);
   EXPECT_EQ(later.frame_count(), at_once.frame_count() + 5);
   for (int frame = 0; frame < 12; ++frame)
@@ -282,9 +279,9 @@ TEST(MovingShape, SearchesShowTheCloud) {
 
 TEST(MovingShape, VanishesAndStaysAway) {
   MovingShape::Settings s = busy(Kind::flat);
-  s.vanish_at_frame = 5;
+  s.vanish_at_s = 5 / 30.0;
   const MovingShape shape = made(s);
-  s.vanish_at_frame = -1;
+  s.vanish_at_s = -1;
   const MovingShape stays = made(s);
   ASSERT_EQ(shape.frame_count(), 6);
   EXPECT_TRUE(same_bits(shape.cloud(4), stays.cloud(4)));
@@ -299,22 +296,22 @@ TEST(MovingShape, VanishesAndStaysAway) {
 
 TEST(MovingShape, OneFrameMayBeEmpty) {
   MovingShape::Settings s;
-  s.empty_frame = 4;
+  s.empty_frame_at_s = 4 / 30.0;
   const MovingShape rests = made(s);
   ASSERT_EQ(rests.frame_count(), 6);
   EXPECT_EQ(rests.cloud(4).size(), 0u);
   EXPECT_TRUE(same_bits(rests.cloud(3), rests.cloud(5)));
   EXPECT_EQ(rests.signed_distance({0, 0.01, 0}, 4.5 / 30), 0.01) << "it is there, and not seen";
-  s = busy(Kind::ripple), s.empty_frame = 4;
+  s = busy(Kind::ripple), s.empty_frame_at_s = 4 / 30.0;
   const MovingShape moves = made(s);
   EXPECT_EQ(moves.cloud(4).size(), 0u);
   EXPECT_GT(moves.cloud(5).size(), 0u);
 }
 
 TEST(MovingShape, RenderersTakeFramesWithoutPoints) {
-  for (const char* what : {"vanish_at_frame", "empty_frame"}) {
+  for (const char* what : {"vanish_at_s", "empty_frame_at_s"}) {
     const std::string text = std::string(R"({"scenario": {"name": "moving-shape", ")") + what +
-                             R"(": 12}, "renderer": {"name": "proxy"},
+                             R"(": 0.4}, "renderer": {"name": "proxy"},
         "trajectory": {"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.01},
         "duration_s": 0.8})";
     const Trace trace = simulate(Experiment::from_json(text, what), {});
@@ -333,7 +330,7 @@ TEST(MovingShape, AHandCanPressEveryShape) {
     for (const bool moving : {false, true}) {
       MovingShape::Settings s = busy(kind);
       if (!moving) s.motion = {};
-      s.vanish_at_frame = 40;
+      s.vanish_at_s = 40 / 30.0;
       const MovingShape shape = made(s);
       Press::Settings press;
       press.press_at_s = 0, press.per_frame = false;

@@ -1,0 +1,91 @@
+#include "scenarios/synthetic/lift_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+namespace {
+
+// A time in updates. Quotients of times are rounded: what is meant to be at an update is nearly there.
+double at_update_if_near(double updates) {
+  const double nearest = std::round(updates);
+  return std::abs(updates - nearest) < 1e-6 ? nearest : updates;
+}
+
+}  // namespace
+
+Parameters parameters(LiftMotion::Settings& s) {
+  return {
+      {"wait_s", &s.wait_s, 0, 10000, "time at rest before the rise"},
+      {"start_depth_m", &s.start_depth_m, -10, 10,
+       "the first frame lies this far below y = 0; above it where negative"},
+      {"start_velocity_m_per_s", &s.start_velocity_m_per_s, -10, 10,
+       "velocity of the rise, v_0 of (4.20); the cloud recedes where negative"},
+      {"rise_s", &s.rise_s, 0, 10000, "time at constant velocity before the acceleration"},
+      {"acceleration_m_per_s2", &s.acceleration_m_per_s2, -1000, 1000, "acceleration a after the rise"},
+      {"acceleration_s", &s.acceleration_s, 0, 100, "time with acceleration; the lift then rests"},
+      {"update_rate_hz", &s.update_rate_hz, 1e-3, 10000,
+       "the motion passes through the heights of 4.3.2, so many per second; it does not depend on frame_rate_hz"},
+      {"between_updates", choice(s.between_updates, {"parabola", "line"}), 0, 0,
+       "motion from one of these heights to the next; parabola: with the acceleration a; line: at constant velocity"},
+  };
+}
+
+LiftMotion::LiftMotion(const Settings& settings)
+    : settings_(settings),
+      rise_begin_(at_update_if_near(settings.wait_s * settings.update_rate_hz)),
+      rise_end_(rise_begin_ + at_update_if_near(settings.rise_s * settings.update_rate_hz)),
+      end_(rise_end_ + at_update_if_near(settings.acceleration_s * settings.update_rate_hz)),
+      accelerated_m_{risen_m(rise_end_ - rise_begin_)} {
+  double velocity = settings.start_velocity_m_per_s;
+  for (int j = 0; j < end_ - rise_end_; ++j) {
+    velocity += settings.acceleration_m_per_s2 / settings.update_rate_hz;
+    accelerated_m_.push_back(accelerated_m_.back() + velocity / settings.update_rate_hz);
+  }
+}
+
+int LiftMotion::frame_count(double frame_rate_hz) const {
+  return static_cast<int>(std::ceil(end_ * (frame_rate_hz / settings_.update_rate_hz) - 1e-6)) + 1;
+}
+
+std::vector<Phase> LiftMotion::phases() const {
+  const bool accelerates = settings_.acceleration_m_per_s2 != 0 && end_ > rise_end_;
+  const double rate_hz = settings_.update_rate_hz, rise_end = accelerates ? rise_end_ : end_;
+  std::vector<Phase> list;
+  if (settings_.start_velocity_m_per_s != 0 && rise_end > rise_begin_)
+    list.push_back({"the rise", rise_begin_ / rate_hz, rise_end / rate_hz});
+  if (accelerates) list.push_back({"the acceleration", rise_end_ / rate_hz, end_ / rate_hz});
+  return list;
+}
+
+double LiftMotion::risen_m(double updates) const {
+  return -settings_.start_depth_m + updates * (settings_.start_velocity_m_per_s / settings_.update_rate_hz);
+}
+
+// Linear from update to update.
+double LiftMotion::on_lines_m(double time) const {
+  if (time < rise_begin_) return -settings_.start_depth_m;
+  const bool rises = time <= rise_end_;
+  const double since = time - (rises ? rise_begin_ : rise_end_);
+  const double before = std::floor(since);
+  const auto update_m = [&](double j) {
+    return rises ? risen_m(j)
+                 : accelerated_m_[std::min(static_cast<std::size_t>(j), accelerated_m_.size() - 1)];
+  };
+  return update_m(before) + (since - before) * (update_m(before + 1) - update_m(before));
+}
+
+double LiftMotion::height_at_update(double time) const {
+  const double place = std::clamp(time, 0.0, end_), accelerated = place - rise_end_;
+  double height_m = on_lines_m(place);
+  const bool is_on_parabola = end_ > rise_end_ && accelerated > -1;
+  if (settings_.between_updates == BetweenUpdates::parabola && is_on_parabola) {
+    const double since = at_update_if_near(accelerated), part = since - std::floor(since);
+    const double rate_hz = settings_.update_rate_hz;
+    height_m -= 0.5 * part * (1 - part) * settings_.acceleration_m_per_s2 / rate_hz / rate_hz;
+  }
+  return height_m;
+}
+
+}  // namespace remote_touch
