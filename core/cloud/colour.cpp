@@ -5,6 +5,11 @@
 
 namespace remote_touch {
 
+std::uint32_t colour_of_float(std::uint32_t bits) {
+  const std::uint32_t alpha = bits >> 24;
+  return alpha == 0 || alpha == 0xFF ? bits & 0xFFFFFF : kNoColour;
+}
+
 HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb) {
   const int red = rgb >> 16 & 0xFF, green = rgb >> 8 & 0xFF, blue = rgb & 0xFF;
   const int high = std::max({red, green, blue}), low = std::min({red, green, blue});

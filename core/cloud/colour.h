@@ -5,6 +5,14 @@
 
 namespace remote_touch {
 
+// In the column of colours of a cloud: the colour of this point is not known.
+inline constexpr std::uint32_t kNoColour = 0xFF000000;
+
+// The colour in a float of 32 bits, by which files and messages of clouds pass on 0xAARRGGBB: with A = 0 or,
+// where colours are opaque, 255, which makes a NaN of many of them. Other bits are a number that is no
+// colour, or the NaN of a point without colour: kNoColour.
+std::uint32_t colour_of_float(std::uint32_t bits);
+
 // The double cone (HSL): a grey has saturation 0 and no hue, which is then given as 0.
 struct HueSaturationLightness {
   double hue_deg = 0;     // 0 red, 120 green, 240 blue; [0, 360)

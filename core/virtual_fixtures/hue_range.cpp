@@ -26,6 +26,7 @@ std::string validate(const HueRange::Settings& s) {
 }
 
 bool HueRange::holds(std::uint32_t rgb) const {
+  if (rgb == kNoColour) return false;
   const HueSaturationLightness colour = hue_saturation_lightness(rgb);
   if (colour.saturation < settings_.min_saturation || colour.lightness < settings_.min_lightness ||
       colour.lightness > settings_.max_lightness)
@@ -34,9 +35,13 @@ bool HueRange::holds(std::uint32_t rgb) const {
   return settings_.from_deg <= settings_.to_deg ? above && below : above || below;
 }
 
-std::vector<double> HueRange::weights(const PointCloud& cloud) const {
+void HueRange::require(const PointCloud& cloud) const {
   if (cloud.colour.empty() && cloud.size() > 0)
     throw InputError("hue-range", "the frame has no colours: expected coloured frames");
+}
+
+std::vector<double> HueRange::weights(const PointCloud& cloud) const {
+  require(cloud);
   std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     weights[i] = cloud.point(i).allFinite() && holds(cloud.colour[i]) ? 1 : 0;

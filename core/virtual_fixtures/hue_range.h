@@ -18,7 +18,8 @@ class HueRange final : public FixtureRule {
     double max_lightness = 0.9;
   };
   explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
-  // Throws InputError when the cloud has no colours.
+  // Colours.
+  void require(const PointCloud& cloud) const override;
   std::vector<double> weights(const PointCloud& cloud) const override;
   const Settings& settings() const { return settings_; }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/storage/hdf5_file.h"
+#include "core/cloud/colour.h"
 #include "runners/export/exported_run.h"
 #include "runners/export/little_endian.h"
 #include "runners/export/mcap_writer.h"
@@ -34,10 +35,11 @@ std::string cloud_message(const ExportedFrame& frame) {
   if (cloud.has_normals())
     for (const char* name : {"normal_x", "normal_y", "normal_z"}) fields.push_back({name, kRosFloat32});
   if (!cloud.fixture_radius_m.empty()) fields.push_back({"fixture_radius", kRosFloat32});
+  constexpr std::uint32_t kNan = 0x7FC00000;  // of 32 bits
   std::string data;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (const double number : {cloud.x[i], cloud.y[i], cloud.z[i]}) put(data, static_cast<float>(number));
-    if (!cloud.colour.empty()) put(data, cloud.colour[i]);
+    if (!cloud.colour.empty()) put(data, cloud.colour[i] == kNoColour ? kNan : cloud.colour[i]);
     if (cloud.has_normals())
       for (const double number : {cloud.nx[i], cloud.ny[i], cloud.nz[i]})
         put(data, static_cast<float>(number));

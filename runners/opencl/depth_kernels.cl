@@ -322,7 +322,8 @@ __kernel void fixture_columns(__global const unsigned int* restrict rgb,
   if (u >= (size_t)width) return;
   const double depth = depth_m[v * get_global_size(0) + u];
   // The difference is 0 for finite numbers only.
-  const int is_there = keeps_points ? depth - depth == 0 : measured(depth);
+  const int is_seen = keeps_points ? depth - depth == 0 : measured(depth);
+  const int is_there = is_seen & (rgb[to] != 0xFF000000u);  // kNoColour of core/cloud/colour.h
   const Colour colour = colour_of(rgb[to]);
   double radius = 0, stiffness = or_none(0, 0);
   for (int i = 0; i < count; ++i) {

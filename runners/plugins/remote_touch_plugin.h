@@ -43,7 +43,7 @@ typedef struct {
   const double *nx, *ny, *nz;      /* unit normals towards the sensor; null: none */
   const double* fixture_radius_m;  /* of forbidden regions; null: none */
   const double* stiffness_N_per_m; /* of regions, NaN: the renderer's own; null: none */
-  const uint32_t* colour;          /* 0xRRGGBB; null: none */
+  const uint32_t* colour;          /* 0xRRGGBB, 0xFF000000: not known; null: none */
   void* prepared;                  /* in on_frame: what prepare returned; null: it was not called */
 } remote_touch_frame;
 

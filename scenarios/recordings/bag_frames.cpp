@@ -36,11 +36,18 @@ BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
     : path_(path.string()), bag_(open_bag(path, tells_of_depth_camera)) {
   topic_ = topic_of_frames(path_, *bag_, choice.topic);
   remark_ = bag_->remark();
-  if (topic().type != kCloudType) {
-    choose_unit();
+  order_frames();
+  constexpr std::uint64_t kLongestHeader = 1024;
+  const std::string first = bag_->start(frames_.front(), kLongestHeader);
+  MessageCursor cursor(first, wire_format(topic()), subject(topic_, frames_.front()));
+  frame_id_ = read_header(cursor).frame_id;
+  if (topic().type == kCloudType) {
+    if (choice.depth_unit_m != 0)
+      throw InputError(path_, topic().name + " holds clouds, in metres: expected scenario.depth_unit_m = 0");
+  } else {
+    choose_unit(choice.depth_unit_m);
     choose_camera(choice);
   }
-  order_frames();
   if (!choice.frame_id.empty()) choose_frame_id(choice.frame_id);
 }
 
@@ -61,21 +68,25 @@ void BagFrames::choose_camera(const BagChoice& choice) {
                              ? is_rectified_by_name(topic().name)
                              : choice.images == BagChoice::Images::rectified;
   const CameraInfoMessage info = read_camera_info({message, wire_format(bag_->topics()[camera]), name});
-  const MessagePlace& image = bag_->places(topic_).front();
+  const MessagePlace& image = frames_.front();
   check_image_size(subject(topic_, image), depth_of(image, 1), info.width, info.height);
   rays_.emplace(info, rectified, name);
 }
 
-void BagFrames::choose_unit() {
+void BagFrames::choose_unit(double chosen_m) {
+  if (chosen_m != 0) {
+    units_ = {chosen_m, chosen_m};
+    return;
+  }
   const std::size_t unit = topic_of_unit(*bag_, topic_);
   if (unit == bag_->topics().size()) return;
   const MessagePlace& first = bag_->places(unit).front();
   const std::string name = subject(unit, first), message = bag_->message(first);
-  metres_per_unit_ = read_float32({message, wire_format(bag_->topics()[unit]), name});
-  if (!(metres_per_unit_ > 0 && metres_per_unit_ <= 1))
-    throw InputError(name, "depth unit = " + std::to_string(metres_per_unit_) + " m: expected above 0 to 1");
+  const double unit_m = read_float32({message, wire_format(bag_->topics()[unit]), name});
+  if (!(unit_m > 0 && unit_m <= 1))
+    throw InputError(name, "depth unit = " + std::to_string(unit_m) + " m: expected above 0 to 1");
   // A float of 32 bits that is meant as 0.001 should not make 1.00000005 m of 1000 units.
-  metres_per_unit_ = std::round(metres_per_unit_ * 1e9) / 1e9;
+  units_.of_integers_m = std::round(unit_m * 1e9) / 1e9;
 }
 
 // The places keep their messages' stamps for as long as they are sorted.
@@ -116,9 +127,6 @@ void BagFrames::order_frames() {
 }
 
 void BagFrames::choose_frame_id(const std::string& frame_id) {
-  const std::string first = bag_->message(frames_.front());
-  MessageCursor cursor(first, wire_format(topic()), subject(topic_, frames_.front()));
-  frame_id_ = read_header(cursor).frame_id;
   StaticTransforms transforms;
   for (std::size_t t = 0; t < bag_->topics().size(); ++t) {
     if (!is_tf_static(bag_->topics()[t])) continue;
@@ -131,7 +139,7 @@ void BagFrames::choose_frame_id(const std::string& frame_id) {
 }
 
 void BagFrames::check_frame_id(const MessageHeader& header, const std::string& subject) const {
-  if (frame_id_.empty() || header.frame_id == frame_id_) return;
+  if (header.frame_id == frame_id_) return;
   throw InputError(
       subject, "frame_id = " + header.frame_id + ": expected " + frame_id_ + ", as the first message has");
 }
@@ -141,7 +149,7 @@ DepthImage BagFrames::depth_of(const MessagePlace& place, double max_depth_m) co
   const MessageCursor cursor(bytes, wire_format(topic()), name);
   const auto depth = [&](const auto& message) {
     check_frame_id(message.header, name);
-    return depth_from_message(message, metres_per_unit_, max_depth_m, name);
+    return depth_from_message(message, units_, max_depth_m, name);
   };
   return topic().type == kImageType ? depth(read_image(cursor)) : depth(read_compressed_image(cursor));
 }

@@ -11,12 +11,15 @@
 #include "core/cloud/point_cloud.h"
 #include "scenarios/recordings/bag_choice.h"
 #include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/messages/image_rays.h"
 
 namespace remote_touch {
 
 // Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth), with the first CameraInfo.
-// Depth images are in units of 1 mm, or of what the option Depth Units of a RealSense recording says.
+// Integers of depth images are in units of 1 mm, or of what the option Depth Units of a RealSense recording
+// says, floats are metres, unless the choice says otherwise. All messages must name the same coordinate
+// frame.
 //
 // The frames are in the order of the stamps in the messages' headers, captured_s counts from the first. Of
 // messages of one stamp the first one counts. Where a stamp is 0 all times are those of the recorder.
@@ -46,7 +49,7 @@ class BagFrames {
   std::string subject(std::size_t topic, const MessagePlace& place) const;
   DepthImage depth_of(const MessagePlace& place, double max_depth_m) const;
   void choose_camera(const BagChoice& choice);
-  void choose_unit();
+  void choose_unit(double chosen_m);
   void choose_frame_id(const std::string& frame_id);
   void order_frames();
   void check_frame_id(const MessageHeader& header, const std::string& subject) const;
@@ -57,8 +60,8 @@ class BagFrames {
   std::vector<MessagePlace> frames_;
   std::vector<double> captured_s_;
   std::optional<ImageRays> rays_;  // of depth images
-  double metres_per_unit_ = 0.001;
-  std::string frame_id_;  // of the first frame, where it has to be that of all
+  DepthUnits units_;
+  std::string frame_id_;  // of the first frame, and so of all
   RigidTransform X_chosen_ = RigidTransform::Identity();
   std::string remark_;
 };

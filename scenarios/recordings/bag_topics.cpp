@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/messages/messages.h"
 
 namespace remote_touch {
@@ -37,23 +38,38 @@ bool has_messages(const BagFile& bag, std::size_t topic) {
   return !bag.places(topic).empty();
 }
 
-// Colour images have the same type as depth images: the first message tells.
+// Of an image: its encoding, which its first message tells. Empty for others, and where that is damaged.
+std::string encoding_of(const BagFile& bag, std::size_t t) {
+  const BagTopic& topic = bag.topics()[t];
+  if (topic.type != kImageType || !is_readable(topic) || !has_messages(bag, t)) return {};
+  constexpr std::uint64_t kBeforePixels = 512;
+  const std::string start = bag.start(bag.places(t).front(), kBeforePixels);
+  try {
+    MessageCursor cursor(start, wire_format(topic), topic.name);
+    read_header(cursor), cursor.u32(), cursor.u32();
+    return cursor.text();
+  } catch (const InputError&) {  // it is for the one who names the topic
+    return {};
+  }
+}
+
+// Colour images have the same type as depth images.
 bool has_frames(const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   if (!tells_of_depth_camera(topic) || !has_messages(bag, t)) return false;
   if (topic.type == kCloudType) return true;
   if (topic.type == kCompressedType) return parts_of_name(topic.name).back() == "compressedDepth";
-  if (topic.type != kImageType) return false;
-  constexpr std::uint64_t kBeforePixels = 512;
-  const std::string start = bag.start(bag.places(t).front(), kBeforePixels);
-  MessageCursor cursor(start, wire_format(topic), topic.name);
-  try {
-    read_header(cursor), cursor.u32(), cursor.u32();
-    const std::string encoding = cursor.text();
-    return encoding == "16UC1" || encoding == "mono16" || encoding == "Z16" || encoding == "32FC1";
-  } catch (const InputError&) {  // damaged: it is for the one who names the topic
-    return false;
-  }
+  return topic.type == kImageType && is_depth_encoding(encoding_of(bag, t));
+}
+
+// The coordinate frame of the first message. Older programs write /camera for camera.
+std::string frame_id_of(const std::string& path, const BagFile& bag, std::size_t t) {
+  const BagTopic& topic = bag.topics()[t];
+  constexpr std::uint64_t kLongestHeader = 1024;
+  const std::string start = bag.start(bag.places(t).front(), kLongestHeader);
+  MessageCursor cursor(start, wire_format(topic), path + ": " + topic.name);
+  const std::string frame_id = read_header(cursor).frame_id;
+  return frame_id.starts_with('/') ? frame_id.substr(1) : frame_id;
 }
 
 std::string listed(const BagFile& bag, const std::vector<std::size_t>& topics) {
@@ -61,7 +77,9 @@ std::string listed(const BagFile& bag, const std::vector<std::size_t>& topics) {
   std::string list;
   for (std::size_t i = 0; i < topics.size() && i < kMaxShown; ++i) {
     const BagTopic& topic = bag.topics()[topics[i]];
-    list += (i > 0 ? ", " : "") + topic.name + " (" + topic.type + ", " + std::to_string(topic.messages) +
+    const std::string encoding = is_readable(topic) ? encoding_of(bag, topics[i]) : topic.encoding;
+    list += (i > 0 ? ", " : "") + topic.name + " (" + topic.type +
+            (encoding.empty() ? "" : " " + encoding.substr(0, 32)) + ", " + std::to_string(topic.messages) +
             " messages)";
   }
   if (topics.size() > kMaxShown) list += ", and " + std::to_string(topics.size() - kMaxShown) + " more";
@@ -117,8 +135,8 @@ std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const s
       damage + (name.empty() ? "has no topic of clouds or depth images" : "scenario.topic = " + name);
   throw InputError(
       path,
-      problem + ": expected a topic of " + kCloudType + ", " + kImageType + " or " + kCompressedType +
-          "; there are " +
+      problem + ": expected a topic of " + kCloudType + ", " + kImageType + " (" + kDepthEncodings + ") or " +
+          kCompressedType + " (compressedDepth); there are " +
           listed(bag, of_frames.empty() ? topics_that(bag, [](std::size_t) { return true; }) : of_frames));
 }
 
@@ -138,15 +156,19 @@ std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::si
     throw InputError(path, "scenario.camera_info = " + name + ": expected a topic of " + kCameraType +
                                "; there are " + listed(bag, cameras));
   }
-  const std::vector<std::string> parts = parts_without_transport(bag.topics()[images].name);
-  const std::size_t beside = find(joined(parts, parts.size() - 1, "camera_info"));
-  if (beside != none) return beside;
-  // RealSense: .../Depth_0/image/data and .../Depth_0/info/camera_info.
+  const std::string& name_of_images = bag.topics()[images].name;
+  const std::vector<std::string> parts = parts_without_transport(name_of_images);
+  // RealSense: .../Depth_0/image/data and .../Depth_0/info/camera_info, which name no coordinate frames.
   if (parts.size() > 2 && find(joined(parts, parts.size() - 2, "info/camera_info")) != none)
     return find(joined(parts, parts.size() - 2, "info/camera_info"));
-  if (cameras.size() == 1) return cameras.front();
-  throw InputError(path, "has no camera beside " + bag.topics()[images].name +
-                             ": expected scenario.camera_info as one of " + listed(bag, cameras));
+  std::string problem = "has no camera beside " + name_of_images;
+  if (const std::size_t beside = find(joined(parts, parts.size() - 1, "camera_info")); beside != none) {
+    const std::string of_camera = frame_id_of(path, bag, beside), of_images = frame_id_of(path, bag, images);
+    if (of_camera.empty() || of_images.empty() || of_camera == of_images) return beside;
+    problem = bag.topics()[beside].name + " has frame_id = \"" + of_camera.substr(0, 64) +
+              "\" where the images have \"" + of_images.substr(0, 64) + "\"";
+  }
+  throw InputError(path, problem + ": expected scenario.camera_info as one of " + listed(bag, cameras));
 }
 
 std::size_t topic_of_unit(const BagFile& bag, std::size_t images) {

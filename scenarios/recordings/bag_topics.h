@@ -21,11 +21,13 @@ bool tells_of_depth_camera(const BagTopic& topic);
 bool is_tf_static(const BagTopic& topic);
 
 // The topic of that name, which has frames; if none is named, the only one that has. Throws InputError about
-// the path, with a list of what there is, type and number of messages, when that is not one topic.
+// the path, with a list of what there is, type, encoding and number of messages, when that is not one topic.
 std::size_t topic_of_frames(const std::string& path, const BagFile& bag, const std::string& name);
 
-// The topic of the CameraInfo that belongs to a topic of depth images: that of the name, or the one beside
-// it, or the only one there is. Throws InputError with a list as above.
+// The topic of the CameraInfo that belongs to a topic of depth images: that of the name; or the one beside
+// it, unless its first message names another coordinate frame than the first image; or that of the RealSense
+// sensor. A camera elsewhere may be another one, even the only one there is. Throws InputError with a list as
+// above.
 std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::size_t images,
                             const std::string& name);
 

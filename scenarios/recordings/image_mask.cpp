@@ -27,7 +27,7 @@ ImageMask::ImageMask(const Settings& settings)
       path_(settings.path),
       mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
 
-std::vector<double> ImageMask::weights(const PointCloud& cloud) const {
+void ImageMask::require(const PointCloud& cloud) const {
   if (!cloud.image)
     throw InputError("image-mask", "the frame is not an image: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
@@ -35,6 +35,10 @@ std::vector<double> ImageMask::weights(const PointCloud& cloud) const {
     throw InputError(path_, std::to_string(width_) + " x " + std::to_string(height_) +
                                 " pixels: expected as many as the frames: " + std::to_string(camera.width) +
                                 " x " + std::to_string(camera.height));
+}
+
+std::vector<double> ImageMask::weights(const PointCloud& cloud) const {
+  require(cloud);
   std::vector<double> weights(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i)
     weights[i] = cloud.point(i).allFinite() && (mask_[i] & 0xFFFFFF) != 0 ? 1 : 0;

@@ -15,7 +15,8 @@ class ImageMask final : public FixtureRule {
   // Reads the mask: a PNG of any kind that read_colour_png takes, of the size of the frames; a pixel that is
   // not black selects its point. Throws InputError when it cannot be read.
   explicit ImageMask(const Settings& settings);
-  // Throws InputError when the cloud is not an image, or has another size.
+  // An image of the size of the mask.
+  void require(const PointCloud& cloud) const override;
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

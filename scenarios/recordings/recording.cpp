@@ -11,6 +11,7 @@
 #include "core/cloud/camera.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/folder_files.h"
 #include "scenarios/recordings/pcd/pcd_file.h"
 #include "scenarios/recordings/png/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"
@@ -95,29 +96,6 @@ CameraFile read_camera(const fs::path& file, const Json& json) {
   return result;
 }
 
-// The files of a folder with this extension, in the order that index_recording promises.
-std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == extension) files.push_back(entry.path());
-  }
-  const auto stem = [](const fs::path& file) { return file.stem().string(); };
-  bool all_numbers = true;
-  std::size_t max_length = 0;
-  for (const fs::path& file : files) {
-    all_numbers &= stem(file).find_first_not_of("0123456789") == std::string::npos;
-    max_length = std::max(max_length, stem(file).size());
-  }
-  // Numbers padded to one length are in order where their texts are: 9.png comes before 10.png.
-  const auto key = [&](const fs::path& file) {
-    const std::string padding(all_numbers ? max_length - stem(file).size() : 0, '0');
-    return std::pair(padding + stem(file), file);
-  };
-  std::sort(files.begin(), files.end(),
-            [&](const fs::path& a, const fs::path& b) { return key(a) < key(b); });
-  return files;
-}
-
 // A recording of one frame has no rate.
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
   if (frames < 2) return kNominalRate_hz;
@@ -145,6 +123,11 @@ RecordingIndex index_tum(const fs::path& folder) {
   }
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frames = associate_stamps(depth, colour);
+  const auto has_colour = [](const RecordedFrame& frame) { return !frame.colour.empty(); };
+  if (!colour.empty() && std::none_of(index.frames.begin(), index.frames.end(), has_colour))
+    refuse(folder / "rgb.txt", "no image is within 0.02 s of one in depth.txt; the first are " +
+                                   colour.front().file.string() + " and " + depth.front().file.string() +
+                                   ": expected stamps of one clock, in seconds");
   index.frame_rate_hz =
       mean_rate_hz((folder / "depth.txt").string(), index.frames.size(), index.frames.back().captured_s);
   return index;
@@ -157,7 +140,6 @@ void append_frames(RecordingIndex& index, const std::vector<fs::path>& files) {
   }
 }
 
-// A colour image has the name of its depth image; a frame without one stays without colour.
 RecordingIndex index_depth_folder(const fs::path& folder) {
   const fs::path camera_file = folder / "camera.json";
   if (!fs::exists(camera_file)) {
@@ -170,18 +152,18 @@ RecordingIndex index_depth_folder(const fs::path& folder) {
   index.texts = {camera_file};
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
   index.frame_rate_hz = frame_rate(camera_file, json);
-  append_frames(index, files_in_order(folder / "depth", ".png"));
-  if (index.frames.empty()) refuse(folder / "depth", "holds no .png file");
-  for (RecordedFrame& frame : index.frames) {
-    const fs::path colour = folder / "rgb" / frame.depth.filename();
-    if (camera.colour_registered && fs::exists(colour)) frame.colour = colour;
-  }
+  const std::vector<fs::path> depth = files_in_order(folder / "depth", ".png");
+  if (depth.empty()) refuse(folder / "depth", "holds no .png file");
+  append_frames(index, depth);
+  if (!camera.colour_registered) return index;
+  const std::vector<fs::path> colours = colour_images(depth, folder / "rgb");
+  for (std::size_t j = 0; j < depth.size(); ++j) index.frames[j].colour = colours[j];
   return index;
 }
 
 // Of camera.json only the rate serves: every PCD file tells its own intrinsics.
 RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& camera_file) {
-  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}, {}};
+  RecordingIndex index{RecordingIndex::Kind::pcd, {}, 1, kNominalRate_hz, {}, {}, {}, {}, {}};
   if (fs::exists(camera_file)) {
     index.frame_rate_hz = frame_rate(camera_file, parse_camera_file(camera_file));
     index.texts = {camera_file};
@@ -191,7 +173,7 @@ RecordingIndex index_pcd(const std::vector<fs::path>& files, const fs::path& cam
 }
 
 RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
-  RecordingIndex index{RecordingIndex::Kind::bag, {}, 1, kNominalRate_hz, {}, {}, {}, {}};
+  RecordingIndex index{RecordingIndex::Kind::bag, {}, 1, kNominalRate_hz, {}, {}, {}, {}, {}};
   index.bag = std::make_shared<const BagFrames>(path, choice);
   index.camera = index.bag->camera();
   for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, {}, {}});
@@ -219,6 +201,7 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   for (const auto& [name, value] :
        {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
     if (!value.empty()) refuse(path, "is no bag of ROS: expected scenario." + std::string(name) + " = \"\"");
+  if (choice.depth_unit_m != 0) refuse(path, "is no bag of ROS: expected scenario.depth_unit_m = 0");
   if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +
@@ -256,6 +239,7 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
   if (index.kind == RecordingIndex::Kind::pcd) {
     const PcdCloud first = read_pcd(index.frames.front().depth);
     if (first.cloud.image) index.camera = first.cloud.image->camera;
+    index.remark = first.remark;
   }
   if (index.bag && index.camera.width == 0) {
     const PointCloud first = index.bag->cloud(0, kNoLimit_m);
@@ -265,17 +249,21 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
   return index;
 }
 
-PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m) {
+PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
+                      RigidTransform* camera_pose) {
   assert(frame < index.frames.size());
+  if (camera_pose) *camera_pose = RigidTransform::Identity();
   if (index.bag) return index.bag->cloud(frame, max_depth_m);
   const RecordedFrame& source = index.frames[frame];
   if (index.kind == RecordingIndex::Kind::pcd) {
-    PointCloud cloud = read_pcd(source.depth).cloud;
+    PcdCloud file = read_pcd(source.depth);
+    if (camera_pose) *camera_pose = file.X_FC;
+    PointCloud& cloud = file.cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       if (!(cloud.z[i] > max_depth_m)) continue;
       cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
     }
-    return cloud;
+    return std::move(cloud);
   }
   const DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, max_depth_m);
   check_size(source.depth, depth.width, depth.height, index.camera);

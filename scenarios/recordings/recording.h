@@ -32,6 +32,8 @@ struct RecordingIndex {
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // of kind bag
+  // Of kind pcd: empty, or what the first file tells that is not used, in one line.
+  std::string remark;
 };
 
 // The layout of path is the first of these that fits:
@@ -41,11 +43,12 @@ struct RecordingIndex {
 // - DIR/depth.txt (TUM RGB-D): its lists as in tum_layout.h, at the mean rate of the stamps (one: 30 Hz).
 //   Without DIR/camera.json the camera is the benchmark's: 640 x 480 pixels, f = 525, c = (319.5, 239.5),
 //   5000 units per metre, colour registered.
-// - DIR/depth/N.png: needs DIR/camera.json; DIR/rgb/N.png is used if that says colour_registered.
+// - DIR/depth/N.png: needs DIR/camera.json; DIR/rgb/N.png is used if that says colour_registered; other names
+//   are paired by their numbers, see folder_files.h.
 // - DIR/*.pcd: at the frame_rate_hz of DIR/camera.json, else 30 Hz. Nothing else of camera.json is used, and
 //   times in file names are not either.
 // - FILE.pcd: one frame.
-// Frames are in the order of the file names; if all names are numbers, in the order of the numbers.
+// Frames are in the order of the file names, in which numbers are compared as numbers: sort_by_name().
 //
 // camera.json: {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, optionally colour_registered
 // (default false); other keys are refused. Pixels, metres per unit, hertz.
@@ -58,8 +61,10 @@ RecordingIndex list_recording(const std::filesystem::path& path, const BagChoice
 
 // One frame as an organised cloud: the camera frame is the world frame, pixel (u, v) is point v * width + u.
 // What is missing or farther than max_depth_m is NaN. A PCD file or a bag may also hold a cloud that is not
-// organised.
+// organised. camera_pose, if any, becomes where the camera stood in the coordinates of a PCD file: its
+// VIEWPOINT where that is used, see read_pcd(); else the identity.
 // Pre: frame < index.frames.size(). Throws InputError if a file is unusable or not of the camera's size.
-PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m);
+PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
+                      RigidTransform* camera_pose = nullptr);
 
 }  // namespace remote_touch

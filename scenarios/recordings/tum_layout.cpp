@@ -26,7 +26,8 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 }  // namespace
 
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
-  std::istringstream stream(read_text_file(list, "expected lines 'timestamp filename'"));
+  const std::string text = read_text_file(list, "expected lines 'timestamp filename'");
+  std::istringstream stream{std::string(without_byte_order_mark(text))};
   stream.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
   std::vector<StampedFile> files;
   std::string line;

@@ -56,4 +56,9 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   }
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 }  // namespace remote_touch

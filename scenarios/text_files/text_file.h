@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace remote_touch {
 
@@ -12,5 +13,8 @@ inline constexpr std::size_t kMaxTextBytes = 16 << 20;
 // Also from a pipe or a device, up to kMaxTextBytes. Throws InputError, naming the file and what is expected
 // there, when it cannot be read, is longer than that, or a signal interrupts the wait for data.
 std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
+
+// Without the mark that editors of Windows write in front of UTF-8.
+std::string_view without_byte_order_mark(std::string_view text);
 
 }  // namespace remote_touch

@@ -15,6 +15,7 @@ void read(std::string_view bytes) {
             "a cloud has its width times its height");
     require(cloud.y.size() == cloud.size() && cloud.z.size() == cloud.size(),
             "points have three coordinates");
+    require(image.X_FC.matrix().allFinite(), "a camera has a place");
     require(cloud.colour.empty() || cloud.colour.size() == cloud.size(), "all points have a colour, or none");
   });
 }

@@ -46,10 +46,10 @@ void read(std::string_view bytes) {
         break;
       }
       case 1:
-        check_depth(depth_from_message(read_image(cursor), 0.001, kMax_m, "m"));
+        check_depth(depth_from_message(read_image(cursor), {}, kMax_m, "m"));
         break;
       case 2:
-        check_depth(depth_from_message(read_compressed_image(cursor), 0.001, kMax_m, "m"));
+        check_depth(depth_from_message(read_compressed_image(cursor), {}, kMax_m, "m"));
         break;
       case 3:
         check_rays(cursor, kind & 128);

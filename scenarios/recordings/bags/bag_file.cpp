@@ -7,6 +7,7 @@
 #include "scenarios/recordings/bags/joined_bags.h"
 #include "scenarios/recordings/bags/mcap_file.h"
 #include "scenarios/recordings/bags/ros1_bag.h"
+#include "scenarios/text_files/file_order.h"
 
 namespace remote_touch {
 
@@ -53,17 +54,14 @@ bool is_bag_file(const fs::path& file) {
   return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
 }
 
-// Those of a folder: a long recording of ROS 2 is divided into several. Longer names have greater numbers:
-// name_10 comes after name_9. None in a folder that may not be entered.
+// Those of a folder: a long recording of ROS 2 is divided into several. None in a folder that may not be
+// entered.
 std::vector<fs::path> parts_of(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code refused;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
     if (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")) parts.push_back(entry.path());
-  std::sort(parts.begin(), parts.end(), [](const fs::path& a, const fs::path& b) {
-    const std::string &x = a.native(), &y = b.native();
-    return x.size() != y.size() ? x.size() < y.size() : x < y;
-  });
+  sort_by_name(parts);
   return parts;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/cloud/colour.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/pcd/pinhole_fit.h"
 
@@ -31,6 +32,13 @@ void check_place(const PointField& field, std::uint64_t size, const PointCloudMe
                                 ": expected at most point_step = " + std::to_string(message.point_step));
 }
 
+// Some write 0 for a single value.
+void check_count(const PointField& field, const std::string& subject) {
+  if (field.count <= 1) return;
+  throw InputError(
+      subject, "field " + field.name + " has " + std::to_string(field.count) + " values a point: expected 1");
+}
+
 const PointField& coordinate(const PointCloudMessage& message, const std::string& name,
                              const std::string& subject) {
   const PointField* field = field_named(message, name);
@@ -39,6 +47,7 @@ const PointField& coordinate(const PointCloudMessage& message, const std::string
     throw InputError(subject, "field " + name + " has datatype " + std::to_string(field->datatype) +
                                   ": expected 7 (float32) or 8 (float64)");
   check_place(*field, field->datatype == kFloat64 ? 8 : 4, message, subject);
+  check_count(*field, subject);
   return *field;
 }
 
@@ -102,8 +111,9 @@ void read_colour(const PointCloudMessage& message, const std::string& subject,
     throw InputError(subject, "field " + field->name + " has datatype " + std::to_string(field->datatype) +
                                   ": expected 5 (int32), 6 (uint32) or 7 (float32)");
   check_place(*field, 4, message, subject);
+  check_count(*field, subject);
   read_column<std::uint32_t>(message, *field, colour);
-  for (std::uint32_t& c : colour) c &= 0xFFFFFF;
+  for (std::uint32_t& c : colour) c = field->datatype == kFloat32 ? colour_of_float(c) : c & 0xFFFFFF;
 }
 
 void mark_missing(PointCloud& cloud) {

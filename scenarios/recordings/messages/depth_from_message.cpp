@@ -54,22 +54,26 @@ float float_at(std::string_view bytes, std::size_t at) {
 
 }  // namespace
 
-DepthImage depth_from_message(const ImageMessage& message, double metres_per_unit, double max_depth_m,
-                              const std::string& subject) {
-  const std::string& encoding = message.encoding;
-  if (encoding == "16UC1" || encoding == "mono16" || encoding == "Z16")
-    return depth_of_rows<std::uint16_t>(message, metres_per_unit, max_depth_m, subject);
-  if (encoding == "32FC1") return depth_of_rows<float>(message, 1, max_depth_m, subject);
-  throw InputError(subject, "encoding = \"" + encoding.substr(0, 32) +
-                                "\": expected depths as 16UC1, mono16, Z16 or 32FC1");
+bool is_depth_encoding(const std::string& encoding) {
+  return encoding == "16UC1" || encoding == "mono16" || encoding == "Z16" || encoding == "32FC1";
 }
 
-DepthImage depth_from_message(const CompressedImageMessage& message, double metres_per_unit,
+DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
+                              const std::string& subject) {
+  const std::string& encoding = message.encoding;
+  if (!is_depth_encoding(encoding))
+    throw InputError(subject,
+                     "encoding = \"" + encoding.substr(0, 32) + "\": expected depths as " + kDepthEncodings);
+  if (encoding == "32FC1") return depth_of_rows<float>(message, units.of_floats_m, max_depth_m, subject);
+  return depth_of_rows<std::uint16_t>(message, units.of_integers_m, max_depth_m, subject);
+}
+
+DepthImage depth_from_message(const CompressedImageMessage& message, const DepthUnits& units,
                               double max_depth_m, const std::string& subject) {
   constexpr std::size_t kHeader = 12;
-  const bool units = message.format.starts_with("16UC1"), quantised = message.format.starts_with("32FC1");
+  const bool integers = message.format.starts_with("16UC1"), floats = message.format.starts_with("32FC1");
   const bool transport = message.format.find("compressedDepth") != std::string::npos;
-  if (!transport || !(units || quantised) || message.format.find("rvl") != std::string::npos)
+  if (!transport || !(integers || floats) || message.format.find("rvl") != std::string::npos)
     throw InputError(subject, "format = \"" + message.format.substr(0, 64) +
                                   "\": expected \"16UC1; compressedDepth\" or \"32FC1; compressedDepth\", "
                                   "with PNG inside");
@@ -81,7 +85,7 @@ DepthImage depth_from_message(const CompressedImageMessage& message, double metr
   DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
   for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
     const double q = image.values[i];
-    const double z_m = units ? q * metres_per_unit : q > 0 ? a / (q - b) : 0;
+    const double z_m = integers ? q * units.of_integers_m : q > 0 ? a / (q - b) * units.of_floats_m : 0;
     depth.z_m[i] = measured_or_nan(z_m, max_depth_m);
   }
   return depth;

@@ -8,16 +8,25 @@
 
 namespace remote_touch {
 
-// Encodings 16UC1, mono16 and Z16 hold units of metres_per_unit, 32FC1 holds metres. What is 0, negative, not
-// finite or beyond max_depth_m becomes NaN. Throws InputError about the subject for another encoding, or when
-// the data are shorter than height and step claim. At most 2^26 pixels.
-DepthImage depth_from_message(const ImageMessage& message, double metres_per_unit, double max_depth_m,
+// What the numbers of a depth image are multiplied by, m: those of integers and those of floats.
+struct DepthUnits {
+  double of_integers_m = 0.001;
+  double of_floats_m = 1;
+};
+
+// The encodings of depth images: integers 16UC1, mono16 and Z16, floats 32FC1.
+bool is_depth_encoding(const std::string& encoding);
+inline constexpr const char* kDepthEncodings = "16UC1, mono16, Z16 or 32FC1";
+
+// What is 0, negative, not finite or beyond max_depth_m becomes NaN. Throws InputError about the subject for
+// another encoding, or when the data are shorter than height and step claim. At most 2^26 pixels.
+DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
                               const std::string& subject);
 
 // The transport compressedDepth: 12 bytes (a format, then two floats a and b), then a 16-bit PNG. Format
-// "16UC1; ..." holds units as above; "32FC1; ..." holds q where the depth is a / (q - b), and 0 where there
-// is none. Throws InputError also when the PNG is damaged or of another kind.
-DepthImage depth_from_message(const CompressedImageMessage& message, double metres_per_unit,
+// "16UC1; ..." holds integers; "32FC1; ..." holds q where the float is a / (q - b), and 0 where there is
+// none. Throws InputError also when the PNG is damaged or of another kind.
+DepthImage depth_from_message(const CompressedImageMessage& message, const DepthUnits& units,
                               double max_depth_m, const std::string& subject);
 
 }  // namespace remote_touch

@@ -1,9 +1,11 @@
 #include "scenarios/recordings/messages/image_rays.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "core/parameters/input_error.h"
 
@@ -54,6 +56,21 @@ struct PlumbBob {
   }
 };
 
+// Whether a lens of this model is a pinhole where all its coefficients are 0, or it has none. A fisheye is
+// not. RealSense writes the names with capitals.
+bool bends_by_coefficients_only(const std::string& model) {
+  static const std::array<std::string_view, 9> kModels = {"",
+                                                          "none",
+                                                          "None",
+                                                          "pinhole",
+                                                          "plumb_bob",
+                                                          "rational_polynomial",
+                                                          "Brown Conrady",
+                                                          "Inverse Brown Conrady",
+                                                          "Modified Brown Conrady"};
+  return std::find(kModels.begin(), kModels.end(), model) != kModels.end();
+}
+
 }  // namespace
 
 ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
@@ -72,12 +89,14 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
                                   ", cy = " + std::to_string(cy) + ": expected a calibrated camera");
   camera_ = {static_cast<int>(info.width), static_cast<int>(info.height), fx, fy, cx, cy};
   const auto& d = info.distortion;
-  if (rectified || std::all_of(d.begin(), d.end(), [](double k) { return k == 0; })) return;
+  if (rectified) return;
+  const bool straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0; });
+  if (straight && bends_by_coefficients_only(info.distortion_model)) return;
   const bool finite = std::all_of(d.begin(), d.end(), [](double k) { return std::isfinite(k); });
   if (info.distortion_model != "plumb_bob" || (d.size() != 4 && d.size() != 5) || !finite)
     throw InputError(subject, "distortion_model = \"" + info.distortion_model.substr(0, 32) + "\" with " +
                                   std::to_string(d.size()) +
-                                  " coefficients: expected plumb_bob with 4 or 5 finite ones, or none");
+                                  " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
   make_table(info);
 }
 

@@ -10,10 +10,10 @@
 namespace remote_touch {
 
 // The lens of an image as measured bends its rays (plumb bob: k1, k2, p1, p2, k3); a rectified image, or one
-// of a lens without distortion, is that of a pinhole. With a lens the points are those of the measured
-// pixels, on their true rays, in the order of a pinhole image with the intrinsics K: a pixel of it has the
-// point whose ray passes nearest, within pixel_slack. A pixel near the edge may have none, and a point may
-// come in two pixels where the lens shrinks the image.
+// of a lens whose coefficients are 0, is that of a pinhole, unless the lens is a fisheye (equidistant). With
+// a lens the points are those of the measured pixels, on their true rays, in the order of a pinhole image
+// with the intrinsics K: a pixel of it has the point whose ray passes nearest, within pixel_slack. A pixel
+// near the edge may have none, and a point may come in two pixels where the lens shrinks the image.
 class ImageRays {
  public:
   // Throws InputError about the subject when the intrinsics are not finite or the focal lengths not above

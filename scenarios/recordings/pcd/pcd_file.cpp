@@ -2,6 +2,7 @@
 
 #include <lzf.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -10,13 +11,16 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/cloud/colour.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/pcd/pcd_header.h"
 #include "scenarios/recordings/pcd/pinhole_fit.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -66,9 +70,22 @@ double real_number(const std::string& where, std::string_view word) {
   return value;
 }
 
+// The colour word as an integer, or as TYPE F the float that has its bits. Some write an integer as TYPE F,
+// too: with all its digits it is a colour.
+std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std::string_view word) {
+  const double value = real_number(where, word);
+  if (std::isnan(value)) return kNoColour;
+  const bool is_integer = value == std::floor(value) && std::abs(value) < 4294967296.0;
+  if (field.type == 'F') {
+    const std::uint32_t colour = colour_of_float(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    if (colour != kNoColour || !is_integer || word.find_first_of(".eE") != word.npos) return colour;
+  }
+  if (!is_integer) throw InputError(where, shown(word) + ": expected a 32-bit colour");
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) & kRgb;
+}
+
 // Point i from the words of its line, in the order of FIELDS. A coordinate is rounded to its SIZE, so that a
-// cloud has the same bits in every encoding. A colour of TYPE F is the float that has the bits of the colour
-// word.
+// cloud has the same bits in every encoding.
 void read_ascii_point(const std::string& where, const PcdHeader& header,
                       const std::vector<std::string_view>& words, std::size_t i, PointCloud& cloud) {
   if (words.size() != header.point_values) {
@@ -77,19 +94,10 @@ void read_ascii_point(const std::string& where, const PcdHeader& header,
   }
   const auto read = [&](const PcdField& field) {
     const double value = real_number(where, words[field.first_value]);
-    return field.size == 4 && field.type == 'F' ? static_cast<float>(value) : value;
+    return field.size == 4 ? static_cast<float>(value) : value;
   };
   cloud.x[i] = read(header.x), cloud.y[i] = read(header.y), cloud.z[i] = read(header.z);
-  if (!header.colour) return;
-  const double colour = read(*header.colour);
-  if (header.colour->type == 'F') {
-    cloud.colour[i] = std::bit_cast<std::uint32_t>(static_cast<float>(colour)) & kRgb;
-    return;
-  }
-  if (!(std::abs(colour) < 4294967296.0)) {
-    throw InputError(where, shown(words[header.colour->first_value]) + ": expected a 32-bit colour");
-  }
-  cloud.colour[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(colour)) & kRgb;
+  if (header.colour) cloud.colour[i] = ascii_colour(where, *header.colour, words[header.colour->first_value]);
 }
 
 // One point a line; empty lines are skipped, and nothing else may follow the last point.
@@ -127,8 +135,9 @@ void read_binary(const PcdHeader& header, const char* bytes, bool field_after_fi
   };
   read(header.x, cloud.x), read(header.y, cloud.y), read(header.z, cloud.z);
   for (std::size_t i = 0; i < cloud.colour.size(); ++i) {
-    std::memcpy(&cloud.colour[i], value_at(*header.colour, i), 4);
-    cloud.colour[i] &= kRgb;
+    std::uint32_t& colour = cloud.colour[i];
+    std::memcpy(&colour, value_at(*header.colour, i), 4);
+    colour = header.colour->type == 'F' ? colour_of_float(colour) : colour & kRgb;
   }
 }
 
@@ -175,12 +184,56 @@ void mark_missing_points(PointCloud& cloud) {
   }
 }
 
+// The other way round from left to right.
+template <class Value>
+void mirror_rows(std::vector<Value>& values, int width) {
+  for (auto row = values.begin(); row != values.end(); row += width) std::reverse(row, row + width);
+}
+
+// Makes the cloud that of a camera at X_FC, if a pinhole explains it from there; otherwise false, and the
+// cloud is as it was.
+bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
+  PcdCloud seen = file;
+  PointCloud& cloud = seen.cloud;
+  const RigidTransform X_CF = X_FC.inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = X_CF * cloud.point(i);
+    cloud.x[i] = p.x(), cloud.y[i] = p.y(), cloud.z[i] = p.z();
+  }
+  const auto each_column = [&](const auto& change) {
+    change(cloud.x), change(cloud.y), change(cloud.z), change(cloud.colour);
+  };
+  // As it is, from right to left, from the bottom to the top, and both.
+  for (const bool upside_down : {false, true}) {
+    if (upside_down) each_column([](auto& values) { std::reverse(values.begin(), values.end()); });
+    for (const bool mirrored : {false, true}) {
+      if (mirrored) each_column([&](auto& values) { mirror_rows(values, seen.width); });
+      cloud.image = fit_pinhole(cloud, seen.width, seen.height);
+      if (!cloud.image) continue;
+      seen.X_FC = X_FC;
+      file = std::move(seen);
+      return true;
+    }
+  }
+  return false;
+}
+
+void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
+  if (file.height > 1) file.cloud.grid_columns = file.width;
+  if (X_FV && file.height > 1) {
+    const RigidTransform about_face(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitX()));
+    if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
+  }
+  if (X_FV) file.remark = "its VIEWPOINT is not used: seen from there its points are no image";
+  if (file.height > 1) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
+}
+
 }  // namespace
 
 PcdCloud read_pcd(const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string bytes = read_bytes(file);
-  PcdText rest{bytes};
+  PcdText rest{without_byte_order_mark(bytes)};
   const PcdHeader header = read_pcd_header(name, rest);
   check_claimed_size(name, header, rest.text.size());
 
@@ -196,10 +249,7 @@ PcdCloud read_pcd(const std::filesystem::path& file) {
     read_binary(header, read_compressed_block(name, header, rest.text).data(), true, cloud);
   }
   mark_missing_points(cloud);
-  if (header.height > 1) {
-    cloud.grid_columns = result.width;
-    cloud.image = fit_pinhole(cloud, result.width, result.height);
-  }
+  find_image(header.X_FV, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -15,8 +16,10 @@ namespace {
 using Words = std::vector<std::string_view>;
 using Entries = std::map<std::string_view, Words>;
 
-constexpr std::array<std::string_view, 10> kKeywords = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
-                                                        "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+constexpr std::array<std::string_view, 11> kKeywords = {"VERSION",   "FIELDS", "COLUMNS", "SIZE",
+                                                        "TYPE",      "COUNT",  "WIDTH",   "HEIGHT",
+                                                        "VIEWPOINT", "POINTS", "DATA"};
+constexpr std::array<std::string_view, 6> kVersions = {"0.7", ".7", "0.6", ".6", "0.5", ".5"};
 
 // Lengths of one dimension are held to an int: the image layout counts in int, and width * height fits 64
 // bits.
@@ -46,7 +49,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
       throw InputError(file + ":" + std::to_string(rest.line),
                        shown(words[0]) + " is no PCD header entry: expected" + allowed);
     }
-    entries[words[0]].assign(words.begin() + 1, words.end());
+    entries[words[0] == "COLUMNS" ? "FIELDS" : words[0]].assign(words.begin() + 1, words.end());
   }
   return entries;
 }
@@ -113,14 +116,37 @@ std::optional<PcdField> colour_field(const std::string& file, const PcdHeader& h
 
 // WIDTH, HEIGHT and POINTS, which must agree.
 void read_lengths(const std::string& file, const Entries& entries, PcdHeader& header) {
-  header.width = integer_value(file, "WIDTH", entry(file, entries, "WIDTH", 1)[0], kMaxPixels);
-  header.height = integer_value(file, "HEIGHT", entry(file, entries, "HEIGHT", 1)[0], kMaxPixels);
-  const std::size_t product = header.width * header.height;
   const std::string_view points = entry(file, entries, "POINTS", 1)[0];
+  const bool in_no_order = !entries.contains("WIDTH") && !entries.contains("HEIGHT");
+  const std::string_view width = in_no_order ? points : entry(file, entries, "WIDTH", 1)[0];
+  const std::string_view height = in_no_order ? "1" : entry(file, entries, "HEIGHT", 1)[0];
+  header.width = integer_value(file, "WIDTH", width, kMaxPixels);
+  header.height = integer_value(file, "HEIGHT", height, kMaxPixels);
+  const std::size_t product = header.width * header.height;
   header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;
   throw InputError(file,
                    "POINTS = " + shown(points) + ": expected WIDTH * HEIGHT = " + std::to_string(product));
+}
+
+// tx ty tz qw qx qy qz.
+std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entries& entries) {
+  if (!entries.contains("VIEWPOINT")) return std::nullopt;
+  std::array<double, 7> value{};
+  const Words& words = entry(file, entries, "VIEWPOINT", value.size());
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const std::string_view word = words[i];
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i]))
+      throw InputError(file, "VIEWPOINT has " + shown(word) + ": expected numbers");
+  }
+  const Vec3 position(value[0], value[1], value[2]);
+  if (position.isZero(0)) return std::nullopt;
+  const Eigen::Quaterniond turn(value[3], value[4], value[5], value[6]);
+  if (!(std::abs(turn.norm() - 1) < 1e-3))
+    throw InputError(
+        file, "VIEWPOINT ends with a quaternion of length " + std::to_string(turn.norm()) + ": expected 1");
+  return Eigen::Translation3d(position) * turn.normalized();
 }
 
 }  // namespace
@@ -146,8 +172,8 @@ std::string PcdField::text() const {
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   const Entries entries = read_entries(file, rest);
   const std::string_view version = entry(file, entries, "VERSION", 1)[0];
-  if (version != "0.7" && version != ".7") {
-    throw InputError(file, "VERSION = " + shown(version) + ": expected 0.7");
+  if (std::find(kVersions.begin(), kVersions.end(), version) == kVersions.end()) {
+    throw InputError(file, "VERSION = " + shown(version) + ": expected 0.5, 0.6 or 0.7");
   }
   PcdHeader header;
   read_fields(file, entries, header);
@@ -156,6 +182,7 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   header.z = coordinate(file, header, "z");
   header.colour = colour_field(file, header);
   read_lengths(file, entries, header);
+  header.X_FV = read_viewpoint(file, entries);
   header.encoding = entry(file, entries, "DATA", 1)[0];
   if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed") {
     throw InputError(file,

@@ -1,5 +1,5 @@
-// The header of a PCD file (Point Cloud Library, version 0.7): text lines "KEYWORD value...", # comments, up
-// to and including the line DATA; behind it lie the points.
+// The header of a PCD file (Point Cloud Library, versions 0.5 to 0.7): text lines "KEYWORD value...", #
+// comments, up to and including the line DATA; behind it lie the points.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 
@@ -38,11 +40,15 @@ struct PcdHeader {
   std::string_view encoding;       // ascii, binary or binary_compressed
   PcdField x, y, z;                // TYPE F, SIZE 4 or 8, COUNT 1
   std::optional<PcdField> colour;  // rgb or rgba: SIZE 4, COUNT 1
+  // VIEWPOINT: where the sensor was in the coordinates of the points, and how it was turned. None where it
+  // was at the origin, however turned.
+  std::optional<RigidTransform> X_FV;
 };
 
 // Removes the header from rest, which then starts after the DATA line. The header's names are views into the
-// text. Throws InputError about file (with ":line" for a line that is not a valid entry) if an entry is
-// missing or not allowed.
+// text. Older versions have no VIEWPOINT, may say COLUMNS for FIELDS, and have no WIDTH and HEIGHT for points
+// in no order. Throws InputError about file (with ":line" for a line that is not a valid entry) if an entry
+// is missing or not allowed.
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest);
 
 // A word of the file for a message: quoted, short and printable, even where the file is not text at all.

@@ -29,6 +29,15 @@ TEST(Colour, TheCornersOfTheCubeAreKnown) {
   expect_colour(0xFFFFFF, 0, 0, 1);
 }
 
+// Of PCL: 0x00RRGGBB, or opaque 0xFFRRGGBB, of which those from 0xFF800001 on are a NaN.
+TEST(Colour, AFloatHoldsAColourOrNone) {
+  for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00000u, 0xFFFFFFu})
+    for (const std::uint32_t alpha : {0x00u, 0xFFu}) EXPECT_EQ(colour_of_float(alpha << 24 | rgb), rgb);
+  for (const std::uint32_t none :
+       {0x7FC00000u, 0x7F800000u, 0x437F0000u, 0x4A808060u})  // nan inf 255 4210736
+    EXPECT_EQ(colour_of_float(none), kNoColour) << std::hex << none;
+}
+
 // Worked out by hand.
 TEST(Colour, MixedColoursAreKnown) {
   expect_colour(0x7F7F7F, 0, 0, 127 / 255.0);

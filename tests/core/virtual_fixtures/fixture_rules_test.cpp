@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/cloud/camera.h"
+#include "core/cloud/colour.h"
 #include "core/virtual_fixtures/everywhere.h"
 #include "core/virtual_fixtures/half_space.h"
 #include "core/virtual_fixtures/hue_range.h"
@@ -236,6 +237,13 @@ TEST(HueRange, AMissingPointIsNotPickedWhateverItsColour) {
   PointCloud cloud = cloud_of({kMissing, {0, 0, 0}});
   cloud.colour = {kRed, kRed};
   EXPECT_EQ(HueRange({}).weights(cloud), (Shares{0, 1}));
+}
+
+// Black where it is taken for a colour: no other limit keeps it out here.
+TEST(HueRange, APointWithoutColourIsNotPicked) {
+  HueRange::Settings s = hues(0, 360);
+  s.min_saturation = 0, s.min_lightness = 0;
+  EXPECT_EQ(of_colours(s, {0x000000, kNoColour, 0xFF0000}), (Shares{1, 0, 1}));
 }
 
 TEST(HueRange, AFrameWithoutColoursIsRefused) {

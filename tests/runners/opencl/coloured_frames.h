@@ -9,19 +9,21 @@
 #include <vector>
 
 #include "core/cloud/camera.h"
+#include "core/cloud/colour.h"
 #include "core/virtual_fixtures/fixture_assignment.h"
 #include "tests/core/depth/depth_cases.h"
 
 namespace remote_touch::coloured_frames {
 
-// Every colour may come, and many greys and pure colours.
+// Every colour may come, and many greys, pure colours and points without a colour.
 inline std::vector<std::uint32_t> colours(std::size_t count) {
   std::vector<std::uint32_t> all;
   std::uint32_t random = 1;
   for (std::size_t i = 0; i < count; ++i) {
     random = random * 1664525u + 1013904223u;
     const std::uint32_t level = random >> 24;
-    all.push_back(i % 5 == 0   ? level * 0x010101u
+    all.push_back(i % 11 == 0  ? kNoColour
+                  : i % 5 == 0 ? level * 0x010101u
                   : i % 5 == 1 ? 0xFFu << 8 * ((random >> 8) % 3)
                                : random >> 8);
   }

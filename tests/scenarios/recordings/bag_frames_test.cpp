@@ -118,14 +118,70 @@ TEST_F(Frames, OfDepthHaveTheCameraBesideThem) {
              "has no camera beside /x/image_raw: expected scenario.camera_info");
   EXPECT_HAS(error({camera("/y/info"), camera("/z/info"), depth(0, "/x/image_raw")}),
              "/y/info (sensor_msgs/CameraInfo");
-  EXPECT_EQ(frames({camera("/y/info"), depth(0, "/x/image_raw")}).camera().width, 4)
-      << "the only one there is";
+  EXPECT_HAS(
+      error({camera("/y/camera_info"), depth(0, "/x/image_raw")}),
+      "has no camera beside /x/image_raw: expected scenario.camera_info as one of /y/camera_info (sensor_msgs");
+  EXPECT_EQ(frames({camera("/y/camera_info"), depth(0, "/x/image_raw")}, {"", "/y/camera_info", {}, ""})
+                .camera()
+                .width,
+            4)
+      << "the user knows that it is theirs";
   EXPECT_HAS(error({camera("/x/camera_info", 5), depth(0, "/x/image_raw")}),
              "/x/image_raw, message 0: has 4 x 3 pixels: expected 5 x 3, as its CameraInfo has");
 }
 
+// With the name of another coordinate frame, which must be as long as "optical": what follows stays in its
+// place.
+BagMessage camera_of(const std::string& topic, const std::string& frame_id) {
+  BagMessage message = camera(topic);
+  const std::size_t rest = MessageBytes().header(1, "optical").done().size();
+  message.bytes = MessageBytes().header(1, frame_id).done() + message.bytes.substr(rest);
+  return message;
+}
+
+TEST_F(Frames, OfDepthHaveNoCameraOfAnotherFrame) {
+  const std::vector<BagMessage> bag = {camera_of("/x/camera_info", "colours"), depth(0, "/x/image_raw")};
+  EXPECT_HAS(error(bag),
+             "x.mcap: /x/camera_info has frame_id = \"colours\" where the images have \"optical\": expected "
+             "scenario.camera_info as one of /x/camera_info");
+  EXPECT_EQ(frames(bag, {"", "/x/camera_info", {}, ""}).camera().width, 4);
+}
+
+TEST_F(Frames, AreAllOfOneCoordinateFrame) {
+  BagMessage other = cloud(1, 1);
+  other.bytes = cloud_message(Format::cdr, kStart_ns + kStep_ns, 4, 3, 1, "elsewhere");
+  EXPECT_HAS(error({cloud(0, 0), other}), "message 1: frame_id = elsewhere: expected optical");
+}
+
+TEST_F(Frames, OfDepthAreInTheUnitThatIsChosen) {
+  const std::vector<BagMessage> bag = {camera("/x/camera_info"), depth(0, "/x/image_rect")};
+  BagChoice choice;
+  EXPECT_NEAR(frames(bag, choice).cloud(0, kNoLimit).z[0], 1, 1e-12);
+  choice.depth_unit_m = 0.00025;
+  EXPECT_NEAR(frames(bag, choice).cloud(0, kNoLimit).z[0], 0.25, 1e-12);
+  EXPECT_HAS(error({cloud(0, 0)}, choice),
+             "/points holds clouds, in metres: expected scenario.depth_unit_m = 0");
+}
+
+TEST_F(Frames, AreNotInOtherEncodings) {
+  const auto image = [](const std::string& encoding) {
+    MessageBytes bytes;
+    bytes.header(1, "").add(1).add(1).text(encoding).add(std::uint8_t{0}).add(3).bytes("xyz");
+    return BagMessage{"/" + encoding, kImage, 1, bytes.done()};
+  };
+  EXPECT_HAS(
+      error({image("rgb8"), image("mono8")}),
+      "has no topic of clouds or depth images: expected a topic of sensor_msgs/PointCloud2, sensor_msgs/Image "
+      "(16UC1, mono16, Z16 or 32FC1) or sensor_msgs/CompressedImage (compressedDepth); there are "
+      "/rgb8 (sensor_msgs/Image rgb8, 1 messages), /mono8 (sensor_msgs/Image mono8, 1 messages)");
+}
+
 TEST_F(Frames, AreChosenInBagsOnly) {
   folder_.write("x.pcd", "");
+  BagChoice unit;
+  unit.depth_unit_m = 0.001;
+  EXPECT_HAS(refusal([&] { index_recording(folder_ / "x.pcd", unit); }),
+             "is no bag of ROS: expected scenario.depth_unit_m = 0");
   EXPECT_HAS(refusal([&] {
                index_recording(folder_ / "x.pcd", {"/points", "", {}, ""});
              }),
@@ -187,8 +243,9 @@ TEST_F(Frames, AreAScenario) {
   EXPECT_EQ(scene.frame_count(), 2);
   EXPECT_EQ(scene.frame_rate_hz(), 32);
   EXPECT_EQ(scene.captured_s(1), 0.03125);
-  EXPECT_EQ(scene.remark(), "");
   EXPECT_TRUE(scene.cloud(1).point(0).isApprox(Vec3(-0.225, -0.15, 1.5)));
+  ASSERT_EQ(scene.input_notes().size(), 1u);
+  EXPECT_EQ(scene.input_notes()[0].kind, "frames apart") << "a wall 1 m away, and one 1.5 m away";
   EXPECT_EQ(scene.cloud(0).z[0], 1);
   EXPECT_NEAR(scene.signed_distance(Vec3(0, 0, 0.99), 0), 0.01, 1e-9);
 }

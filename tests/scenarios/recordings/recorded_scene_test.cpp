@@ -65,6 +65,36 @@ TEST(RecordedSceneTest, KnowsTheSameWhereverItsCameraStands) {
     }
 }
 
+// A sloping wall in 4 x 3 pixels, seen from (0, 0, 2) against the z axis: the coordinates stay those of the
+// file.
+TEST(RecordedSceneTest, HasItsCameraAtTheViewpointOfAPcdFile) {
+  const TestFolder folder("recorded_scene_test");
+  std::string pcd = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
+  const std::string at_origin = "VIEWPOINT 0 0 0 1 0 0 0";
+  pcd.replace(pcd.find(at_origin), at_origin.size(), "VIEWPOINT 0 0 2 0 1 0 0");
+  const auto point = [](int u, int v) {
+    const double depth = 1.5 + 0.05 * u;
+    return Vec3((u - 1.5) / 100 * depth, -(v - 1) / 100.0 * depth, 2 - depth);
+  };
+  for (int i = 0; i < 12; ++i) {
+    const Vec3 p = point(i % 4, i / 4);
+    for (const double value : {p.x(), p.y(), p.z()}) pcd += std::to_string(value) + " ";
+    pcd += "\n";
+  }
+  RecordedScene::Settings settings;
+  settings.path = folder.write("x.pcd", pcd).string();
+  settings.camera_position_m = {0, 1, 0};  // of the file, registered in the base frame
+  settings.truth_radius_m = 0.03;          // the wall is steep
+  const RecordedScene scene(settings, {}, scenes::kernels());
+  const PointCloud cloud = scene.cloud(0);
+  EXPECT_TRUE(cloud.point(6).isApprox(point(2, 1) + Vec3(0, 1, 0), 1e-6));
+  ASSERT_TRUE(cloud.image);
+  EXPECT_TRUE(cloud.image->X_WC.translation().isApprox(Vec3(0, 1, 2)));
+  const Vec3 to_viewpoint = (Vec3(0, 0, 2) - point(2, 1)).normalized();
+  EXPECT_GT(scene.signed_distance(cloud.point(6) + 0.01 * to_viewpoint, 0), 0.001);
+  EXPECT_LT(scene.signed_distance(cloud.point(6) - 0.01 * to_viewpoint, 0), -0.001);
+}
+
 // NaN, infinity and what is farther than any room: nothing to touch, which is said at once.
 TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
   const TestFolder folder("recorded_scene_test");
@@ -90,6 +120,26 @@ TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
   settings.path = (folder / "empty").string();
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
              "its first frame has no point");
+}
+
+// As a cloud in the coordinates of a map. A single point there is none.
+TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
+  const TestFolder folder("recorded_scene_test");
+  RecordedScene::Settings settings;
+  const std::string far = "1001 0 1\n1001 1 1\n1002 0 1\n1002 1 1\n";
+  const auto problem = [&](const std::string& rows) {
+    settings.path =
+        folder.write("x.pcd", pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows)
+            .string();
+    return refusal([&] {
+      RecordedScene(settings, {}, scenes::kernels());
+      throw InputError("read");
+    });
+  };
+  EXPECT_HAS(problem(far), "x.pcd: frame 0 has all its points farther than 1000 m from the origin");
+  EXPECT_EQ(problem("0 0 1\n" + far.substr(far.find('\n') + 1)), "read");
+  settings.camera_position_m = Vec3(-2, 0, 0);  // the limit is for the cloud in its own coordinates, too
+  EXPECT_HAS(problem(far), "farther than 1000 m");
 }
 
 }  // namespace

@@ -95,19 +95,15 @@ TEST_F(Recording, ReadsColourOnlyWhereItIsRegistered) {
   EXPECT_TRUE(index_recording(folder_.path()).frames[1].colour.empty());
 }
 
-TEST_F(Recording, OrdersNumbersAsNumbersAndOtherNamesAsText) {
+TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
   folder_.write("camera.json", kCamera);
-  for (const std::string name : {"10", "9", "0100"}) folder_.write_depth("depth/" + name + ".png", 1000);
-  RecordingIndex index = index_recording(folder_.path());
-  EXPECT_EQ(index.frames[0].depth.filename(), "9.png");
-  EXPECT_EQ(index.frames[1].depth.filename(), "10.png");
-  EXPECT_EQ(index.frames[2].depth.filename(), "0100.png");
-  folder_.write_depth("depth/1b.png", 1000);
-  index = index_recording(folder_.path());
-  EXPECT_EQ(index.frames[0].depth.filename(), "0100.png");
-  EXPECT_EQ(index.frames[1].depth.filename(), "10.png");
-  EXPECT_EQ(index.frames[2].depth.filename(), "1b.png");
-  EXPECT_EQ(index.frames[3].depth.filename(), "9.png");
+  const std::vector<std::string> names = {"1b.png", "9.png", "10.png", "0100.png"};
+  for (const std::string& name : names) folder_.write_depth("depth/" + name, 1000);
+  const RecordingIndex index = index_recording(folder_.path());
+  ASSERT_EQ(index.frames.size(), names.size());
+  for (std::size_t j = 0; j < names.size(); ++j) EXPECT_EQ(index.frames[j].depth.filename(), names[j]);
+  for (const char* name : {"clouds/a_10.pcd", "clouds/a_9.pcd"}) write_pcd(name, "1");
+  EXPECT_EQ(index_recording(folder_ / "clouds").frames[0].depth.filename(), "a_9.pcd");
 }
 
 TEST_F(Recording, RefusesIncompleteFolders) {
@@ -192,6 +188,12 @@ TEST_F(Recording, AssociatesTumStamps) {
   EXPECT_EQ(index.frames[0].colour, folder_ / "rgb/p.png");   // 0.0149 s
   EXPECT_EQ(index.frames[1].colour, folder_ / "rgb/q.png");   // 0.0043 s, not 0.0190 s
   EXPECT_TRUE(index.frames[2].colour.empty());                // 0.0210 s
+  folder_.write("rgb.txt",
+                "\xEF\xBB\xBF"
+                "5.175304 rgb/p.png\n");
+  expect_error("rgb.txt", "no image is within 0.02 s of one in depth.txt; the first are " +
+                              (folder_ / "rgb/p.png").string() + " and " +
+                              (folder_ / "depth/c.png").string());
 }
 
 TEST_F(Recording, ReadsTumWithItsOwnCamera) {
@@ -211,7 +213,7 @@ TEST_F(Recording, ReadsTumWithItsOwnCamera) {
 
 TEST_F(Recording, RefusesBadTumLists) {
   folder_.write_depth("depth/a.png", 1000);
-  folder_.write("depth.txt", "# nothing\n\n");
+  folder_.write("depth.txt", "\xEF\xBB\xBF# nothing\n\n");
   expect_error("depth.txt", "lists no file");
   folder_.write("depth.txt", "# header\n1.0 depth/a.png\nnoon depth/a.png\n");
   expect_error("depth.txt:3", "timestamp 'noon': expected a number of seconds");

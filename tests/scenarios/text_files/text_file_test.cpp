@@ -39,6 +39,11 @@ TEST(TextFile, ThatIsTooLongOrNoneIsRefused) {
   EXPECT_HAS(refused(folder / "none"), "none: cannot be read (No such file or directory): expected a list");
 }
 
+TEST(TextFile, AMarkOfTheOrderOfBytesIsNoText) {
+  EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF# x"), "# x");
+  for (const char* text : {"", "\xEF\xBB", "x\xEF\xBB\xBF"}) EXPECT_EQ(without_byte_order_mark(text), text);
+}
+
 TEST(TextFile, APipeIsReadToItsEnd) {
   const TestFolder folder("text_file_test");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "core/cloud/colour.h"
 #include "scenarios/recordings/messages/cloud_from_message.h"
 #include "scenarios/recordings/messages/depth_from_message.h"
 #include "scenarios/recordings/messages/image_rays.h"
@@ -92,6 +93,20 @@ TEST(Messages, MarkMissingPointsAndKeepColours) {
   EXPECT_EQ(cloud.grid_columns, 0);
 }
 
+// NaN as C++ and NumPy write it; that of an opaque colour is a colour.
+TEST(Messages, HaveNoColourWhereItIsNoNumber) {
+  std::string data;
+  for (const std::uint32_t rgb : {0x00112233u, 0x7FC00000u, 0xFFFF0000u, 0x4A808060u})
+    data += raw(std::array{1.0f, 2.0f, 3.0f}) + raw(rgb);
+  PointCloudMessage message = four_points();
+  message.data = data;
+  EXPECT_EQ(cloud_from_message(message, "m").colour,
+            (std::vector<std::uint32_t>{0x112233, kNoColour, 0xFF0000, kNoColour}));
+  message.fields[3].datatype = 6;  // an integer is never NaN
+  EXPECT_EQ(cloud_from_message(message, "m").colour,
+            (std::vector<std::uint32_t>{0x112233, 0xC00000, 0xFF0000, 0x808060}));
+}
+
 TEST(Messages, RefuseCloudsThatDoNotFitTogether) {
   const std::string data(64, '\1');
   const auto error = [&](auto change) {
@@ -105,6 +120,9 @@ TEST(Messages, RefuseCloudsThatDoNotFitTogether) {
   EXPECT_HAS(error([](auto& m) { m.fields[2].offset = 13; }), "field z ends at byte 17");
   EXPECT_HAS(error([](auto& m) { m.fields[2].offset = 0xFFFFFFFF; }), "field z ends at byte 4294967299");
   EXPECT_HAS(error([](auto& m) { m.fields[3].datatype = 8; }), "field rgb has datatype 8");
+  EXPECT_HAS(error([](auto& m) { m.fields[0].count = 3; }), "field x has 3 values a point: expected 1");
+  EXPECT_HAS(error([](auto& m) { m.fields[3].count = 2; }), "field rgb has 2 values a point");
+  EXPECT_EQ(error([](auto& m) { m.fields[0].count = 0; }), "no InputError") << "some write 0 for one";
   EXPECT_HAS(error([](auto& m) { m.width = 5; }), "has 64 bytes of data: expected 80");
   EXPECT_HAS(error([](auto& m) { m.height = 4, m.width = 1, m.row_step = 8; }), "row_step = 8: expected 16");
 }
@@ -127,23 +145,27 @@ ImageMessage image(const std::string& encoding, std::uint32_t step, const std::s
 
 TEST(Messages, ReadDepthInMillimetresAndMetres) {
   const std::string units = raw(std::uint16_t{1500}) + raw(std::uint16_t{0});
-  DepthImage depth = depth_from_message(image("16UC1", 4, units), 0.001, kNoLimit, "m");
+  DepthImage depth = depth_from_message(image("16UC1", 4, units), {}, kNoLimit, "m");
   EXPECT_EQ(depth.z_m[0], 1.5);
   EXPECT_TRUE(std::isnan(depth.z_m[1]));
-  EXPECT_TRUE(std::isnan(depth_from_message(image("mono16", 4, units), 0.001, 1.4, "m").z_m[0]));
+  EXPECT_TRUE(std::isnan(depth_from_message(image("mono16", 4, units), {}, 1.4, "m").z_m[0]));
   ImageMessage turned = image("16UC1", 4, units);
   turned.big_endian = true;
-  EXPECT_EQ(depth_from_message(turned, 1, kNoLimit, "m").z_m[0], 0xDC05);
+  EXPECT_EQ(depth_from_message(turned, {1, 1}, kNoLimit, "m").z_m[0], 0xDC05);
   for (const float missing : {-1.0f, 0.0f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
     const std::string metres = raw(1.25f) + raw(missing);
-    depth = depth_from_message(image("32FC1", 8, metres), 0.001, kNoLimit, "m");
+    depth = depth_from_message(image("32FC1", 8, metres), {}, kNoLimit, "m");
     EXPECT_EQ(depth.z_m[0], 1.25);
     EXPECT_TRUE(std::isnan(depth.z_m[1])) << missing;
   }
-  EXPECT_HAS(refusal([&] { depth_from_message(image("rgb8", 6, units), 1, 1, "m"); }), "encoding = \"rgb8\"");
-  EXPECT_HAS(refusal([&] { depth_from_message(image("16UC1", 3, units), 1, 1, "m"); }),
+  EXPECT_EQ(depth_from_message(image("16UC1", 4, units), {0.01, 2}, kNoLimit, "m").z_m[0], 15);
+  EXPECT_EQ(depth_from_message(image("32FC1", 8, raw(1.25f) + raw(1.0f)), {0.01, 2}, kNoLimit, "m").z_m[0],
+            2.5);
+  EXPECT_HAS(refusal([&] { depth_from_message(image("rgb8", 6, units), {}, 1, "m"); }),
+             "encoding = \"rgb8\"");
+  EXPECT_HAS(refusal([&] { depth_from_message(image("16UC1", 3, units), {}, 1, "m"); }),
              "step = 3: expected 4");
-  EXPECT_HAS(refusal([&] { depth_from_message(image("32FC1", 8, units), 1, 1, "m"); }),
+  EXPECT_HAS(refusal([&] { depth_from_message(image("32FC1", 8, units), {}, 1, "m"); }),
              "has 4 bytes of data");
 }
 
@@ -154,17 +176,18 @@ TEST(Messages, ReadCompressedDepth) {
   CompressedImageMessage message;
   const std::string data = raw(0) + raw(100.0f) + raw(1.0f) + png;
   message.data = data, message.format = "32FC1; compressedDepth png";
-  DepthImage depth = depth_from_message(message, 0.001, kNoLimit, "m");
+  DepthImage depth = depth_from_message(message, {}, kNoLimit, "m");
   ASSERT_EQ(depth.z_m.size(), 4u);
   EXPECT_TRUE(std::isnan(depth.z_m[0]));
   EXPECT_EQ(depth.z_m[1], 2);
   EXPECT_EQ(depth.z_m[2], 1);
   EXPECT_EQ(depth.z_m[3], 0.1);
+  EXPECT_EQ(depth_from_message(message, {0.01, 2}, kNoLimit, "m").z_m[1], 4);
   message.format = "16UC1; compressedDepth";
-  EXPECT_EQ(depth_from_message(message, 0.001, kNoLimit, "m").z_m[3], 1001 * 0.001);
+  EXPECT_EQ(depth_from_message(message, {}, kNoLimit, "m").z_m[3], 1001 * 0.001);
   const auto error = [&](const std::string& format, std::string_view bytes) {
     message.format = format, message.data = bytes;
-    return refusal([&] { depth_from_message(message, 0.001, kNoLimit, "m"); });
+    return refusal([&] { depth_from_message(message, {}, kNoLimit, "m"); });
   };
   EXPECT_HAS(error("16UC1; compressedDepth rvl", data), "with PNG inside");
   EXPECT_HAS(error("rgb8; jpeg compressed bgr8", data), "expected \"16UC1; compressedDepth\"");
@@ -222,7 +245,10 @@ TEST(Messages, TakeTheCameraThatFitsTheImage) {
   EXPECT_LE(measured.image->pixel_slack, 1e-6);
   const PointCloud rectified = ImageRays(info(3, 1, {0.1, 0, 0, 0, 0}), true, "m").cloud(depth);
   EXPECT_TRUE(rectified.point(2).isApprox(Vec3(0.1, 0, 2)));
-  EXPECT_FALSE(ImageRays(info(3, 1, {0, 0, 0, 0, 0}, "equidistant"), false, "m").has_distortion());
+  for (const char* model : {"", "None", "pinhole", "plumb_bob", "rational_polynomial", "Brown Conrady"}) {
+    EXPECT_FALSE(ImageRays(info(3, 1, {0, 0, 0, 0, 0}, model), false, "m").has_distortion()) << model;
+    EXPECT_FALSE(ImageRays(info(3, 1, {}, model), false, "m").has_distortion()) << model;
+  }
 }
 
 TEST(Messages, RefuseWrongCameras) {
@@ -237,6 +263,14 @@ TEST(Messages, RefuseWrongCameras) {
   camera.K[5] = std::nan("");
   EXPECT_HAS(error(camera), "expected a calibrated camera");
   EXPECT_HAS(error(info(3, 2, {0.1, 0, 0, 0}, "equidistant")), "distortion_model = \"equidistant\"");
+  for (const char* fisheye : {"equidistant", "fisheye", "Kannala Brandt4", "Ftheta", "thin_prism_fisheye"})
+    for (const std::vector<double>& none : {std::vector<double>(4, 0.0), std::vector<double>()})
+      EXPECT_HAS(error(info(3, 2, none, fisheye)), std::string("distortion_model = \"") + fisheye);
+  EXPECT_EQ(refusal([] {
+              ImageRays(info(3, 2, {0, 0, 0, 0}, "equidistant"), true, "m");
+            }),
+            "no InputError")
+      << "a rectified image is that of a pinhole, whatever the lens was";
   EXPECT_HAS(error(info(3, 2, {0.1, 0, 0})), "with 3 coefficients");
   EXPECT_HAS(error(info(3, 2, {std::nan(""), 0, 0, 0})), "finite");
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cloud/colour.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pcd_file_test {
@@ -100,10 +101,52 @@ TEST_F(PcdFile, ReadsTheColourOfAFloatField) {
   EXPECT_EQ(read(head("binary") + point).cloud.colour.at(0), 0xA1B2C3u);
 }
 
-TEST_F(PcdFile, AcceptsTheShortVersionAndAMissingCount) {
-  const PcdCloud one = read(
-      "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3");
-  EXPECT_EQ(one.cloud.point(0), Vec3(1, 2, 3));
+// A number that is no colour, and one that has lost digits, is none.
+TEST_F(PcdFile, GivesNoColourWhereItIsNoColour) {
+  const auto colour = [&](const char* type, const char* word) {
+    const std::string types = std::string("F F F ") + type;
+    return read(pcd_header("x y z rgb", "4 4 4 4", types, "1 1 1 1", "1", "1", "1", "ascii") + "1 2 3 " +
+                word + "\n")
+        .cloud.colour.at(0);
+  };
+  for (const char* none : {"nan", "-nan", "inf", "4.2108e+06", "0.5"})
+    EXPECT_EQ(colour("F", none), kNoColour) << none;
+  EXPECT_EQ(colour("F", "4210752"), 0x404040u);     // the value of 0x404040, not its bits
+  EXPECT_EQ(colour("F", "4278255615"), 0x00FFFFu);  // 0xFF00FFFF
+  EXPECT_EQ(colour("F", "0"), 0u);
+  EXPECT_EQ(colour("U", "nan"), kNoColour);
+  EXPECT_EQ(colour("U", "6.605100000000000000e+04"), 0x010203u);
+  EXPECT_EQ(colour("I", "-16777216"), 0u);
+  EXPECT_HAS(refusal([&] { colour("U", "12.5"); }), "'12.5': expected a 32-bit colour");
+
+  const auto binary = [&](const char* type, std::uint32_t bits) {
+    const std::string types = std::string("F F F ") + type;
+    return read(pcd_header("x y z rgb", "4 4 4 4", types, "1 1 1 1", "1", "1", "1", "binary") + raw(1.f) +
+                raw(2.f) + raw(3.f) + raw(bits))
+        .cloud.colour.at(0);
+  };
+  EXPECT_EQ(binary("F", 0x7FC00000), kNoColour);
+  EXPECT_EQ(binary("F", 0xFFFF0000), 0xFF0000u) << "opaque, as PCL writes it, though it is a NaN";
+  EXPECT_EQ(binary("U", 0x7FC00000), 0xC00000u);
+}
+
+TEST_F(PcdFile, AcceptsOlderVersions) {
+  const std::string layout = "\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  const std::string rest = "WIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 2 3";
+  for (const char* version : {"0.7", ".7", "0.6", ".6", "0.5", ".5"})
+    EXPECT_EQ(read("VERSION " + (version + layout) + rest).cloud.point(0), Vec3(1, 2, 3)) << version;
+  EXPECT_EQ(
+      read("VERSION .5\nCOLUMNS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3").cloud.point(0),
+      Vec3(1, 2, 3));
+  EXPECT_HAS(error("VERSION .5" + layout + "WIDTH 1\nPOINTS 1\nDATA ascii\n1 2 3"), "no HEIGHT entry");
+}
+
+TEST_F(PcdFile, SkipsAMarkOfTheOrderOfBytes) {
+  for (const char* data : {"ascii", "binary"}) {
+    const bool text = std::string(data) == "ascii";
+    const std::string point = text ? "1 2 3\n" : raw(1.f) + raw(2.f) + raw(3.f);
+    EXPECT_EQ(read("\xEF\xBB\xBF" + xyz_header("1", data) + point).cloud.point(0), Vec3(1, 2, 3));
+  }
 }
 
 TEST_F(PcdFile, FitsTheCameraOfAnOrganisedCloud) {
@@ -148,7 +191,7 @@ TEST_F(PcdFile, RefusesBadHeaders) {
   EXPECT_HAS(error(""), "no VERSION entry");
   EXPECT_HAS(error("hello\n"), ":1: 'hello' is no PCD header entry: expected VERSION FIELDS");
   EXPECT_HAS(error(std::string("\x89PNG\x01\x02") + std::string(100, '\xff')), "'?PNG??");
-  EXPECT_HAS(error("VERSION 0.5\n"), "VERSION = '0.5': expected 0.7");
+  EXPECT_HAS(error("VERSION 0.8\n"), "VERSION = '0.8': expected 0.5, 0.6 or 0.7");
   EXPECT_HAS(error("VERSION 0.7\nDATA ascii\n"), "no FIELDS entry");
   EXPECT_HAS(error("VERSION 0.7\nFIELDS x y z\nSIZE 4 4\n"), "SIZE has 2 values: expected 3");
   const auto one = [](const auto&... layout) { return pcd_header(layout..., "1", "1", "1", "ascii"); };

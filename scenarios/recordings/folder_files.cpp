@@ -1,0 +1,88 @@
+#include "scenarios/recordings/folder_files.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/parameters/input_error.h"
+#include "scenarios/text_files/file_order.h"
+
+namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void require_target(const fs::path& file) {
+  if (fs::is_symlink(file) && !fs::exists(file))
+    throw InputError(file.string(), "is a link to a file that is not there: expected a file");
+}
+
+// All numbers in a name, without zeros in front: 2 and 7 of img_2_0007.png.
+std::vector<std::string> numbers_in(const fs::path& file) {
+  constexpr const char* kDigits = "0123456789";
+  const std::string name = file.stem().string();
+  std::vector<std::string> numbers;
+  for (std::size_t at = name.find_first_of(kDigits); at != name.npos;) {
+    const std::size_t end = std::min(name.find_first_not_of(kDigits, at), name.size());
+    const std::size_t first = std::min(name.find_first_not_of('0', at), end);
+    numbers.push_back(name.substr(first, end - first));
+    at = name.find_first_of(kDigits, end);
+  }
+  return numbers;
+}
+
+[[noreturn]] void refuse_pair(const fs::path& colour, const fs::path& depth) {
+  throw InputError(colour.string(),
+                   "may or may not belong to " + depth.string() +
+                       ": expected colour images with the names of the depth images, or with "
+                       "the same numbers in their names");
+}
+
+std::vector<fs::path> paired_by_numbers(const std::vector<fs::path>& depth,
+                                        const std::vector<fs::path>& colours) {
+  std::map<std::vector<std::string>, fs::path> of_numbers;
+  for (const fs::path& colour : colours)
+    if (!of_numbers.emplace(numbers_in(colour), colour).second) refuse_pair(colour, depth.front());
+  std::vector<fs::path> images(depth.size());
+  std::set<std::vector<std::string>> used;
+  for (std::size_t j = 0; j < depth.size(); ++j) {
+    const auto found = of_numbers.find(numbers_in(depth[j]));
+    if (found == of_numbers.end()) continue;
+    if (!used.insert(found->first).second) refuse_pair(found->second, depth[j]);
+    images[j] = found->second;
+  }
+  if (used.empty()) refuse_pair(colours.front(), depth.front());
+  return images;
+}
+
+}  // namespace
+
+std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != extension) continue;
+    require_target(entry.path());
+    files.push_back(entry.path());
+  }
+  sort_by_name(files);
+  return files;
+}
+
+std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs::path& folder) {
+  std::vector<fs::path> images(depth.size());
+  require_target(folder);
+  if (!fs::is_directory(folder)) return images;
+  const std::vector<fs::path> colours = files_in_order(folder, ".png");
+  if (colours.empty() && !fs::is_empty(folder))
+    throw InputError(folder.string(), "holds no .png file: expected the colour images of " +
+                                          depth.front().string() + " and the others");
+  if (colours.empty()) return images;
+  bool any = false;
+  for (std::size_t j = 0; j < depth.size(); ++j)
+    if (const fs::path colour = folder / depth[j].filename(); fs::exists(colour))
+      images[j] = colour, any = true;
+  return any ? images : paired_by_numbers(depth, colours);
+}
+
+}  // namespace remote_touch
