@@ -2,6 +2,8 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,6 +20,11 @@ namespace remote_touch {
 namespace {
 
 constexpr const char* kTemporary = ".partial-";
+
+// /dev/null and /dev/full, which take or refuse everything at once. Any other device may wait for ever.
+bool is_sink(const struct stat& there) {
+  return S_ISCHR(there.st_mode) && (there.st_rdev == ::makedev(1, 3) || there.st_rdev == ::makedev(1, 7));
+}
 
 // 0 or the errno of what failed.
 int write_and_flush(int file, const char* data, std::size_t size) {
@@ -42,6 +49,19 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
 
 [[noreturn]] void refuse_size(const std::filesystem::path& target, int error, std::size_t size) {
   refuse(target, error, "a writable place with room for " + std::to_string(size) + " bytes");
+}
+
+bool is_folder(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  return std::filesystem::is_directory(target, unreachable);
+}
+
+// Whether nothing can be renamed over the target, but it can be written. A pipe would wait for one who reads.
+bool is_written_in_place(const std::filesystem::path& target) {
+  struct stat there = {};
+  if (::stat(target.c_str(), &there) != 0 || S_ISREG(there.st_mode) || S_ISDIR(there.st_mode)) return false;
+  if (!is_sink(there)) throw InputError(target.string(), "is a pipe, a socket or a device: expected a file");
+  return true;
 }
 
 // Its temporary file, flushed to the disk.
@@ -134,20 +154,15 @@ std::filesystem::path resolved(const std::filesystem::path& target) {
 }
 
 void require_writable(const std::filesystem::path& target) {
-  std::error_code unreachable;
-  const auto there = std::filesystem::status(target, unreachable);
-  if (std::filesystem::is_directory(there)) refuse(target, EISDIR, "a file");
-  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) return;  // a device or pipe
+  if (is_folder(target)) refuse(target, EISDIR, "a file");
+  if (is_written_in_place(target)) return;
   const std::filesystem::path folder = folder_of(resolved(target));
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(target, errno, "a file in a writable folder");
 }
 
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size) {
-  std::error_code unreachable;  // then opening it fails, and says why
-  const auto there = std::filesystem::status(target, unreachable);
-  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
-    // A device or pipe cannot be renamed over; a folder is a mistake.
-    if (std::filesystem::is_directory(there)) refuse_size(target, EISDIR, size);
+  if (is_folder(target)) refuse_size(target, EISDIR, size);
+  if (is_written_in_place(target)) {
     const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
     if (file < 0) refuse_size(target, errno, size);
     const int error = write_and_flush(file, static_cast<const char*>(data), size);

@@ -9,8 +9,9 @@
 namespace remote_touch {
 
 // Writes to a temporary name in the same folder, flushes to the disk and renames over the target, or over
-// what it links to. On failure (missing folder, no permission, full disk) throws InputError naming the
-// target, and leaves neither a partial nor a temporary file.
+// what it links to. On failure (missing folder, no permission, full disk, a pipe, a socket or a device)
+// throws InputError naming the target, and leaves neither a partial nor a temporary file. Of devices
+// /dev/null is written.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
 
 struct NewFile {
@@ -23,8 +24,8 @@ struct NewFile {
 // leaves the first files new and the others old.
 void write_files_together(const std::vector<NewFile>& files);
 
-// Throws as write_file_atomically would for a folder that is missing or not writable, before any work is done
-// for the file.
+// Throws as write_file_atomically would for a folder that is missing or not writable, and for what is no
+// file, before any work is done for the file. Waits for nobody.
 void require_writable(const std::filesystem::path& target);
 
 // Throws InputError, naming the target, when it is the file that is read.

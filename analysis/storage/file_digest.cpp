@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,25 @@ std::string block(const std::string& sum) {
   text.resize(kDigestBlockSize, '\0');
   return text;
 }
+
+// The beginning of an HDF5 file with addresses of 8 bytes, little-endian (HDF5 File Format Specification,
+// II.A).
+struct Superblock {
+  static constexpr std::size_t kBase = 24, kEnd = 40, kSize = 48;
+  std::string bytes;
+
+  bool is_of_version_0() const { return bytes.starts_with("\x89HDF\r\n\x1a\n") && bytes[8] == 0; }
+  std::uint64_t at(std::size_t place) const {
+    std::uint64_t address = 0;
+    std::memcpy(&address, bytes.data() + place, sizeof address);
+    return address;
+  }
+  // Counted from the HDF5 part on, as in an image that knows nothing of the user block.
+  void move(std::size_t place) {
+    const std::uint64_t address = at(place) - kDigestBlockSize;
+    std::memcpy(bytes.data() + place, &address, sizeof address);
+  }
+};
 
 }  // namespace
 
@@ -69,7 +89,21 @@ bool has_result_header(const std::filesystem::path& file) {
 FileDigest file_digest_of(const std::filesystem::path& file) {
   const std::string found = opening_of(file, kDigestBlockSize);
   if (!found.starts_with(kResultOpening)) return FileDigest::absent;
-  return found == block(sha256_of_file(file, kDigestBlockSize)) ? FileDigest::valid : FileDigest::broken;
+  const bool is_as_written =
+      found == block(sha256_of_file(file, kDigestBlockSize)) || was_opened_for_writing(file);
+  return is_as_written ? FileDigest::valid : FileDigest::broken;
+}
+
+bool was_opened_for_writing(const std::filesystem::path& file) {
+  const std::string opening = opening_of(file, kDigestBlockSize + Superblock::kSize);
+  Superblock first{opening.substr(kDigestBlockSize)};
+  std::error_code unreachable;
+  if (!first.is_of_version_0() || first.at(Superblock::kBase) != kDigestBlockSize ||
+      first.at(Superblock::kEnd) != std::filesystem::file_size(file, unreachable))
+    return false;
+  first.move(Superblock::kBase), first.move(Superblock::kEnd);
+  const std::string sum = sha256_of_file(file, kDigestBlockSize + Superblock::kSize, first.bytes);
+  return opening.substr(0, kDigestBlockSize) == block(sum);
 }
 
 }  // namespace remote_touch

@@ -29,8 +29,14 @@ std::string opening_of(const std::filesystem::path& file, std::size_t size);
 // Whether a file begins as a finished result does; the rest of it is not read.
 bool has_result_header(const std::filesystem::path& file);
 
+// valid: every byte is as it was written, but for those that was_opened_for_writing() tells of.
 enum class FileDigest { valid, absent, broken };
 // Throws InputError when the file cannot be read.
 FileDigest file_digest_of(const std::filesystem::path& file);
+
+// Whether another program opened a finished result for writing and changed nothing: the HDF5 library then
+// writes two addresses of the file's first block anew, counted from another place. With the addresses as they
+// were the seal holds. Throws InputError when the file cannot be read.
+bool was_opened_for_writing(const std::filesystem::path& file);
 
 }  // namespace remote_touch

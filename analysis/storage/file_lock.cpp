@@ -32,6 +32,7 @@ bool is_special(const std::filesystem::path& target) {
 }  // namespace
 
 FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target).string() + ".lock") {
+  require_writable(target);
   if (is_special(target)) return;
   // Whoever held it may have removed it between our open and our lock: then it is another file's name by now.
   do {

@@ -8,8 +8,8 @@ namespace remote_touch {
 // The right to write a file, held from construction to destruction. The lock is on a file beside it with the
 // ending ".lock", so that the file itself can be replaced and read at any time. A killed process holds no
 // lock, even if its ".lock" file remains. Also removes temporary files of the target that killed processes
-// left. Throws InputError naming the target when another process holds the lock or the folder cannot be
-// written. No lock is taken for a device, or on a file system without locks.
+// left. Throws InputError naming the target when another process holds the lock, and as require_writable().
+// No lock is taken for /dev/null, or on a file system without locks.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& target);

@@ -70,9 +70,10 @@ std::string Sha256::hex() {
   return text;
 }
 
-std::string sha256_of_file(const std::filesystem::path& file, std::size_t from) {
+std::string sha256_of_file(const std::filesystem::path& file, std::size_t from, std::string_view before) {
   std::vector<char> part(1 << 18);
   Sha256 hash;
+  hash.add(before.data(), before.size());
   const OpenFile open(file);
   for (auto at = static_cast<off_t>(from);;) {
     const ssize_t size = open.read(part.data(), part.size(), at);

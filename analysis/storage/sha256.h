@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace remote_touch {
 
@@ -18,7 +19,8 @@ class Sha256 {
   std::shared_ptr<void> state_;
 };
 
-// SHA-256 of the bytes of a file from an offset on. Throws InputError when it cannot be read.
-std::string sha256_of_file(const std::filesystem::path& file, std::size_t from = 0);
+// SHA-256 of the bytes of a file from an offset on, behind others. Throws InputError when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& file, std::size_t from = 0,
+                           std::string_view before = {});
 
 }  // namespace remote_touch

@@ -1,5 +1,6 @@
 #include "core/parameters/input_error.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -29,6 +30,28 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
 }
 
+// The place of a character in UTF-8 that is not beyond this one.
+std::size_t character_before(const std::string& line, std::size_t at) {
+  while (at > 0 && (static_cast<unsigned char>(line[at]) & 0xC0) == 0x80) --at;
+  return at;
+}
+
+// A number of many digits, or a key without end, is not worth its line. File names are shorter, but for few.
+std::string with_short_words(const std::string& line) {
+  constexpr std::size_t kMaxWord = 400, kBegin = 200, kEnd = 100;
+  std::string shorter;
+  for (std::size_t at = 0, end = 0; at < line.size(); at = end) {
+    end = std::min(line.find(' ', at + 1), line.size());
+    if (end - at <= kMaxWord) {
+      shorter.append(line, at, end - at);
+      continue;
+    }
+    const std::size_t first = character_before(line, at + kBegin), last = character_before(line, end - kEnd);
+    shorter.append(line, at, first - at).append("...").append(line, last, end - last);
+  }
+  return shorter;
+}
+
 }  // namespace
 
 std::string printable(const std::string& text) {
@@ -47,7 +70,7 @@ std::string printable(const std::string& text) {
       line.append(text, at, size), at += size;
     }
   }
-  return line;
+  return with_short_words(line);
 }
 
 }  // namespace remote_touch

@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 // One line of UTF-8: a line break becomes a blank, other control characters and bytes that are not UTF-8 are
-// written as \x and two hexadecimal digits.
+// written as \x and two hexadecimal digits. Of a word longer than 400 bytes the middle becomes "...".
 std::string printable(const std::string& text);
 
 class InputError : public std::runtime_error {

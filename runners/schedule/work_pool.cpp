@@ -26,11 +26,12 @@ void WorkPool::run(const std::vector<std::function<void()>>& jobs, double every_
   std::vector<std::thread> threads;
   for (int i = 0; i < threads_; ++i) threads.emplace_back([this] { work(); });
   const auto all_ended = [&] { return ended_jobs_ == jobs.size(); };
-  for (std::unique_lock lock(mutex_); !all_ended();) {
-    changed_.wait_for(lock, std::chrono::duration<double>(every_s), all_ended);
+  for (bool ended = false; !ended;) {
+    std::unique_lock lock(mutex_);
+    // What ends during a report was not seen by it: the loop ends after a report that began later.
+    ended = changed_.wait_for(lock, std::chrono::duration<double>(every_s), all_ended);
     lock.unlock();
     report();
-    lock.lock();
   }
   for (std::thread& thread : threads) thread.join();
 }

@@ -24,7 +24,7 @@ class WorkPool {
   explicit WorkPool(int threads) : threads_(threads) {}
 
   // Does all jobs, which begin in their order and must not throw. Meanwhile the calling thread calls report
-  // every every_s seconds, and once at the end.
+  // every every_s seconds, and once after all have ended.
   void run(const std::vector<std::function<void()>>& jobs, double every_s,
            const std::function<void()>& report);
 

@@ -1,18 +1,24 @@
 #include "runners/tool_files/mesh_file.h"
 
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
 
 #include <algorithm>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <cctype>
 #include <map>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/packed_values.h"
 #include "core/parameters/input_error.h"
 #include "core/tool/mesh/mesh_corners.h"
+#include "core/tool/mesh/polygon_triangles.h"
+#include "runners/tool_files/obj_text.h"
 #include "runners/tool_files/ply_header.h"
 
 namespace remote_touch {
@@ -56,19 +62,69 @@ class Welded {
   std::map<std::array<float, 3>, int> index_;
 };
 
+[[noreturn]] void refuse_polygon(const Vec3& first, std::size_t corners) {
+  std::ostringstream problem;
+  problem << "a face of " << corners << " corners, the first at " << first.x() << " " << first.y() << " "
+          << first.z() << ", crosses or touches itself: no triangles have its area";
+  throw std::runtime_error(problem.str());
+}
+
+// A corner that is given twice in a row is one.
+void add_polygon(std::vector<int> polygon, TriangleMesh& mesh) {
+  polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
+  while (polygon.size() > 1 && polygon.front() == polygon.back()) polygon.pop_back();
+  if (polygon.size() < 3) return;
+  std::vector<Vec3> corners;
+  for (const int v : polygon) corners.push_back(mesh.vertices[v]);
+  if (!std::all_of(corners.begin(), corners.end(), [](const Vec3& v) { return v.allFinite(); }))
+    throw std::runtime_error("a face has a vertex that is not finite");
+  const auto triangles = polygon_triangles(corners);
+  if (!triangles) refuse_polygon(corners.front(), corners.size());
+  for (const auto& [a, b, c] : *triangles) mesh.triangles.push_back({polygon[a], polygon[b], polygon[c]});
+}
+
 void add_mesh(const aiMesh& from, Welded& welded, TriangleMesh& mesh) {
   std::vector<int> index;
   for (unsigned v = 0; v < from.mNumVertices; ++v) index.push_back(welded.add(from.mVertices[v]));
   for (unsigned f = 0; f < from.mNumFaces; ++f) {
     const aiFace& face = from.mFaces[f];
-    for (unsigned corner = 0; corner < face.mNumIndices; ++corner)
+    std::vector<int> polygon;
+    for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
       if (face.mIndices[corner] >= index.size())
         throw std::runtime_error("a face has a vertex that is not there");
-    for (unsigned corner = 2; corner < face.mNumIndices; ++corner)
-      mesh.triangles.push_back(
-          {index[face.mIndices[0]], index[face.mIndices[corner - 1]], index[face.mIndices[corner]]});
+      polygon.push_back(index[face.mIndices[corner]]);
+    }
+    if (polygon.size() == 3)
+      mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]});
+    else if (polygon.size() > 3)
+      add_polygon(std::move(polygon), mesh);
   }
 }
+
+// While one exists: whether the library logs that it left out a part of a facet of an STL file, or took two
+// facets for one. It says so nowhere else.
+class FacetWatch final : public Assimp::LogStream {
+ public:
+  FacetWatch() {
+    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(this, kSeverity);
+  }
+  ~FacetWatch() override {
+    Assimp::DefaultLogger::get()->detachStream(this, kSeverity);
+    Assimp::DefaultLogger::kill();
+  }
+  FacetWatch(const FacetWatch&) = delete;
+  FacetWatch& operator=(const FacetWatch&) = delete;
+
+  void write(const char* message) override {
+    if (std::string_view(message).find("facet") != std::string_view::npos) found_ = true;
+  }
+  bool found() const { return found_; }
+
+ private:
+  static constexpr unsigned kSeverity = Assimp::Logger::Warn | Assimp::Logger::Err;
+  bool found_ = false;
+};
 
 }  // namespace
 
@@ -79,11 +135,26 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 namespace {
 
+// Owned by the importer. OBJ and PLY files without a byte order mark and without what the library reads
+// wrongly.
+const aiScene* scene_of(const std::string& file, Assimp::Importer& importer) {
+  const std::string ending = ending_of(file);
+  if (ending == ".stl") return importer.ReadFile(file, 0);
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  std::string bytes = opening_of(file, std::filesystem::file_size(file));
+  if (bytes.starts_with(kMark)) bytes.erase(0, kMark.size());
+  bytes = ending == ".obj" ? only_shape(bytes) : with_first_byte_kept(std::move(bytes));
+  return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
+}
+
 // As the library reads it. In a child, for the library believes what a file says: damaged ones make it take
 // all memory or go on for ever.
 TriangleMesh mesh_by_assimp(const std::string& file) {
+  const FacetWatch facets;
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file, 0);
+  const aiScene* scene = scene_of(file, importer);
+  if (scene != nullptr && ending_of(file) == ".stl" && facets.found())
+    throw std::runtime_error("a facet has not three vertices");
   if (scene == nullptr) {
     const std::string error = importer.GetErrorString();
     throw std::runtime_error(error == "std::bad_alloc" ? "it claims more than fits into memory" : error);
@@ -136,7 +207,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
 
 std::string mesh_reader_version() {
   return "assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
-         std::to_string(aiGetVersionPatch());
+         std::to_string(aiGetVersionPatch()) + ", concave polygons";
 }
 
 }  // namespace remote_touch

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <linux/capability.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/file_lock.h"
 #include "tests/analysis/storage/system_answers.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
@@ -204,6 +206,21 @@ TEST(WriteWholeFile, DevicesAreWrittenThrough) {
   const std::string text = "anything";
   EXPECT_NO_THROW(write_file_atomically("/dev/null", text.data(), text.size()));
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+// A pipe that nobody reads would wait for ever, and so may other devices.
+TEST(WriteWholeFile, PipesAndOtherDevicesAreRefusedAtOnce) {
+  const TestFolder folder("atomic_file_test");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", folder / "link");
+  const std::string text = "anything";
+  for (const fs::path& target : {folder / "pipe", folder / "link", fs::path("/dev/zero")}) {
+    const std::string problem = target.string() + ": is a pipe, a socket or a device: expected a file";
+    EXPECT_EQ(refusal([&] { require_writable(target); }), problem);
+    EXPECT_EQ(refusal([&] { write_file_atomically(target, text.data(), text.size()); }), problem);
+    EXPECT_EQ(refusal([&] { const FileLock lock(target); }), problem);
+  }
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"link", "pipe"}));
 }
 
 }  // namespace

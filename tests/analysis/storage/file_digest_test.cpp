@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "analysis/figures/result_file.h"
@@ -41,6 +43,36 @@ TEST(FileDigest, NoChangedByteIsReadAsATrace) {
     ++tried;
   }
   EXPECT_GT(tried, 1100u);
+}
+
+// The library does so when a program opens the file for writing, and closes it again.
+std::string with_addresses_from_the_start(std::string bytes) {
+  for (const std::size_t place : {24u, 40u}) {  // of the base and of the end
+    std::uint64_t address = 0;
+    std::memcpy(&address, &bytes[kDigestBlockSize + place], sizeof address);
+    address += kDigestBlockSize;
+    std::memcpy(&bytes[kDigestBlockSize + place], &address, sizeof address);
+  }
+  return bytes;
+}
+
+TEST(FileDigest, HoldsWhereAnotherProgramOpenedTheFileAndChangedNothing) {
+  const TestFolder folder("file_digest_test");
+  write_trace(folder / "trace.h5", awkward_trace(50), kProvenance, {});
+  EXPECT_FALSE(was_opened_for_writing(folder / "trace.h5"));
+  const std::string opened = with_addresses_from_the_start(bytes_of(folder / "trace.h5"));
+  const auto file = folder.write("opened.h5", opened);
+  EXPECT_TRUE(was_opened_for_writing(file));
+  EXPECT_EQ(file_digest_of(file), FileDigest::valid);
+  EXPECT_TRUE(same_bits(Hdf5Reader(file).column("/trace/force"),
+                        Hdf5Reader(folder / "trace.h5").column("/trace/force")));
+  for (std::size_t i = 0; i < opened.size(); i += i < 1024 ? 7 : 997) {
+    std::string changed = opened;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    EXPECT_FALSE(was_opened_for_writing(folder.write("changed.h5", changed))) << i;
+  }
+  folder.write("changed.h5", opened + "x");
+  EXPECT_EQ(file_digest_of(folder / "changed.h5"), FileDigest::broken);
 }
 
 TEST(FileDigest, OtherHdf5FilesHaveNone) {

@@ -32,6 +32,21 @@ TEST(Printable, ShowsBytesThatAreNoUtf8) {
   EXPECT_EQ(printable("\xe2\x82x"), "\\xe2\\x82x");
 }
 
+TEST(Printable, ShortensWordsWithoutEnd) {
+  const std::string digits(100000, '7'), path(400, 'a');
+  EXPECT_EQ(printable("seed = " + digits + ": expected less"),
+            "seed = " + std::string(199, '7') + "..." + std::string(99, '7') + ": expected less");
+  EXPECT_EQ(printable("x " + path), "x " + path.substr(0, 199) + "..." + path.substr(0, 100));
+  EXPECT_EQ(printable(path + ": no file"), path.substr(0, 200) + "..." + path.substr(0, 99) + ": no file");
+  EXPECT_EQ(printable(path), path);
+  std::string euros;
+  for (int i = 0; i < 1000; ++i) euros += "€";
+  const std::string shorter = printable(euros);
+  EXPECT_LT(shorter.size(), 310u);
+  EXPECT_EQ(shorter.find("\\x"), std::string::npos);  // no character is cut
+  EXPECT_EQ(printable(shorter), shorter);
+}
+
 // A message is C's: a zero would end it.
 TEST(InputErrorTest, KeepsItsWholeMessage) {
   EXPECT_STREQ(InputError(std::string("a\0b", 3), "expected c").what(), "a\\x00b: expected c");

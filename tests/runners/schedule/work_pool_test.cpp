@@ -88,5 +88,22 @@ TEST(WorkPool, ReportSeesTheStatesOfTheJobs) {
   EXPECT_GE(after[0].spent_s, during[0].spent_s);
 }
 
+// The only job ends while the first report is at work, which has looked at it before.
+TEST(WorkPool, TheLastReportSeesThatAllHaveEnded) {
+  WorkPool pool(1);
+  std::atomic<bool> was_looked_at{false};
+  JobState seen = JobState::waiting;
+  const auto report = [&] {
+    seen = pool.progress()[0].state;
+    was_looked_at = true;
+    while (pool.progress()[0].state != JobState::done) std::this_thread::yield();
+  };
+  const auto until_looked_at = [&] {
+    while (!was_looked_at) std::this_thread::yield();
+  };
+  pool.run({until_looked_at}, 0.001, report);
+  EXPECT_EQ(seen, JobState::done);
+}
+
 }  // namespace
 }  // namespace remote_touch

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+
 #include "core/tool/mesh/mesh_check.h"
 #include "core/tool/voxels/voxel_tool.h"
 #include "tests/support/meshes.h"
@@ -70,6 +73,121 @@ TEST_F(MeshFileTest, Ply) {
             "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
   EXPECT_TRUE(solid.closed()) << text(solid);
   EXPECT_NEAR(solid.volume_m3, 1.0 / 6, 1e-9);
+}
+
+// A U: its caps are concave faces of eight corners, its notch is empty.
+constexpr const char* kU =
+    "v 4 4 0\nv 4 1 0\nv 2 1 0\nv 2 4 0\nv 0 4 0\nv 0 0 0\nv 6 0 0\nv 6 4 0\n"
+    "v 4 4 2\nv 4 1 2\nv 2 1 2\nv 2 4 2\nv 0 4 2\nv 0 0 2\nv 6 0 2\nv 6 4 2\n"
+    "f 1 2 10 9\nf 2 3 11 10\nf 3 4 12 11\nf 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n";
+
+double surface_m2(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    sum += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
+  return sum;
+}
+
+TEST_F(MeshFileTest, ConcavePolygonsKeepTheirArea) {
+  const fs::path file =
+      folder_.write("u.obj", std::string(kU) + "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\n");
+  const TriangleMesh u = read_mesh(file);
+  const MeshCheck check = check_mesh(u);
+  EXPECT_TRUE(check.closed()) << text(check);
+  EXPECT_NEAR(std::abs(check.volume_m3), 2 * 18, 1e-9);
+  EXPECT_NEAR(surface_m2(u), 2 * 18 + 2 * (4 + 6 + 4 + 2 + 3 + 2 + 3 + 2), 1e-9);
+}
+
+// Before a repair, which would make some closed surface of it.
+TEST_F(MeshFileTest, PolygonsThatCrossThemselvesAreRefused) {
+  const fs::path file =
+      folder_.write("u.obj", std::string(kU) + "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 15 14 16\n");
+  EXPECT_HAS(refusal([&] { read_mesh(file); }),
+             "u.obj: cannot be read (a face of 8 corners, the first at 4 4 2, crosses or touches itself");
+}
+
+TEST_F(MeshFileTest, ACornerTwiceInARowIsOne) {
+  const MeshCheck cube = check("cube.obj", kVertices +
+                                               "f 1 1 3 4 2\nf 5 6 8 7 5\nf 1 2 6 5\nf 3 7 8 4\n"
+                                               "f 1 5 7 3\nf 2 2 4 8 8 6 2\n");
+  EXPECT_TRUE(cube.closed()) << text(cube);
+  EXPECT_EQ(cube.triangles, 12);
+}
+
+// The library would leave out the fourth corner, and begin a new facet with two corners of the last one.
+TEST_F(MeshFileTest, FacetsOfStlWithAnotherNumberOfCornersAreRefused) {
+  const auto facet = [](int corners) {
+    std::string text = "facet normal 0 0 1\nouter loop\n";
+    for (int i = 0; i < corners; ++i)
+      text += "vertex " + std::to_string(i % 2) + " " + std::to_string(i / 2) + " 0\n";
+    return text + "endloop\nendfacet\n";
+  };
+  const auto problem = [&](const std::string& facets) {
+    const fs::path file = folder_.write("q.stl", "solid q\n" + facets + "endsolid q\n");
+    return refusal([&] {
+      read_mesh(file);
+      throw InputError("read");
+    });
+  };
+  EXPECT_EQ(problem(facet(3) + facet(3)), "read");
+  EXPECT_HAS(problem(facet(4) + facet(3)), "q.stl: cannot be read (a facet has not three vertices)");
+}
+
+constexpr const char* kMark = "\xEF\xBB\xBF";
+const std::string kCube = kVertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+TEST_F(MeshFileTest, ByteOrderMarksArePassedOver) {
+  EXPECT_TRUE(check("cube.obj", kMark + kCube).closed());
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+      "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+  EXPECT_TRUE(check("t.ply", kMark + ply).closed());
+}
+
+// What a tool does not use may be missing or wrong: texture coordinates, normals, materials.
+TEST_F(MeshFileTest, ObjFacesMayNameWhatIsMissing) {
+  EXPECT_TRUE(
+      check("cube.obj", "mtllib none.mtl\nvt 0.5 0.5\nvt\nvn 0 0 1\n" + kVertices +
+                            "usemtl red\nf 1/1 3/2 4/3 2/99\nf 5/9/9 6/9/9 8/9/9 7/9/9\nf 1//9 2//9 6//9 "
+                            "5//9\nf 3/ 7/ 8/ 4/\n  f 1/9 5/9 \\\n7/9 3/9\n\tf -7/-3 -5/-3 -1/-3 -3/-3\n")
+          .closed());
+}
+
+// The library would leave out such a vertex, and take others for those behind it.
+TEST_F(MeshFileTest, ObjVerticesMayHaveColours) {
+  std::string cube = kCube;
+  cube.replace(cube.find("v 1 1 0"), 7, "v 1 1 0 0.5 0.5 0.5 1  # with alpha");
+  cube.replace(cube.find("v 0 0 1"), 7, "v 0 0 1 0.5 0.5 0.5");
+  cube.replace(cube.find("v 1 0 1"), 7, "v 2 0 2 2");
+  const MeshCheck whole = check("cube.obj", cube);
+  EXPECT_TRUE(whole.closed());
+  EXPECT_NEAR(whole.volume_m3, 1, 1e-9);
+  const fs::path flat = folder_.write("flat.obj", "v 1 2\n" + kCube);
+  EXPECT_HAS(refusal([&] { read_mesh(flat); }), "flat.obj: cannot be read (a vertex has fewer than three");
+}
+
+// The library takes a line feed there for the end of the header.
+TEST_F(MeshFileTest, BinaryPlyMayBeginWithALineFeed) {
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string data;
+  const float first = std::bit_cast<float>(0x3f80000au);  // begins with the byte 0x0A
+  for (const float value : {first, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 2.f}) data += raw(value);
+  for (const auto& face : std::vector<std::array<int, 3>>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    data += '\3';
+    for (const int corner : face) data += raw(corner);
+  }
+  ASSERT_EQ(data.front(), '\n');
+  std::string windows = header;
+  for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2)
+    windows.replace(at, 1, "\r\n");
+  for (const std::string& before : {header, windows}) {
+    const TriangleMesh solid = read_mesh(folder_.write("t.ply", before + data));
+    EXPECT_TRUE(check_mesh(solid).closed());
+    EXPECT_EQ(solid.vertices[0], Vec3(first, 0, 0));
+  }
 }
 
 TEST_F(MeshFileTest, RefusalsNameTheFile) {
