@@ -4,12 +4,13 @@
 #include <bit>
 #include <cmath>
 
+#include "analysis/comparison/paired_runs.h"
+
 namespace remote_touch {
 
 namespace {
 
 using Problems = std::vector<std::string>;
-using Runs = std::vector<std::size_t>;  // rising
 
 // --- may they be compared? ---
 
@@ -74,6 +75,7 @@ Runs check_states(const SweepResult& a, const SweepResult& b, SweepComparison& r
     const bool in_a = a.state[run] == RunState::done, in_b = b.state[run] == RunState::done;
     if (in_a && in_b) both.push_back(run);
     if (in_a && !in_b) result.baseline_only.push_back(run);
+    if (in_a && b.state[run] == RunState::failed) ++result.newly_failed;
     if (!in_a && in_b) result.candidate_only.push_back(run);
   }
   const std::size_t neither =
@@ -85,18 +87,6 @@ Runs check_states(const SweepResult& a, const SweepResult& b, SweepComparison& r
 }
 
 // --- measures ---
-
-struct Pairs {
-  const std::vector<double>&baseline, &candidate;
-  Tolerance tolerance;
-  bool event = false;  // then a candidate's value that is neither 0 nor 1 has no partner
-
-  bool finite(std::size_t run) const {
-    const double value = candidate[run];
-    return std::isfinite(baseline[run]) && std::isfinite(value) && (!event || value == 0 || value == 1);
-  }
-  bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }
-};
 
 bool is_0_or_1(double value) {
   return value == 0 || value == 1 || !std::isfinite(value);
@@ -113,20 +103,14 @@ bool is_event(const std::vector<double>& baseline, const std::vector<double>& ca
   return any && (happened || in_candidate);
 }
 
-MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
-  MeasureComparison result;
-  result.tolerance = pairs.tolerance, result.event = pairs.event;
-  result.compared = static_cast<std::int64_t>(runs.size());
-  std::vector<double> deviations;
-  for (const std::size_t run : runs) {
-    const double deviation = std::abs(pairs.candidate[run] - pairs.baseline[run]);
-    if (std::isfinite(deviation)) deviations.push_back(deviation);
-    if (pairs.equal(run)) continue;
-    if (result.outside++ == 0) result.first_outside = run;
-  }
-  for (const double d : deviations) result.max_deviation = std::max(result.max_deviation, d);
-  result.rms_deviation = root_mean_square(deviations);
-  return result;
+// Of each run, in the measures that tell it.
+std::vector<bool> same_outcomes(const SweepResult& a, const SweepResult& b) {
+  std::vector<bool> same(a.run_count(), true);
+  for (const Column& measure : a.measures)
+    if (is_outcome(measure.name))
+      for (std::size_t run = 0; run < same.size(); ++run)
+        if (!within({}, a.measure(measure.name)[run], b.measure(measure.name)[run])) same[run] = false;
+  return same;
 }
 
 std::optional<FirstDifference> first_difference(const SweepResult& a, const SweepResult& b,
@@ -158,60 +142,6 @@ std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const s
 
 // --- paired tests ---
 
-double standard_deviation(const std::vector<double>& values) {
-  if (values.empty()) return 0;
-  double sum = 0;
-  for (const double value : values) sum += value / static_cast<double>(values.size());
-  std::vector<double> centred;
-  for (const double value : values) centred.push_back(value - sum);
-  return root_mean_square(centred);
-}
-
-RegionComparison tested(const Pairs& pairs, const Runs& runs) {
-  RegionComparison result;
-  result.runs = static_cast<std::int64_t>(runs.size());
-  std::vector<double> all, outside, before;
-  for (const std::size_t run : runs) {
-    const bool finite = pairs.finite(run), equal = pairs.equal(run);
-    result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
-    if (!finite) continue;
-    const double b = pairs.baseline[run], c = pairs.candidate[run];
-    ++result.pairs;
-    result.up += !equal && c > b ? 1 : 0, result.down += !equal && c < b ? 1 : 0;
-    if (pairs.event) {
-      result.baseline_events += b == 1 ? 1 : 0, result.candidate_events += c == 1 ? 1 : 0;
-      continue;
-    }
-    all.push_back(c - b), before.push_back(b);
-    if (!equal && std::isfinite(c - b)) outside.push_back(c - b);
-  }
-  result.difference = paired_difference_interval(result.up, result.down, result.pairs);
-  result.sign_p = sign_test(result.up, result.down);
-  if (pairs.event) {
-    result.baseline_fraction = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
-    result.candidate_fraction = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
-  } else {
-    result.mean = mean_difference(all);
-    result.baseline_spread = standard_deviation(before);
-    result.symmetry_p = symmetry_test(outside);
-  }
-  return result;
-}
-
-bool holds(const std::pair<double, double>& interval, double margin) {
-  return interval.first >= -margin && interval.second <= margin;
-}
-
-Judgement judgement(const RegionComparison& c, bool event, const PairedRule& rule) {
-  if (c.runs > 0 && c.outside == 0) return Judgement::equal;
-  if (c.adjusted_p < rule.alpha || c.unpaired > 0) return Judgement::changed;
-  if (c.pairs == 0) return Judgement::undecided;
-  const bool within = event ? holds(c.difference, rule.margin)
-                            : holds(c.difference, rule.shift_margin) &&
-                                  holds({c.mean.low, c.mean.high}, rule.shift_margin * c.baseline_spread);
-  return within ? Judgement::within_margin : Judgement::undecided;
-}
-
 // Both tests of a measure that is no event are members of the family that is adjusted together.
 void judge(const PairedRule& rule, SweepComparison& result) {
   std::vector<double> p;
@@ -224,7 +154,13 @@ void judge(const PairedRule& rule, SweepComparison& result) {
   for (RegionComparison& c : result.by_region) {
     c.adjusted_p = *next++;
     if (!result.measures[c.measure].event) c.adjusted_p = std::min(c.adjusted_p, *next++);
-    c.judgement = judgement(c, result.measures[c.measure].event, rule);
+    c.judgement = judgement_by_pairs(c, result.measures[c.measure], rule);
+  }
+  for (std::size_t i = 0; i < result.measures.size(); ++i) {
+    Judgement& run_by_run = result.measures[i].run_by_run;
+    const Judgement prevails = judgement_of(result, i, true);
+    if (run_by_run == Judgement::undecided && (prevails == Judgement::better || prevails == Judgement::worse))
+      run_by_run = prevails;
   }
 }
 
@@ -240,7 +176,7 @@ PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison&
   if (!result.first) return PairedVerdict::equal;
   bool undecided = false;
   for (const RegionComparison& c : result.by_region) {
-    if (c.judgement == Judgement::changed) return PairedVerdict::changed;
+    if (is_change(c.judgement)) return PairedVerdict::changed;
     undecided = undecided || (c.region == 0 && c.judgement == Judgement::undecided);
   }
   return undecided ? PairedVerdict::undecided : PairedVerdict::within_margin;
@@ -249,7 +185,7 @@ PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison&
 }  // namespace
 
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
-                        const Tolerances& tolerances, const PairedRule& rule) {
+                        const Tolerances& tolerances, const PairedRule& rule, const Directions& directions) {
   SweepComparison result;
   check_definitions(baseline, candidate, result);
   for (const auto& [name, tolerance] : tolerances)
@@ -263,11 +199,13 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
   for (const std::size_t run : both)
     if (is_planned(baseline, run)) planned.push_back(run);
   const std::vector<Runs> runs = by_region(baseline, planned, result.regions);
+  const std::vector<bool> same_outcome = same_outcomes(baseline, candidate);
   std::vector<Pairs> pairs;
   for (const Column& measure : baseline.measures) {
     pairs.push_back({baseline.measure(measure.name), candidate.measure(measure.name),
-                     tolerance_of(tolerances, measure.name),
-                     is_event(baseline.measure(measure.name), candidate.measure(measure.name), both)});
+                     tolerance_of(tolerances, measure.name), direction_of(directions, measure.name),
+                     is_event(baseline.measure(measure.name), candidate.measure(measure.name), both),
+                     is_outcome(measure.name) ? std::vector<bool>() : same_outcome});
     result.measures.push_back(compare_values(pairs.back(), both));
     result.measures.back().name = measure.name, result.measures.back().units = measure.units;
   }
@@ -281,6 +219,14 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
   judge(rule, result);
   result.paired = paired_verdict(baseline, result);
   return result;
+}
+
+Judgement judgement_of(const SweepComparison& sweep, std::size_t measure, bool paired) {
+  if (!paired) return sweep.measures[measure].run_by_run;
+  for (const Judgement counts : {Judgement::worse, Judgement::changed, Judgement::better})
+    for (std::size_t region = 0; region < sweep.regions.size(); ++region)
+      if (sweep.at(region, measure).judgement == counts) return counts;
+  return sweep.at(0, measure).judgement;
 }
 
 }  // namespace remote_touch

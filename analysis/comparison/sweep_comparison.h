@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "analysis/columns/tolerance.h"
+#include "analysis/comparison/judgement.h"
+#include "analysis/measures/better.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/sweep_regions.h"
 #include "analysis/sweeps/sweep_result.h"
@@ -22,13 +24,18 @@ namespace remote_touch {
 // Over the runs that are done in both.
 struct MeasureComparison {
   std::string name, units;
+  Better better = Better::neither;
   Tolerance tolerance;
   // All finite values of the baseline are 0 or 1 (and those of the candidate, where the baseline has no 1):
   // the fraction of 1 is a probability.
   bool event = false;
   std::int64_t compared = 0, outside = 0;
+  std::int64_t got_better = 0, got_worse = 0;     // of those outside
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
   std::optional<std::size_t> first_outside = {};  // a run
+  // Run by run: better or worse where all runs outside went that way, or the paired tests show that it
+  // prevails; undecided where runs went both ways and no test shows which.
+  Judgement run_by_run = Judgement::equal;
 };
 
 // The first run, in the order of the arrays, that is done in one only or has a measure outside.
@@ -40,13 +47,6 @@ struct FirstDifference {
   double baseline = 0, candidate = 0;
 };
 
-enum class Judgement {
-  equal,          // every pair is within the tolerance
-  within_margin,  // the intervals of the differences lie within the margins
-  changed,        // one direction prevails: adjusted p < alpha, whatever the margins; or a number became NaN
-  undecided       // none of these
-};
-
 // A measure in a region, over the runs done in both. Up and down: the candidate's number is larger, smaller,
 // by more than the tolerance. For an event: it happened in the candidate only, in the baseline only.
 struct RegionComparison {
@@ -56,6 +56,7 @@ struct RegionComparison {
   std::int64_t outside = 0;   // the tolerance
   std::int64_t unpaired = 0;  // of those: not finite in one or both, or an event neither 0 nor 1
   std::int64_t up = 0, down = 0;
+  std::int64_t got_better = 0, got_worse = 0;      // of the pairs; 0 where the measure has no direction
   std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
 
   // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
@@ -66,8 +67,10 @@ struct RegionComparison {
   double baseline_spread = 0;
 
   double sign_p = 1;
-  double symmetry_p = 1;  // over the pairs outside; 1 for an event, where it adds nothing
+  double symmetry_p = 1;               // over the pairs outside; 1 for an event, where it adds nothing
+  double worse_p = 1, mean_worse = 0;  // symmetry test and mean of how much worse they got; not of an event
   double adjusted_p = 1;  // the smaller of the two, adjusted for all tests of all regions and measures
+  // By the paired tests, see PairedVerdict.
   Judgement judgement = Judgement::undecided;
 };
 
@@ -76,7 +79,7 @@ struct PairedRule {
   // Of other measures: of the fraction of runs that got larger less the fraction that got smaller, and of the
   // mean difference in units of the baseline's standard deviation.
   double shift_margin = 0.1;
-  double alpha = 0.01;  // probability of a false "changed" anywhere
+  double alpha = 0.01;  // probability of a false "better", "worse" or "changed" anywhere
 };
 
 enum class ExactVerdict {
@@ -86,6 +89,11 @@ enum class ExactVerdict {
 };
 
 // In this order, the first that holds; equal and within_margin are a pass.
+//
+// A measure in a region is changed where one direction prevails (adjusted p < alpha, whatever the margins) or
+// a number became NaN. Runs that differ in an outcome, see is_outcome(), are neither better nor worse by
+// other measures. It is worse where the sign test or the symmetry test, of the runs that got better and
+// worse, alone has p < alpha for worse; else better where one has it for better and no number became NaN.
 //
 // Any pass but equal must be demonstrated, not merely not refuted: over the whole, every measure that differs
 // anywhere needs its intervals within the margins. For an event at the default margin that takes 190 runs
@@ -103,7 +111,7 @@ enum class PairedVerdict {
   not_comparable,
   runs_missing,   // some runs of the first round are done in one sweep only
   equal,          // as ExactVerdict
-  changed,        // some measure in some region
+  changed,        // some measure in some region: better, worse, or without a direction
   undecided,      // some measure over the whole
   within_margin,  // over the whole every measure is equal or within_margin
 };
@@ -114,6 +122,7 @@ struct SweepComparison {
   std::vector<std::string> notes;  // differences without effect on the verdicts, a line each
   std::size_t done_in_both = 0;
   std::vector<std::size_t> baseline_only, candidate_only;  // runs done there only, rising
+  std::size_t newly_failed = 0;                            // of baseline_only: they failed in the candidate
   std::vector<MeasureComparison> measures;                 // those of the baseline
   std::optional<FirstDifference> first;
   std::vector<Region> regions;
@@ -132,6 +141,11 @@ struct SweepComparison {
 // refinement and error texts are not compared. pre: the same noise in both (one seed); arrays are over all
 // runs, as read_sweep gives them; tolerances, margin and alpha are not negative.
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
-                        const Tolerances& tolerances = {}, const PairedRule& rule = {});
+                        const Tolerances& tolerances = {}, const PairedRule& rule = {},
+                        const Directions& directions = {});
+
+// Of a measure, by the rule that judges the sweeps: run by run; or by pairs, where one region that got worse
+// counts before one that changed, and that before one that got better.
+Judgement judgement_of(const SweepComparison& sweep, std::size_t measure, bool paired);
 
 }  // namespace remote_touch

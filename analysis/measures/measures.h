@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/measures/better.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
@@ -49,6 +50,8 @@ struct Measure {
   std::string meaning;  // one line that continues "the measure is the ..."
   MeasuredRuns runs = MeasuredRuns::all;
   std::function<double(const Trace&)> of;  // NaN where nothing can be said; called from many threads
+  // Whether a later result is worse or only another one. Last, so that a program may leave it out.
+  Better better = Better::neither;
 };
 // Those of this program, in the order in which summaries print them. A program may have more, see
 // runners/experiment/catalog.h.

@@ -89,7 +89,7 @@ CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
         const CardPlace place{scene.name, card.methods[c], scene.noise_m[i]};
         numbers.counts.push_back({place, scene.success[c].at_level[i]});
         for (const JudgedMeasure& measure : scene.measures)
-          if (kept == KeptMeasures::all || measure.better != Better::reported)
+          if (kept == KeptMeasures::all || measure.better != Better::neither)
             numbers.means.push_back({place, measure.name, measure.units, measure.at_level[c][i]});
       }
   return numbers;

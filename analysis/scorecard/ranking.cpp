@@ -11,11 +11,6 @@ namespace remote_touch {
 
 namespace {
 
-// So that smaller is better.
-double badness(double value, Better better) {
-  return better == Better::larger ? -value : better == Better::near_zero ? std::abs(value) : value;
-}
-
 // Of two methods, above 0 where a is worse; repeats: of both.
 std::vector<double> differences(const PairedValues& a, const PairedValues& b, Better better,
                                 const Repeats& repeats) {
@@ -94,7 +89,7 @@ Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool ev
   std::stable_sort(result.order.begin(), result.order.end(),
                    [&](std::size_t a, std::size_t b) { return bad[a] < bad[b]; });
   for (const double each : bad) result.ranked += each < std::numeric_limits<double>::infinity() ? 1 : 0;
-  if (better == Better::reported) return result;
+  if (better == Better::neither) return result;
   result.against.assign(methods.size(), std::vector<MethodComparison>(methods.size()));
   for (std::size_t i = 0; i < result.ranked; ++i)
     for (std::size_t k = 0; k < result.ranked; ++k) {

@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/measures/better.h"
 #include "analysis/statistics/paired_test.h"
 
 namespace remote_touch {
-
-enum class Better { larger, smaller, near_zero, reported };  // reported: neither end is better
 
 // One method's values of a measure. values[i][k]: of noise level i and replicate k, which has the same noise
 // for every method; NaN if there is none.

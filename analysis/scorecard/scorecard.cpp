@@ -124,7 +124,7 @@ JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
   for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
     const std::vector<double>& all = runs.sweeps[c].measure(name);
     values.push_back(by_level(runs.sweeps[c], [&](std::size_t run) { return all[run]; }));
-    if (better != Better::reported)
+    if (better != Better::neither)
       for (std::size_t i = 0; i < won[c].size(); ++i)
         for (std::size_t k = 0; k < won[c][i].size(); ++k)
           if (won[c][i][k] == 0) values.back()[i][k] = kNone;
@@ -197,7 +197,7 @@ Table ranking_table(const Scorecard& card) {
   for (const SceneScore& s : card.scenes) {
     add(s, "success", s.ranking);
     for (const JudgedMeasure& m : s.measures)
-      if (m.better != Better::reported) add(s, m.name, m.ranking);
+      if (m.better != Better::neither) add(s, m.name, m.ranking);
   }
   Table table{"standings", "methods in order over all levels with noise"};
   table.columns = {texts("scene", "scene", scene),

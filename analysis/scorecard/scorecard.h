@@ -22,7 +22,7 @@ struct Proportion {
 
 struct JudgedMeasure {
   std::string name, units;
-  Better better = Better::reported;
+  Better better = Better::neither;
   // Over all levels with noise; the means have Student's intervals. Judged measures are those of successful
   // runs, and two methods are compared where both succeeded. Reported ones are those of all runs.
   Ranking ranking = {};

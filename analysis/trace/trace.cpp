@@ -46,6 +46,34 @@ Values flat(const std::vector<Eigen::Quaterniond>& rows) {
   return numbers;
 }
 
+// The inverse of flat(); false for a column of another kind or width. One that is not there has no rows.
+template <class Number>
+bool read_rows(std::optional<Column> column, std::vector<Number>& rows) {
+  if (!column) return true;
+  auto* numbers = std::get_if<std::vector<Number>>(&column->values);
+  if (numbers == nullptr || column->width != 1) return false;
+  rows = std::move(*numbers);
+  return true;
+}
+template <class Row>
+bool read_rows(const std::optional<Column>& column, int width, std::vector<Row>& rows,
+               Row (*row)(const double*)) {
+  if (!column) return true;
+  const auto* numbers = std::get_if<std::vector<double>>(&column->values);
+  if (numbers == nullptr || column->width != width) return false;
+  rows.reserve(column->length());
+  for (std::size_t i = 0; i < column->length(); ++i)
+    rows.push_back(row(numbers->data() + i * static_cast<std::size_t>(width)));
+  return true;
+}
+bool read_rows(const std::optional<Column>& column, std::vector<Vec3>& rows) {
+  return read_rows<Vec3>(column, 3, rows, [](const double* at) { return Vec3(at[0], at[1], at[2]); });
+}
+bool read_rows(const std::optional<Column>& column, std::vector<Eigen::Quaterniond>& rows) {
+  return read_rows<Eigen::Quaterniond>(
+      column, 4, rows, [](const double* at) { return Eigen::Quaterniond(at[0], at[1], at[2], at[3]); });
+}
+
 // What the entries of the table are written with.
 struct Meaning {
   Meaning(const char* of_every_run) : without_tool(of_every_run), with_tool(of_every_run) {}
@@ -103,6 +131,19 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
   if (truth.contact) contact.push_back(*truth.contact);
+}
+
+std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column) {
+  Trace trace;
+#define TRACE_COLUMN(member, Row, name, ...) \
+  if (!read_rows(column(name), trace.member)) return std::nullopt;
+#include "analysis/trace/trace_columns.h"
+#undef TRACE_COLUMN
+#define TRACE_COLUMN(member, Row, name, unit, part, ...) \
+  if (trace.member.size() != (has(trace, TracePart::part) ? trace.length() : 0)) return std::nullopt;
+#include "analysis/trace/trace_columns.h"
+#undef TRACE_COLUMN
+  return trace;
 }
 
 std::vector<Column> Trace::columns() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -75,5 +76,9 @@ struct TraceColumn {
 
 // Every column that a trace can have, in order.
 const std::vector<TraceColumn>& trace_columns();
+
+// The trace of stored columns, asked for by name one after the other; `contact`, which no column has, is
+// empty. None where a column of its runs is missing, or one is of another kind, width or length.
+std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column);
 
 }  // namespace remote_touch

@@ -47,12 +47,18 @@ std::string object_of(const Json& object, const char* part, const std::string& l
   return found->dump();
 }
 
-Better better_of(const Json& word, const std::string& label) {
-  if (word == "larger") return Better::larger;
-  if (word == "smaller") return Better::smaller;
-  if (word == "near_zero") return Better::near_zero;
-  if (word == "reported") return Better::reported;
-  throw InputError(label + " = " + shown(word), "expected larger, smaller, near_zero, reported");
+// Of a measure in a scene. "judged" is the measure's own direction; a scene gives one only to a measure that
+// has none, as less force is better where nothing should be touched.
+Better better_of(const Json& word, const std::string& measure, const std::string& label) {
+  const Better own = direction_of(directions(), measure);
+  if (word == "reported") return Better::neither;
+  if (word == "judged" && own != Better::neither) return own;
+  for (const auto& [name, better] :
+       {std::pair("larger", Better::larger), {"smaller", Better::smaller}, {"near_zero", Better::near_zero}})
+    if (word == name && (own == Better::neither || own == better)) return better;
+  throw InputError(label + " = " + shown(word),
+                   own == Better::neither ? "expected larger, smaller, near_zero, reported"
+                                          : std::string(text_of(own)) + ": expected judged, reported");
 }
 
 Bound bound_of(const Json& json, const std::string& label) {
@@ -80,6 +86,9 @@ void add_measure(BenchmarkScene& scene, const std::string& name, Better better) 
     if (judged.measure == name) return;
   scene.measures.push_back({name, better});
 }
+void add_judged(BenchmarkScene& scene, const std::string& name) {
+  add_measure(scene, name, direction_of(directions(), name));
+}
 
 // {"rule": "held", "tolerance_m", "bounds" and their "meaning"}: the bounds come in addition.
 void read_held_rule(const Json& success, const std::string& rule, BenchmarkScene& scene) {
@@ -101,8 +110,8 @@ void read_success(const Json& success, const std::string& rule, BenchmarkScene& 
   scene.old_success = bounds_of(success, "old_bounds", rule);
   if (success.contains("rule")) {
     read_held_rule(success, rule, scene);
-    add_measure(scene, "rms_contact_error", Better::smaller);
-    for (const char* name : {"max_sink", "max_float"}) add_measure(scene, name, Better::reported);
+    add_judged(scene, "rms_contact_error");
+    for (const char* name : {"max_sink", "max_float"}) add_measure(scene, name, Better::neither);
     return;
   }
   scene.meaning = text_of(success, "meaning", rule);
@@ -204,17 +213,33 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
   if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
   const Json measures = parse_json(object_of(object, "measures", label), label);
   for (const auto& item : measures.items())
-    scene.measures.push_back({item.key(), better_of(item.value(), label + ": measures." + item.key())});
+    scene.measures.push_back(
+        {item.key(), better_of(item.value(), item.key(), label + ": measures." + item.key())});
   const std::string rule = label + ": success";
   read_success(read_object(object_of(object, "success", label), rule,
                            {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
                rule, scene);
-  add_measure(scene, "jump_fraction_10", Better::smaller);
+  add_judged(scene, "jump_fraction_10");
   for (const char* perceived :
        {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10", "packet_rate_20"})
-    add_measure(scene, perceived, Better::reported);
+    add_measure(scene, perceived, Better::neither);
   return scene;
 }
+
+namespace {
+
+// The scene's tool, in a method's renderer: a card would state a tool of the method that was not run.
+void bring_tool(const Json& tool, const std::string& scene, const std::string& method, Json& renderer) {
+  for (const auto& item : tool.items()) {
+    const Json stated = renderer.value(item.key(), item.value());
+    if (stated != item.value())
+      throw InputError("method " + method + ": renderer." + item.key() + " = " + shown(stated),
+                       "scene " + scene + " has a tool of its own: expected none");
+  }
+  renderer.update(tool);
+}
+
+}  // namespace
 
 Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   const std::string label = "scene " + name + " with " + method.name;
@@ -224,7 +249,7 @@ Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   if (run.contains("seed"))
     throw InputError("scene " + name + ": experiment.seed", "set: expected none, the scorecard has its own");
   run["renderer"] = parse_json(method.renderer, label);
-  if (!tool.empty()) run["renderer"].update(parse_json(tool, label));
+  if (!tool.empty()) bring_tool(parse_json(tool, label), name, method.name, run["renderer"]);
   run["seed"] = kScorecardSeed;
   // A sweep needs an axis: where the scene has its own noise it is the seed, with one value.
   // It then has as many runs as others have with noise, so that as many pairs decide.

@@ -29,7 +29,7 @@ struct Method {
 struct BenchmarkScene {
   struct Judged {
     std::string measure;
-    Better better;
+    Better better;  // neither: only reported
   };
   std::string name, title;
   std::string experiment;        // JSON, without a renderer

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 #include "runners/scorecard/stored_card.h"
@@ -18,6 +19,8 @@ void make_scorecard_folder(const std::string& folder) {
       throw InputError(path.string(),
                        "cannot be made (" + failure.message() + "): expected a writable folder");
   }
+  for (const char* file : {kScorecardFile, "scorecard.json", "costs.json"})
+    require_writable(std::filesystem::path(folder) / file);
 }
 
 void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan) {

@@ -26,7 +26,7 @@ SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>&
 
 // The audit is about all runs, those that are not passive first of all.
 BenchmarkScene reported(BenchmarkScene scene) {
-  for (BenchmarkScene::Judged& judged : scene.measures) judged.better = Better::reported;
+  for (BenchmarkScene::Judged& judged : scene.measures) judged.better = Better::neither;
   return scene;
 }
 

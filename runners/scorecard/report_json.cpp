@@ -37,7 +37,7 @@ const char* better_word(Better better) {
       return "smaller";
     case Better::near_zero:
       return "near_zero";
-    case Better::reported:
+    case Better::neither:
       break;
   }
   return "reported";
@@ -84,7 +84,7 @@ Json successes_json(const ScorecardReport& report, std::size_t number) {
 }
 
 Json measure_json(const JudgedMeasure& measure) {
-  const bool is_judged = measure.better != Better::reported;
+  const bool is_judged = measure.better != Better::neither;
   Json methods = Json::array();
   for (std::size_t c = 0; c < measure.at_level.size(); ++c) {
     Json levels = Json::array();

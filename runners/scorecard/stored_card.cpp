@@ -11,6 +11,7 @@
 #include "analysis/scorecard/overview.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
+#include "runners/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -133,7 +134,7 @@ std::string write_stored_card(const std::filesystem::path& file, const Scorecard
 
 StoredCard read_stored_card(const std::filesystem::path& file) {
   const Hdf5Reader hdf5 = stored_card_file(file);
-  StoredCard stored{attribute(hdf5.attributes(), "config"), 0, {}, {}, {}};
+  StoredCard stored{stored_configuration(attribute(hdf5.attributes(), "config")), 0, {}, {}, {}};
   try {
     const Json all = Json::parse(stored.configuration);
     stored.replicates = all.at("replicates").get<int>();

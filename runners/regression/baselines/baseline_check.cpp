@@ -9,6 +9,7 @@
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
 #include "runners/settings/json_parameters.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/recordings/recorded_scene.h"
 
@@ -43,7 +44,7 @@ ResultComparison compare_run(const std::filesystem::path& folder, const Baseline
   options.kernels = &kernels, options.stop = stop, options.hash_frames = true;
   const ColumnsInMemory made(simulate(experiment, options).columns());
   const std::string config = present_form(attribute(stored.attributes(), "config"), [](const auto& text) {
-    return Experiment::from_json(text, "config").to_json();
+    return Experiment::from_json(stored_configuration(text), "config").to_json();
   });
   return compare_trace(stored, with_config(stored.attributes(), config), made,
                        provenance(experiment.to_json(), attribute(stored.attributes(), "command"),
@@ -57,7 +58,7 @@ ResultComparison compare_sweep_again(const std::filesystem::path& folder, const 
   const Sweep sweep = Sweep::load(subject_of(folder, baseline), baseline.overrides);
   const SweepResult made = run_sweep(sweep, {&kernels, stop});
   const std::string config = present_form(attribute(stored.attributes, "config"), [](const auto& text) {
-    return Sweep::from_json(text, "config").to_json();
+    return Sweep::from_json(stored_configuration(text), "config").to_json();
   });
   return compare_sweep(
       stored.result, with_config(stored.attributes, config), made,
@@ -69,13 +70,13 @@ BaselineCheck concluded(const Baseline& baseline, ResultComparison comparison) {
   BaselineCheck check{baseline.name};
   comparison.baseline = baseline.name + " (stored)", comparison.candidate = "this program";
   check.text = comparison.verdict;
-  check.state = comparison.outcome == Outcome::same        ? State::same
-                : comparison.outcome == Outcome::regressed ? State::changed
-                                                           : State::not_comparable;
+  check.state = comparison.outcome == Outcome::same             ? State::same
+                : comparison.outcome == Outcome::not_comparable ? State::not_comparable
+                                                                : State::changed;
   if (check.state == State::same && !comparison.configuration.empty()) {
     check.state = State::changed;
     check.text = "the numbers are equal, but the experiment differs: " + comparison.configuration.front();
-    comparison.outcome = Outcome::regressed, comparison.verdict = check.text;
+    comparison.outcome = Outcome::changed, comparison.verdict = check.text;
   }
   check.comparison = std::move(comparison);
   return check;

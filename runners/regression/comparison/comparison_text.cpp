@@ -85,28 +85,61 @@ const char* word_for(Judgement judgement) {
       return "equal";
     case Judgement::within_margin:
       return "within the margin";
+    case Judgement::better:
+      return "better";
+    case Judgement::worse:
+      return "WORSE";
     case Judgement::changed:
-      return "CHANGED";
+      return "changed";
     case Judgement::undecided:
       break;
   }
   return "undecided";
 }
 
-void print_measures(const SweepComparison& sweep, std::FILE* out) {
-  std::fprintf(out, "  %-22s %-6s %9s %12s %12s %9s  %s\n", "measure", "units", "runs", "max", "rms",
-               "outside", "tolerance");
-  for (const MeasureComparison& measure : sweep.measures)
-    std::fprintf(out, "  %-22s %-6s %9lld %12.4g %12.4g %9lld  %s\n", measure.name.c_str(),
+// "equal", "WORSE (smaller is better): 3 runs better, 40 worse"
+std::string verdict_text(const MeasureComparison& measure, Judgement judgement) {
+  std::string all = word_for(judgement);
+  if (judgement != Judgement::equal) all += std::string(" (") + text_of(measure.better) + ")";
+  if (measure.got_better + measure.got_worse > 0)
+    all += ": " + std::to_string(measure.got_better) + " runs better, " + std::to_string(measure.got_worse) +
+           " worse";
+  return all;
+}
+
+void print_measures(const SweepComparison& sweep, bool paired, std::FILE* out) {
+  std::fprintf(out, "  %-22s %-6s %9s %12s %12s %9s  %-15s %s\n", "measure", "units", "runs", "max", "rms",
+               "outside", "tolerance", "verdict");
+  for (std::size_t i = 0; i < sweep.measures.size(); ++i) {
+    const MeasureComparison& measure = sweep.measures[i];
+    std::fprintf(out, "  %-22s %-6s %9lld %12.4g %12.4g %9lld  %-15s %s\n", measure.name.c_str(),
                  measure.units.c_str(), static_cast<long long>(measure.compared), measure.max_deviation,
                  measure.rms_deviation, static_cast<long long>(measure.outside),
-                 tolerance_text(measure.tolerance).c_str());
+                 tolerance_text(measure.tolerance).c_str(),
+                 verdict_text(measure, judgement_of(sweep, i, paired)).c_str());
+  }
+}
+
+// Those of two traces that are not equal.
+void print_measures(const std::vector<ValueComparison>& measures, std::FILE* out) {
+  if (measures.empty()) return;
+  std::size_t equal = 0;
+  std::fprintf(out, "  %-23s %-6s %13s %13s %11s  %s\n", "measure", "units", "baseline", "candidate",
+               "difference", "verdict");
+  for (const ValueComparison& measure : measures)
+    if (measure.judgement == Judgement::equal)
+      ++equal;
+    else
+      std::fprintf(out, "  %-23s %-6s %13.7g %13.7g %+11.3g  %s (%s)\n", measure.name.c_str(),
+                   measure.units.c_str(), measure.baseline, measure.candidate,
+                   measure.candidate - measure.baseline, word_for(measure.judgement),
+                   text_of(measure.better));
+  std::fprintf(out, "  %zu of %zu measures are equal\n", equal, measures.size());
 }
 
 // What is told of a region: all of an event's, and of other measures the whole and what changed.
 bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t measure) {
-  return region == 0 || sweep.measures[measure].event ||
-         sweep.at(region, measure).judgement == Judgement::changed;
+  return region == 0 || sweep.measures[measure].event || is_change(sweep.at(region, measure).judgement);
 }
 
 // Shares with their intervals, the flips both ways, and what the paired test says.
@@ -135,11 +168,11 @@ void print_regions(const SweepComparison& sweep, std::FILE* out) {
   }
 }
 
-void print_sweep(const SweepComparison& sweep, std::FILE* out) {
+void print_sweep(const SweepComparison& sweep, bool paired, std::FILE* out) {
   for (const std::string& problem : sweep.problems) std::fprintf(out, "  %s\n", problem.c_str());
   for (const std::string& note : sweep.notes) std::fprintf(out, "  %s\n", note.c_str());
   if (!sweep.problems.empty()) return;
-  print_measures(sweep, out);
+  print_measures(sweep, paired, out);
   if (!sweep.first) return;
   print_regions(sweep, out);
   std::string cell;
@@ -170,6 +203,8 @@ const char* word_for(Outcome outcome) {
       return "same";
     case Outcome::regressed:
       return "REGRESSED";
+    case Outcome::changed:
+      return "CHANGED";
     case Outcome::not_comparable:
       break;
   }
@@ -187,7 +222,8 @@ void print_comparison(const ResultComparison& comparison, std::FILE* out) {
     print_columns(*comparison.columns, out);
     if (comparison.columns->divergence) print_divergence(*comparison.columns->divergence, out);
   }
-  if (comparison.sweep) print_sweep(*comparison.sweep, out);
+  print_measures(comparison.measures, out);
+  if (comparison.sweep) print_sweep(*comparison.sweep, comparison.paired, out);
   std::fprintf(out, "%s: %s\n", word_for(comparison.outcome), comparison.verdict.c_str());
 }
 

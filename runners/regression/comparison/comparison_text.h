@@ -9,7 +9,7 @@ namespace remote_touch {
 
 void print_comparison(const ResultComparison& comparison, std::FILE* out = stdout);
 
-// "same", "REGRESSED", "COULD NOT COMPARE".
+// "same", "REGRESSED", "CHANGED", "COULD NOT COMPARE".
 const char* word_for(Outcome outcome);
 
 // "exact", or "1e-09 + 1e-06 relative".

@@ -8,7 +8,9 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
+#include "runners/experiment/catalog.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/regression/comparison/measure_comparison.h"
 #include "runners/settings/configuration_difference.h"
 
 namespace remote_touch {
@@ -46,6 +48,29 @@ std::string count_text(const std::vector<std::string>& names, std::size_t of, co
   return text + " of " + std::to_string(of) + " " + things;
 }
 
+// "; worse: force_noise; better: max_sink, max_float"; empty where every measure is equal or within a margin.
+std::string judgements_text(const ResultComparison& result) {
+  constexpr std::size_t kNamed = 4;  // of each
+  std::string text;
+  for (const Judgement requested :
+       {Judgement::worse, Judgement::better, Judgement::changed, Judgement::undecided}) {
+    std::string names;
+    std::size_t count = 0;
+    for (const MeasureJudgement& measure : judged_measures(result))
+      if (measure.judgement == requested && ++count <= kNamed)
+        names += (names.empty() ? "" : ", ") + measure.name;
+    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+    if (count > 0) text += std::string("; ") + name_of(requested) + ": " + names;
+  }
+  return text;
+}
+
+bool got_worse(const ResultComparison& result) {
+  for (const MeasureJudgement& measure : judged_measures(result))
+    if (measure.judgement == Judgement::worse) return true;
+  return false;
+}
+
 void judge_columns(ResultComparison& result) {
   const std::vector<ColumnComparison>& columns = result.columns->columns;
   std::vector<std::string> failed;
@@ -68,16 +93,20 @@ void judge_columns(ResultComparison& result) {
     text += "; the baseline has " + std::to_string(first.baseline_rows) + " rows, the candidate " +
             std::to_string(first.candidate_rows) +
             (result.columns->divergence ? "" : ", and they are the same as far as both go");
-  conclude(result, Outcome::regressed, text);
+  if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
+  conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
 // Each tolerance has to be of something, else a misspelt one would leave its column exact.
-void check_names(const Tolerances& tolerances, const std::vector<std::string>& names) {
+void check_names(const Tolerances& tolerances, const std::vector<std::string>& names,
+                 const Directions& measures = {}) {
   for (const auto& [name, tolerance] : tolerances) {
-    if (name == "*" || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (name == "*" || measures.contains(name) || std::find(names.begin(), names.end(), name) != names.end())
+      continue;
     std::string known;
     for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
-    throw InputError("tolerance of " + name, "there is no such column: expected " + known);
+    throw InputError("tolerance of " + name, "there is no such column: expected " + known +
+                                                 (measures.empty() ? "" : ", or a measure"));
   }
 }
 
@@ -88,49 +117,28 @@ std::string exact_text(const SweepComparison& sweep) {
   for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
   return "up to " + std::to_string(outside) + " of " + std::to_string(sweep.done_in_both) +
          " runs differ in a measure, " +
-         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only";
+         std::to_string(sweep.baseline_only.size() + sweep.candidate_only.size()) + " are done in one only" +
+         (sweep.newly_failed == 0
+              ? ""
+              : ", of which " + std::to_string(sweep.newly_failed) + " failed in the candidate");
 }
 
-void judge_exactly(ResultComparison& result) {
-  conclude(result, result.sweep->exact == ExactVerdict::equal ? Outcome::same : Outcome::regressed,
-           exact_text(*result.sweep));
-}
-
-// The measures that are of this judgement, over the whole or in any region.
-std::string measures_that_are(const SweepComparison& sweep, Judgement requested, bool in_parts) {
-  std::string names;
-  for (std::size_t measure = 0; measure < sweep.measures.size(); ++measure) {
-    bool found = false;
-    for (std::size_t region = 0; region < (in_parts ? sweep.regions.size() : 1); ++region)
-      found |= sweep.at(region, measure).judgement == requested;
-    if (found) names += (names.empty() ? "" : ", ") + sweep.measures[measure].name;
-  }
-  return names;
-}
-
-void judge_by_pairs(ResultComparison& result, const PairedRule& rule) {
+void judge_sweep(ResultComparison& result, const PairedRule& rule) {
   const SweepComparison& sweep = *result.sweep;
+  const std::string text = exact_text(sweep), measures = judgements_text(result);
   char margins[160];
   std::snprintf(margins, sizeof margins, "the margins (%.3g of the runs for events, %.3g for other measures)",
                 rule.margin, rule.shift_margin);
-  switch (result.sweep->paired) {
-    case PairedVerdict::equal:
-      return conclude(result, Outcome::same, exact_text(*result.sweep));
-    case PairedVerdict::within_margin:
-      return conclude(result, Outcome::same,
-                      exact_text(*result.sweep) + "; all changes are within " + margins);
-    case PairedVerdict::changed:
-      return conclude(result, Outcome::regressed,
-                      exact_text(sweep) + "; changed: " + measures_that_are(sweep, Judgement::changed, true));
-    case PairedVerdict::runs_missing:
-      return conclude(result, Outcome::regressed, exact_text(*result.sweep));
-    case PairedVerdict::undecided:
-    case PairedVerdict::not_comparable:
-      break;
-  }
-  conclude(result, Outcome::not_comparable,
-           exact_text(sweep) + "; undecided, too few runs to be sure of " + margins + ": " +
-               measures_that_are(sweep, Judgement::undecided, false));
+  if (result.paired ? sweep.paired == PairedVerdict::equal : sweep.exact == ExactVerdict::equal)
+    return conclude(result, Outcome::same, text);
+  if (result.paired && sweep.paired == PairedVerdict::within_margin)
+    return conclude(result, Outcome::same, text + "; all changes are within " + margins);
+  if (result.paired && sweep.paired == PairedVerdict::undecided)
+    return conclude(result, Outcome::not_comparable,
+                    text + "; too few runs to be sure of " + margins + measures);
+  const bool some_failed =
+      sweep.newly_failed > 0 && (!result.paired || sweep.paired == PairedVerdict::runs_missing);
+  conclude(result, got_worse(result) || some_failed ? Outcome::regressed : Outcome::changed, text + measures);
 }
 
 StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
@@ -162,6 +170,30 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
 
 }  // namespace
 
+const char* name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::same:
+      return "same";
+    case Outcome::regressed:
+      return "regressed";
+    case Outcome::changed:
+      return "changed";
+    case Outcome::not_comparable:
+      break;
+  }
+  return "not_comparable";
+}
+
+std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison) {
+  std::vector<MeasureJudgement> all;
+  for (const ValueComparison& measure : comparison.measures) all.push_back({measure.name, measure.judgement});
+  if (comparison.sweep && comparison.sweep->problems.empty())
+    for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i)
+      all.push_back(
+          {comparison.sweep->measures[i].name, judgement_of(*comparison.sweep, i, comparison.paired)});
+  return all;
+}
+
 std::string kind_of(const Hdf5Reader& result) {
   const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
@@ -190,12 +222,12 @@ ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes
   else if (hashes.is_same())
     conclude(result, Outcome::same, counted + ", all the same");
   else if (hashes.different)
-    conclude(result, Outcome::regressed,
+    conclude(result, Outcome::changed,
              counted + "; the first divergent tick is after " +
                  (hashes.same ? "tick " + std::to_string(*hashes.same) : "none") + " and not after tick " +
                  std::to_string(*hashes.different));
   else
-    conclude(result, Outcome::regressed, counted + ", all the same, but one run is longer");
+    conclude(result, Outcome::changed, counted + ", all the same, but one run is longer");
   return result;
 }
 
@@ -204,9 +236,15 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
                                const ComparisonRules& rules) {
   std::vector<std::string> names = baseline.columns();
   std::erase(names, std::string(kRunningHash));  // follows from the others
-  check_names(rules.tolerances, names);
+  check_names(rules.tolerances, names, directions());
   ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
+  if (!result.columns->is_same()) {
+    if (auto measures = compare_measures(baseline, candidate, rules.tolerances))
+      result.measures = std::move(*measures);
+    else
+      result.no_measures = "a column is missing, or the runs are not of one length";
+  }
   judge_columns(result);
   return result;
 }
@@ -216,16 +254,14 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
                                const ComparisonRules& rules) {
   ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
   result.paired = rules.paired;
-  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule);
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions());
   for (const std::string& difference : result.configuration)
     if (difference.starts_with("experiment.seed "))
       result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");
   if (!result.sweep->problems.empty())
     conclude(result, Outcome::not_comparable, result.sweep->problems.front());
-  else if (rules.paired)
-    judge_by_pairs(result, rules.rule);
   else
-    judge_exactly(result);
+    judge_sweep(result, rules.rule);
   return result;
 }
 

@@ -13,8 +13,10 @@
 
 namespace remote_touch {
 
-// The exit codes of compare.
-enum class Outcome { same = 0, regressed = 1, not_comparable = 2 };
+// The exit codes of compare. Regressed: a measure got worse, or runs of a sweep that were done failed.
+// Changed: anything else that differs, an improvement too; figures and hashes have no measures.
+enum class Outcome { same = 0, regressed = 1, not_comparable = 2, changed = 4 };
+const char* name_of(Outcome outcome);  // "same", "regressed", ...
 
 struct ComparisonRules {
   Tolerances tolerances = {};  // of columns, or of a sweep's measures
@@ -28,12 +30,21 @@ struct ResultComparison {
   std::vector<std::string> configuration = {};  // differences of the experiments
   std::vector<std::string> provenance = {};     // differences of the builds: reported, not judged
   std::optional<TraceComparison> columns = {};  // of traces and figures
+  std::vector<ValueComparison> measures = {};   // of traces that differ, see compare_measures()
+  std::string no_measures = {};                 // why there are none where the traces differ
   std::optional<SweepComparison> sweep = {};
   bool paired = false;  // how the sweep was judged
   std::optional<HashComparison> hashes = {};
   Outcome outcome = Outcome::not_comparable;
   std::string verdict = {};  // one line
 };
+
+struct MeasureJudgement {
+  std::string name;
+  Judgement judgement = Judgement::equal;
+};
+// Of all measures of traces that differ, or of sweeps, by the rule that judged the whole.
+std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison);
 
 // "trace", "sweep", "figure" or "hashes", from the schema; the reader refuses another version. Throws
 // InputError for any other file.
@@ -49,7 +60,8 @@ inline ResultComparison compare_results(const std::filesystem::path& baseline,
   return compare_results(Hdf5Reader(baseline), Hdf5Reader(candidate), rules);
 }
 
-// Compares traces from any source. The attributes hold configuration and provenance of each.
+// Compares traces from any source; a tolerance may also be one of a measure. The attributes hold
+// configuration and provenance of each.
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);

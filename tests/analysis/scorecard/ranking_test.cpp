@@ -40,7 +40,7 @@ TEST(Standings, TheEndsAreMarkedWhereThePairsTellThemApart) {
   EXPECT_TRUE(smaller.has_best && smaller.has_worst);
   EXPECT_EQ(smaller.top_group, (std::vector<std::size_t>{1}));
   EXPECT_EQ(ranking(three, Better::larger, false).order, (std::vector<std::size_t>{2, 0, 1}));
-  const Ranking reported = ranking(three, Better::reported, false);
+  const Ranking reported = ranking(three, Better::neither, false);
   EXPECT_FALSE(reported.has_best || reported.has_worst);
 }
 

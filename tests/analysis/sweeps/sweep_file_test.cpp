@@ -179,6 +179,53 @@ TEST(SweepInProgress, NoticesThatItsFileIsGone) {
   EXPECT_HAS(refusal([&] { second.flush(); }), "was replaced or removed");
 }
 
+// The reader asks a child process about a file in progress, one question after the other. A sweep that ends,
+// or begins another round, puts a new file in its place between two of them.
+constexpr int kQuestions = 9;  // attributes, two axes, replicates, two measures, state, round, checksum
+
+RunInChild replacing(const std::filesystem::path& file, int at, int& asked) {
+  return [&asked, file, at](const ChildLimits& limits, ChildReader reader, const std::string& question) {
+    if (asked++ == at) write_sweep(file, awkward(), kAttributes);
+    return in_own_child(limits, reader, question);
+  };
+}
+
+TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsNotDamaged) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  for (int at = 0; at < kQuestions; ++at) {
+    write_sweep_in_progress(file, awkward(), kAttributes);
+    int asked = 0;
+    EXPECT_EQ(refusal([&] { read_sweep(Hdf5Reader(file, replacing(file, at, asked))); }),
+              file.string() + ": was replaced while it was read: expected once its writer has ended");
+    EXPECT_EQ(asked, at + 1);  // and it is noticed at once
+  }
+}
+
+TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsReadAgain) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  for (int at = 0; at < kQuestions; ++at) {
+    write_sweep_in_progress(file, awkward(), kAttributes);
+    int asked = 0;
+    const StoredSweep stored = read_sweep(file, replacing(file, at, asked));
+    EXPECT_FALSE(stored.in_progress) << at;
+    expect_same(stored.result, awkward());
+  }
+}
+
+// As by a program that never stops.
+TEST(SweepInProgress, ThatIsReplacedAllTheTimeIsRefused) {
+  const TestFolder folder("sweep_file_test");
+  const auto file = folder / "x.h5";
+  write_sweep_in_progress(file, awkward(), kAttributes);
+  const RunInChild run = [&](const ChildLimits& limits, ChildReader reader, const std::string& question) {
+    write_sweep_in_progress(file, awkward(), kAttributes);
+    return in_own_child(limits, reader, question);
+  };
+  EXPECT_HAS(refusal([&] { read_sweep(file, run); }), "was replaced while it was read");
+}
+
 TEST(SweepFile, DamageIsRefused) {
   const TestFolder folder("sweep_file_test");
   const auto why = [&](const std::string& bytes) {

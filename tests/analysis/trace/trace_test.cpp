@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
@@ -92,6 +94,45 @@ TEST(TraceColumns, HoldWhatTheTickWas) {
   EXPECT_EQ(values<std::int32_t>(trace, "budget_exhausted"), std::vector<std::int32_t>{1});
   EXPECT_EQ(values<std::int32_t>(trace, "sequence_missed"), std::vector<std::int32_t>{7});
   EXPECT_EQ(values<std::int32_t>(trace, "buttons"), std::vector<std::int32_t>{9});
+}
+
+std::optional<Trace> again(const std::vector<Column>& columns) {
+  return trace_of([&](const std::string& name) {
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+    return found == columns.end() ? std::nullopt : std::optional(*found);
+  });
+}
+
+// The last column is the hash of all others.
+TEST(TraceColumns, MakeTheTraceAgain) {
+  for (const bool tool : {false, true})
+    for (const bool guidance : {false, true})
+      for (const bool hand : {false, true}) {
+        const std::vector<Column> columns = one_tick(tool, guidance, hand).columns();
+        const std::optional<Trace> trace = again(columns);
+        ASSERT_TRUE(trace);
+        EXPECT_EQ(trace->columns().back().values, columns.back().values);
+        EXPECT_EQ(trace->columns().size(), columns.size());
+      }
+}
+
+TEST(TraceColumns, MakeNoTraceWhereOneIsMissingOrAnother) {
+  const std::vector<Column> all = one_tick(true, true, true).columns();
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    std::vector<Column> columns = all;
+    columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_FALSE(again(columns)) << all[i].name << " is missing";
+    columns = all;
+    columns[i].values = std::vector<std::string>{"x"};
+    EXPECT_FALSE(again(columns)) << all[i].name << " is a text";
+    columns = all;
+    columns[i].width += 1;
+    EXPECT_FALSE(again(columns)) << all[i].name << " is wider";
+    columns = all;
+    std::visit([](auto& values) { values.clear(); }, columns[i].values);
+    EXPECT_FALSE(again(columns)) << all[i].name << " is shorter";
+  }
 }
 
 // A tool has no proxy of radius r_c: what is said of it must not be said of one.

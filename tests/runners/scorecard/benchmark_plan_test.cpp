@@ -149,6 +149,45 @@ TEST(Benchmark, WhatIsWrongInAFileIsNamed) {
   EXPECT_HAS(refusal([] { read_method("y", R"({"title": "t"})"); }), "method y: renderer: missing");
 }
 
+// The card states the method as it is written.
+TEST(Benchmark, AMethodWithAnotherToolThanTheScenesIsRefused) {
+  const BenchmarkScene slot = chosen_scenes({"tool-slot"}).front();
+  const auto method = [](const std::string& tool) {
+    return read_method("mine",
+                       R"({"title": "t", "renderer": {"name": "tool", "tool_mesh": ")" + tool + "\"}}");
+  };
+  EXPECT_HAS(refusal([&] { slot.sweep(method("ball"), 1); }),
+             "method mine: renderer.tool_mesh = \"ball\": scene tool-slot has a tool of its own");
+  EXPECT_NO_THROW(slot.sweep(method(parse_json(slot.tool, "tool")["tool_mesh"]), 1));
+}
+
+// The measures say which way they get better, in one table; a scene says only what is judged.
+TEST(Benchmark, AMeasureIsJudgedByItsOwnDirection) {
+  const auto scene = [](const std::string& measures) {
+    return read_benchmark_scene(
+        "x",
+        R"({"title": "t", "experiment": {}, "success": {"rule": "held"}, "measures": )" + measures + "}");
+  };
+  const auto better = [&](const std::string& measures) { return scene(measures).measures.front().better; };
+  EXPECT_EQ(better(R"({"force_noise": "judged"})"), Better::smaller);
+  EXPECT_EQ(better(R"({"contact_force_fraction": "judged"})"), Better::larger);
+  EXPECT_EQ(better(R"({"force_noise": "smaller"})"), Better::smaller);  // as files before said it
+  EXPECT_EQ(better(R"({"force_noise": "reported"})"), Better::neither);
+  EXPECT_EQ(better(R"({"max_force": "smaller"})"), Better::smaller);  // where nothing should be touched
+  EXPECT_HAS(refusal([&] { scene(R"({"force_noise": "larger"})"); }),
+             "measures.force_noise = \"larger\": smaller is better: expected judged, reported");
+  EXPECT_HAS(refusal([&] { scene(R"({"max_force": "judged"})"); }), "expected larger, smaller");
+}
+
+TEST(Benchmark, EveryStoredSceneJudgesByTheTable) {
+  for (const BenchmarkScene& scene : chosen_scenes({}))
+    for (const BenchmarkScene::Judged& judged : scene.measures)
+      if (const Better own = direction_of(directions(), judged.measure);
+          own != Better::neither && judged.better != Better::neither) {
+        EXPECT_EQ(judged.better, own) << scene.name << ", " << judged.measure;
+      }
+}
+
 // A scene asks for a held surface in one word.
 TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
   const std::string begin = R"({"title": "t", "experiment": {}, "measures": {}, "success": )";

@@ -90,7 +90,7 @@ TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
   auto& time = std::get<std::vector<double>>(lost.measures[1].values);
   for (std::size_t i = 0; i < 54; i += 3) time[i] = 2.5;
   SceneRules rules = kRules;
-  rules.measures = {{"time", Better::smaller}, {"time", Better::reported}};
+  rules.measures = {{"time", Better::smaller}, {"time", Better::neither}};
   const SceneScore scene = score(rules, {held, lost}, false);
   const Ranking& judged = scene.measures[0].ranking;
   EXPECT_EQ(judged.mean[1].pairs, 12);  // of the two levels with noise
@@ -240,7 +240,7 @@ TEST(ScorecardReport, AMeasureThatIsNotJudgedHasNoMark) {
     return json_of(report_of(card))["scenes"][0]["measures"][0]["methods"][0]["mark"];
   };
   EXPECT_EQ(mark(), "best");
-  measure.better = Better::reported;
+  measure.better = Better::neither;
   EXPECT_EQ(mark(), "none");
 }
 
@@ -263,7 +263,7 @@ TEST(ScorecardReport, TheAuditSaysWhereEnergyIsGivenForCertain) {
   sweep.measures.push_back({"energy_injected", "J", "", std::vector<double>{3, 3.3, 3.6, -3, 0, 3}, 1, {}});
   sweep.measures.push_back({"mean_energy_per_update", "J", "", std::vector<double>(6, 0.5), 1, {}});
   SceneRules rules = kRules;
-  rules.measures = {{"energy_injected", Better::reported}, {"mean_energy_per_update", Better::reported}};
+  rules.measures = {{"energy_injected", Better::neither}, {"mean_energy_per_update", Better::neither}};
   ScorecardReport report = report_of(two_scenes());
   EXPECT_EQ(json_of(report)["audit"], nullptr);
   report.audit = Scorecard{{"law"}, {"a law"}, {score(rules, {sweep}, false)}};

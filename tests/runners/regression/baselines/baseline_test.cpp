@@ -124,7 +124,7 @@ TEST_F(CheckBaseline, ChangedNumbers) {
   Baseline baseline = stored_run([](Trace& trace) { trace.force_N[120].y() += 0x1p-20; });
   const BaselineCheck changed = check(baseline);
   EXPECT_EQ(changed.state, State::changed);
-  EXPECT_EQ(changed.text, "force of 18 columns, from tick 120 on (drift)");
+  EXPECT_TRUE(changed.text.starts_with("force of 18 columns, from tick 120 on (drift)")) << changed.text;
   ASSERT_TRUE(changed.comparison && changed.comparison->columns && changed.comparison->columns->divergence);
   EXPECT_EQ(changed.comparison->columns->divergence->tick, 120u);
 
@@ -155,7 +155,7 @@ TEST_F(CheckBaseline, AnotherExperimentWithTheSameNumbers) {
   EXPECT_EQ(result.state, State::changed);
   EXPECT_EQ(result.text, "the numbers are equal, but the experiment differs: seed 2 against 1");
   ASSERT_TRUE(result.comparison);
-  EXPECT_EQ(result.comparison->outcome, Outcome::regressed);
+  EXPECT_EQ(result.comparison->outcome, Outcome::changed);
   EXPECT_EQ(result.comparison->verdict, result.text);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runners/regression/comparison/comparison_report.h"
+#include "runners/regression/comparison/junit_report.h"
 #include "runners/regression/comparison/result_comparison.h"
 #include "tests/support/test_files.h"
 
@@ -32,9 +33,9 @@ inline json json_of(const ResultComparison& comparison) {
 inline std::string junit_of(const ResultComparison& comparison) {
   return junit({suite_of(comparison, "baseline.h5")});
 }
-inline std::string counts(int tests, int failures, int errors) {
+inline std::string counts(int tests, int failures, int errors, int skipped = 0) {
   return "tests=\"" + std::to_string(tests) + "\" failures=\"" + std::to_string(failures) + "\" errors=\"" +
-         std::to_string(errors) + "\" skipped=\"0\"";
+         std::to_string(errors) + "\" skipped=\"" + std::to_string(skipped) + "\"";
 }
 
 class Compare : public testing::Test {

@@ -1,0 +1,35 @@
+// What became of a measure.
+#pragma once
+
+#include <string>
+
+#include "analysis/columns/tolerance.h"
+#include "analysis/measures/better.h"
+
+namespace remote_touch {
+
+enum class Judgement {
+  equal,          // within the tolerance
+  within_margin,  // of a sweep: the intervals of the differences lie within the margins
+  better,
+  worse,
+  changed,   // without a direction: the measure has none, a number became none, or the outcomes differ
+  undecided  // of a sweep: too few runs, or both ways alike
+};
+bool is_change(Judgement judgement);  // better, worse or changed
+// "equal", "within_margin", "better", ...
+const char* name_of(Judgement judgement);
+
+// Of one number: equal, better, worse or changed. What was not a number, or is none now, changed.
+Judgement judged(double baseline, double candidate, Better better, const Tolerance& tolerance);
+
+// A measure of one run, before and now.
+struct ValueComparison {
+  std::string name, units;
+  Better better = Better::neither;
+  Tolerance tolerance;
+  double baseline = 0, candidate = 0;
+  Judgement judgement = Judgement::equal;
+};
+
+}  // namespace remote_touch

@@ -1,0 +1,34 @@
+#include "analysis/measures/better.h"
+
+#include <cmath>
+
+namespace remote_touch {
+
+Better direction_of(const Directions& directions, const std::string& measure) {
+  const auto found = directions.find(measure);
+  return found == directions.end() ? Better::neither : found->second;
+}
+
+bool is_outcome(const std::string& measure) {
+  return measure == "popped_through" || measure == "tool_popped_through" || measure == "non_finite_fraction";
+}
+
+const char* text_of(Better better) {
+  switch (better) {
+    case Better::smaller:
+      return "smaller is better";
+    case Better::larger:
+      return "larger is better";
+    case Better::near_zero:
+      return "nearer to zero is better";
+    case Better::neither:
+      break;
+  }
+  return "has no direction";
+}
+
+double badness(double value, Better better) {
+  return better == Better::larger ? -value : better == Better::near_zero ? std::abs(value) : value;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,25 @@
+// Which way a measure gets better.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace remote_touch {
+
+enum class Better { neither, smaller, larger, near_zero };
+
+// By the name of a measure; one that is not there has no direction.
+using Directions = std::map<std::string, Better>;
+Better direction_of(const Directions& directions, const std::string& measure);
+
+// popped_through and the like: what became of a run. Where two runs differ in one, no other measure says
+// which is better: the run that lost the surface has no force that could be noisy.
+bool is_outcome(const std::string& measure);
+
+// "smaller is better", "has no direction", ...
+const char* text_of(Better better);
+
+// So that smaller is better, whatever the direction.
+double badness(double value, Better better);
+
+}  // namespace remote_touch

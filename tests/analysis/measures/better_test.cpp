@@ -1,0 +1,55 @@
+// Which way each measure gets better.
+#include "analysis/measures/better.h"
+
+#include <gtest/gtest.h>
+
+#include "analysis/measures/measures.h"
+
+namespace remote_touch::better_test {
+namespace {
+
+Better better_of(const std::string& name) {
+  for (const Measure& measure : built_in_measures())
+    if (measure.name == name) return measure.better;
+  ADD_FAILURE() << "no measure " << name;
+  return Better::neither;
+}
+
+TEST(BetterOfMeasures, IsInTheirTable) {
+  for (const char* name : {"popped_through", "rms_contact_error", "rms_force_jump", "force_noise",
+                           "tool_popped_through", "max_tool_penetration", "guidance_error"})
+    EXPECT_EQ(better_of(name), Better::smaller) << name;
+  for (const char* name : {"contact_force_fraction", "min_slave_distance", "min_clearance"})
+    EXPECT_EQ(better_of(name), Better::larger) << name;
+  EXPECT_EQ(better_of("mean_height"), Better::near_zero);
+  // More force is no better and no worse: a proxy that popped through exerts none.
+  for (const char* name :
+       {"max_force", "max_torque", "energy_injected", "force_fraction", "last_force_time", "end_distance"})
+    EXPECT_EQ(better_of(name), Better::neither) << name;
+}
+
+double nothing(const Trace&) {
+  return 0;
+}
+
+TEST(BetterOfMeasures, IsNeitherWhereAProgramDoesNotSay) {
+  EXPECT_EQ((Measure{"own", "1", "a measure of a program", MeasuredRuns::all, nothing}.better),
+            Better::neither);
+}
+
+TEST(Badness, IsSmallerWhereItIsBetter) {
+  EXPECT_LT(badness(1, Better::smaller), badness(2, Better::smaller));
+  EXPECT_GT(badness(1, Better::larger), badness(2, Better::larger));
+  EXPECT_LT(badness(-1, Better::near_zero), badness(2, Better::near_zero));
+  EXPECT_LT(badness(1, Better::near_zero), badness(-2, Better::near_zero));
+}
+
+TEST(DirectionOf, AnUnknownMeasureIsNone) {
+  const Directions directions = {{"x", Better::larger}};
+  EXPECT_EQ(direction_of(directions, "x"), Better::larger);
+  EXPECT_EQ(direction_of(directions, "y"), Better::neither);
+  EXPECT_STREQ(text_of(direction_of(directions, "y")), "has no direction");
+}
+
+}  // namespace
+}  // namespace remote_touch::better_test
