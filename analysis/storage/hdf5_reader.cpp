@@ -1,5 +1,9 @@
 #include "analysis/storage/hdf5_reader.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
@@ -41,34 +45,75 @@ bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) 
   throw InputError(file, "cannot be read (out of memory): expected a smaller file or more memory");
 }
 
-// Throws InputError unless the file exists, is HDF5 and as it was written. True when it is sealed.
-bool require_readable(const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& what, const char* expected = "an HDF5 result") {
-    throw InputError(file.string(), what + ": expected " + expected);
-  };
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what,
+                         const char* expected = "an HDF5 result") {
+  throw InputError(file.string(), what + ": expected " + expected);
+}
+
+// Throws InputError unless the file exists and is one that can be opened without waiting.
+void require_regular(const std::filesystem::path& file) {
   std::error_code unreachable;
-  if (!std::filesystem::exists(file, unreachable)) refuse("no such file");
-  if (std::filesystem::is_directory(file, unreachable)) refuse("a folder");
-  if (!std::filesystem::is_regular_file(file, unreachable)) refuse("a pipe or a device");
+  if (!std::filesystem::exists(file, unreachable)) refuse(file, "no such file");
+  if (std::filesystem::is_directory(file, unreachable)) refuse(file, "a folder");
+  if (!std::filesystem::is_regular_file(file, unreachable)) refuse(file, "a pipe or a device");
+}
+
+// Throws InputError unless the file is HDF5 and as it was written. True when it is sealed.
+bool require_readable(const std::filesystem::path& file) {
+  std::error_code unreachable;
   const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
-  if (size == 0) refuse("empty");
+  if (size == 0) refuse(file, "empty");
   const FileDigest found = file_digest_of(file);
   if (found == FileDigest::broken)
-    refuse("damaged or modified (its SHA-256 does not match)", "a result of this program");
-  if (!has_hdf5_signature(file, size)) refuse("not a readable HDF5 file", "a result of this program");
+    refuse(file, "damaged or modified (its SHA-256 does not match)", "a result of this program");
+  if (!has_hdf5_signature(file, size)) refuse(file, "not a readable HDF5 file", "a result of this program");
   return found == FileDigest::valid;
 }
 
 }  // namespace
 
+ReplacedFile::ReplacedFile(const std::string& file)
+    : InputError(file, "was replaced while it was read: expected once its writer has ended") {}
+
+// While it is open, no other file gets its number.
+class Hdf5Reader::HeldFile {
+ public:
+  explicit HeldFile(const std::string& file)
+      : descriptor_(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~HeldFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  HeldFile(const HeldFile&) = delete;
+  HeldFile& operator=(const HeldFile&) = delete;
+
+  // One that cannot be opened is refused elsewhere.
+  bool has_name(const std::string& file) const {
+    struct stat ours = {}, there = {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &ours) != 0) return true;
+    return ::stat(file.c_str(), &there) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+  }
+
+ private:
+  int descriptor_;
+};
+
+bool Hdf5Reader::is_replaced() const {
+  return held_ && !held_->has_name(file_);
+}
+
 // Whatever the library throws is damage.
 template <class Read>
 auto Hdf5Reader::guarded(Read&& read) const {
   try {
-    return read();
+    auto answer = read();
+    if (is_replaced()) throw ReplacedFile(file_);
+    return answer;
+  } catch (const ReplacedFile&) {
+    throw;
   } catch (const std::bad_alloc&) {
     refuse_for_memory(file_);
   } catch (const std::exception& error) {
+    if (is_replaced()) throw ReplacedFile(file_);
     damaged(error.what());
   }
 }
@@ -102,16 +147,29 @@ Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> conte
   require_version();
 }
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, const RunInChild& run) : file_(file.string()) {
-  const bool is_sealed = require_readable(file);
-  guarded([&] {
-    content_ = is_sealed ? open_hdf5(file) : open_hdf5_in_child(file, run);
-    attributes_ = content_->attributes();
+// True when it is sealed: the library reads it in this process, and holds it.
+bool Hdf5Reader::open(const RunInChild& run) {
+  const bool is_sealed = require_readable(file_);
+  attributes_ = guarded([&] {
+    content_ = is_sealed ? open_hdf5(file_) : open_hdf5_in_child(file_, run);
+    return content_->attributes();
   });
   require_version();
   // Of this program's files only one of a sweep at work is not sealed: its runs have checksums of their own.
   if (!is_sealed && attribute(attributes_, "schema").starts_with(kSchemaPrefix) && !has("/sweep/checksum"))
     damaged("its SHA-256 header is missing: modified by another program, or written by an old version");
+  return is_sealed;
+}
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, const RunInChild& run) : file_(file.string()) {
+  require_regular(file);
+  held_ = std::make_shared<HeldFile>(file_);
+  try {
+    if (open(run)) held_.reset();
+  } catch (const InputError&) {
+    if (is_replaced()) throw ReplacedFile(file_);
+    throw;
+  }
 }
 
 std::vector<std::string> Hdf5Reader::datasets() const {

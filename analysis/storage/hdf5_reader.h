@@ -9,12 +9,20 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_source.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
+// Its name belongs to another file than the one that was opened, as when a sweep replaces its file at the
+// end: what was read of both does not fit together. The whole can be read again.
+struct ReplacedFile : InputError {
+  explicit ReplacedFile(const std::string& file);
+};
+
 // Every member throws InputError naming the file when it is damaged. A file with a valid seal is read in this
 // process; one without, which another program wrote or which is not finished, in a child process with limits
-// for each column: there the HDF5 library may crash or hang.
+// for each column: there the HDF5 library may crash or hang. Such a file may be replaced meanwhile: then
+// members throw ReplacedFile.
 class Hdf5Reader {
  public:
   // Throws InputError when the file is missing or not HDF5, when its seal is broken or a finished result of
@@ -48,10 +56,14 @@ class Hdf5Reader {
   [[noreturn]] void damaged(const std::string& how) const;
 
  private:
+  class HeldFile;
+  bool open(const RunInChild& run);
+  bool is_replaced() const;
   void require_version() const;
   template <class Read>
   auto guarded(Read&& read) const;
   std::string file_;
+  std::shared_ptr<const HeldFile> held_;  // while its name is used
   std::shared_ptr<const Hdf5Source> content_;
   TextAttributes attributes_;
 };

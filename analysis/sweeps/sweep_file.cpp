@@ -256,4 +256,13 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
   return stored;
 }
 
+StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run) {
+  constexpr int kTries = 20;  // a sweep replaces its file at its end, and before each round of refinement
+  for (int i = 1;; ++i) try {
+      return read_sweep(Hdf5Reader(file, run));
+    } catch (const ReplacedFile&) {
+      if (i == kTries) throw;
+    }
+}
+
 }  // namespace remote_touch

@@ -27,9 +27,8 @@ struct StoredSweep {
   bool in_progress = false;
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
-inline StoredSweep read_sweep(const std::filesystem::path& file) {
-  return read_sweep(Hdf5Reader(file));
-}
+// Begins again when a sweep at work has replaced its file.
+StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
 // The layout while the sweep runs: nothing compressed, so that runs can be written in place, and a checksum
 // of every run in place of the error texts. A run whose checksum is wrong was written only in part.

@@ -98,4 +98,16 @@ std::vector<ChangedInput> changed_inputs(const std::string& before, const std::s
   return changed;
 }
 
+void InputHashes::require_unchanged() const {
+  remote_touch::require_unchanged({parts_.begin(), parts_.end()}, text());
+}
+
+void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before) {
+  const std::vector<ChangedInput> changed = changed_inputs(before, input_hashes(parts));
+  if (changed.empty()) return;
+  const ChangedInput& first = changed.front();
+  throw InputError(first.path, "changed while it was read (" + first.before + "; now " + first.now +
+                                   "): expected files that nothing writes");
+}
+
 }  // namespace remote_touch

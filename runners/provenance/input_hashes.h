@@ -29,6 +29,8 @@ class InputHashes {
   // Reads each file once. Throws InputError as files_of() does, and for a file that cannot be read.
   void add(const std::vector<RecordingPart>& parts);
   std::string text() const;  // empty: nothing was added
+  // Reads the files again and throws InputError if they differ from those that were added.
+  void require_unchanged() const;
 
  private:
   void read(const RecordingPart& part);
@@ -42,6 +44,10 @@ class InputHashes {
 };
 
 std::string input_hashes(const std::vector<RecordingPart>& parts);
+
+// before: input_hashes(parts) from before the runs. Reads the files again and throws InputError if they
+// differ, so that no result states the hash of a file that its runs did not read.
+void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before);
 
 // A path or name on one line, as sha256sum writes it: a backslash, line feed or carriage return in it is
 // written \\, \n, \r.

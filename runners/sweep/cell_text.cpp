@@ -56,7 +56,7 @@ std::optional<std::size_t> row_of(const Column& axis, const std::string& value) 
   const bool is_number = error == std::errc() && end == value.data() + value.size();
   const std::string sought = is_number ? six_digits(number) : value;
   for (std::size_t row = 0; row < axis.length(); ++row)
-    if (value_text(axis, row) == sought) return row;
+    if (const std::string text = value_text(axis, row); text == sought || text == value) return row;
   return {};
 }
 

@@ -13,6 +13,7 @@
 #include "runners/settings/renamed_names.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
+#include "runners/sweep/sweep_statements.h"
 
 namespace remote_touch {
 
@@ -32,7 +33,8 @@ struct Sweep::Definition {
   std::optional<RefineSettings> refine;
   std::vector<RecordingPart> inputs;  // of all cells
 
-  Json cell(std::size_t number) const;
+  // The experiment of one run, which has the values that the result states of its cell.
+  Experiment run(std::size_t cell, int replicate) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
   void check_cells(const std::string& label);
@@ -94,14 +96,6 @@ std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int
   return axes;
 }
 
-void refuse_axes_among(const std::vector<std::string>& assignments, const std::vector<SweepAxis>& axes) {
-  for (const SweepAxis& axis : axes)
-    for (const std::string& assignment : assignments)
-      if (assignment.rfind(axis.parameter + "=", 0) == 0)
-        throw InputError("--set " + assignment,
-                         "an axis of this sweep: expected another parameter, or --set axes...");
-}
-
 std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   const auto found = json.find("measures");
   if (found == json.end()) return {measures().begin(), measures().end()};
@@ -131,12 +125,17 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
 
 }  // namespace
 
-Json Sweep::Definition::cell(std::size_t number) const {
-  const std::vector<std::size_t> place = grid.place(number);
+Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
+  const std::vector<std::size_t> place = grid.place(cell);
   Json json = experiment;
   for (std::size_t i = 0; i < axes.size(); ++i)
     set_value(json, axes[i].parameter, axes[i].values[place[i]], axes[i].parameter);
-  return json;
+  json["cell"] = cell;
+  json["replicate"] = static_cast<std::uint64_t>(replicate);
+  Experiment made = Experiment::from_json(json);
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    require_run(made, axes[i].parameter, axes[i].values[place[i]]);
+  return made;
 }
 
 void Sweep::Definition::check_axes(const std::string& label) const {
@@ -146,6 +145,10 @@ void Sweep::Definition::check_axes(const std::string& label) const {
   for (const SweepAxis& axis : axes) {
     if (axis.parameter == "cell" || axis.parameter == "replicate" || axis.parameter == "title")
       throw InputError(label + ": axis " + axis.parameter, "set by the sweep: expected another parameter");
+    if (const std::string section = path_keys(axis.parameter).front();
+        section == "live" || section == "safety")
+      throw InputError(label + ": axis " + axis.parameter,
+                       "only live runs use section " + section + ": expected another parameter");
     if (!names.insert(axis.name()).second)
       throw InputError(label + ": axis " + axis.parameter,
                        "its name " + axis.name() + " is taken: expected once");
@@ -176,7 +179,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
     try {
-      const auto read = Experiment::from_json(cell(static_cast<std::size_t>(i))).inputs();
+      const auto read = run(static_cast<std::size_t>(i), 0).inputs();
       if (read.empty()) continue;
 #pragma omp critical(sweep_inputs)
       parts.insert(read.begin(), read.end());
@@ -217,7 +220,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   definition->measures = read_measures(json, label);
   definition->refine = read_refine(json, definition->measures, definition->replicates, label);
   definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);
-  refuse_axes_among(of_experiment, definition->axes);
+  refuse_overlapping(definition->axes, label);
+  refuse_overwritten(json, overrides, of_experiment, definition->axes, label);
   definition->experiment = read_experiment(json, label, of_experiment);
   if (definition->title.empty()) definition->title = definition->experiment.value("title", std::string());
   if (definition->title.empty()) definition->title = label;
@@ -260,10 +264,20 @@ SweepResult Sweep::plan(const Shard& shard) const {
 }
 
 Experiment Sweep::experiment(std::size_t cell, int replicate) const {
-  Json json = definition_->cell(cell);
-  json["cell"] = cell;
-  json["replicate"] = static_cast<std::uint64_t>(replicate);
-  return Experiment::from_json(json);
+  return definition_->run(cell, replicate);
+}
+
+void Sweep::require_fits(const SweepResult& stored, const std::string& file) const {
+  const auto is_axis = [](const Column& a, const Column& b) {
+    return a.long_name == b.long_name && a.values == b.values && a.value_names == b.value_names;
+  };
+  const auto is_measure = [](const Column& a, const Measure& b) { return a.name == b.name; };
+  const std::vector<Column>& axes = definition_->grid.axes;
+  if (!std::equal(axes.begin(), axes.end(), stored.axes.begin(), stored.axes.end(), is_axis))
+    throw InputError(file, "damaged (its axes are not those of its configuration)");
+  if (stored.replicates != plan().replicates || !std::equal(stored.measures.begin(), stored.measures.end(),
+                                                            measures().begin(), measures().end(), is_measure))
+    throw InputError(file, "damaged (its arrays do not fit its configuration)");
 }
 
 const std::vector<RecordingPart>& Sweep::inputs() const {

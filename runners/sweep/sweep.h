@@ -19,7 +19,7 @@ class Sweep {
   // From JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
   // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
   // else its experiment. Every cell is resolved and checked: throws InputError for the first that cannot be
-  // run.
+  // run, and for parts that overwrite each other (sweep_statements.h).
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
   // A name of data/sweeps, or a JSON file.
@@ -28,8 +28,12 @@ class Sweep {
   const std::string& title() const;
   // Empty arrays; the shard's runs of the first round are pending, those of other shards elsewhere.
   SweepResult plan(const Shard& shard = {}) const;
-  // The experiment of one run, with its own noise: cell and replicate are part of the noise key.
+  // The experiment of one run, with its own noise: cell and replicate are part of the noise key. It has the
+  // values that the result states of its cell; throws InputError otherwise.
   Experiment experiment(std::size_t cell, int replicate) const;
+  // Throws InputError, naming the file, for a stored result with other axes, measures or replicates: none of
+  // its runs is one of this sweep.
+  void require_fits(const SweepResult& stored, const std::string& file) const;
   // The recordings that its cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;

@@ -87,6 +87,12 @@ std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+// A result stores numbers as doubles. An integer beyond 2^53, as a seed may be, is stored by its name.
+bool is_double(const Json& value) {
+  constexpr double kMaxInteger = 9007199254740992;
+  return value.is_number() && (value.is_number_float() || std::abs(value.get<double>()) < kMaxInteger);
+}
+
 SweepAxis list_axis(const Json& json, const std::string& label) {
   std::string parameter;
   Json rest = json;
@@ -96,12 +102,14 @@ SweepAxis list_axis(const Json& json, const std::string& label) {
   const Json& values = json["values"];
   if (!values.is_array() || values.empty() || values.size() > kMaxValues)
     throw InputError(label + ".values", "expected a list of 1 to " + std::to_string(kMaxValues) + " values");
-  std::set<std::string> different;  // as they are named in a result
-  for (const Json& value : values)
-    if (text_of(value).empty() || !different.insert(text_of(value)).second)
-      throw InputError(label + ".values",
-                       value.dump() + (text_of(value).empty() ? " is empty: expected names"
-                                                              : " comes twice: expected once"));
+  std::set<std::string> names;  // a result states names, or numbers: 1 and 1.0 are one value
+  std::set<double> numbers;
+  for (const Json& value : values) {
+    const std::string name = text_of(value);
+    if (name.empty()) throw InputError(label + ".values", value.dump() + " is empty: expected names");
+    if (!names.insert(name).second || (is_double(value) && !numbers.insert(value.get<double>()).second))
+      throw InputError(label + ".values", value.dump() + " comes twice: expected once");
+  }
   const Json definition = {{"parameter", parameter}, {"values", values}};
   return {parameter, std::vector<Json>(values.begin(), values.end()), 1, definition.dump()};
 }
@@ -120,8 +128,7 @@ std::string unit_of(const std::string& name) {
 
 Column SweepAxis::column() const {
   Column column{name(), unit_of(name()), parameter, {}, 1, {}};
-  const auto is_number = [](const Json& value) { return value.is_number(); };
-  if (std::all_of(values.begin(), values.end(), is_number)) {
+  if (std::all_of(values.begin(), values.end(), is_double)) {
     std::vector<double> numbers;
     for (const Json& value : values) numbers.push_back(value.get<double>());
     column.values = numbers;

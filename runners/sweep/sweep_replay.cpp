@@ -31,14 +31,17 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
                   const std::filesystem::path& output) {
   const std::size_t cell = stored.result.cell_of(run);
   const int replicate = stored.result.replicate_of(run);
-  Replay replay{sweep.experiment(cell, replicate), {}, {}, {}};
+  Replay replay{sweep.experiment(cell, replicate), {}, {}, {}, {}};
   options.hash_frames = true;
   options.find_true_contact = sweep.needs_true_contact();
   const std::string inputs = input_hashes(replay.experiment.inputs());
+  options.report = &replay.report;
   replay.trace = simulate(replay.experiment, options);
+  require_unchanged(replay.experiment.inputs(), inputs);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
   replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);
   replay.experiment.add_depth_device(replay.attributes);
+  add_report(replay.attributes, replay.report);
   const std::vector<Column> columns = replay.trace.columns();
   replay.digest = output.empty() ? digest(columns) : write_trace(output, columns, replay.attributes, {});
   return replay;

@@ -16,6 +16,7 @@ struct Replay {
   Trace trace;
   TextAttributes attributes;  // its provenance
   std::string digest;
+  RunReport report;
 };
 
 // Runs it and writes the trace, with frame_hash computed; output empty: it is not written. pre: sweep was

@@ -7,6 +7,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/settings/configuration_difference.h"
+#include "runners/simulation/simulation.h"
 
 namespace remote_touch {
 
@@ -105,14 +106,35 @@ bool SweepSession::add_round_if_whole() {
 }
 
 bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  const SweepResult before = plan_.result;
   bool is_finished = plan_.is_finished;
-  while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
-    is_finished = false;
-    do_round(kernels, stop, progress);
+  try {
+    while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
+      is_finished = false;
+      do_round(kernels, stop, progress);
+    }
+  } catch (const Interrupted&) {
+    require_unchanged_inputs(before);
+    throw;
   }
   if (is_finished) return false;
+  require_unchanged_inputs(before);
   write_sweep(file_, plan_.result, plan_.attributes);
   return true;
+}
+
+// It is not known which runs have read a recording before it changed, so that all runs of this call are
+// pending again.
+void SweepSession::require_unchanged_inputs(const SweepResult& before) {
+  const std::string inputs = attribute(plan_.attributes, "input_digests");
+  if (inputs.empty()) return;
+  try {
+    require_unchanged(sweep_.inputs(), inputs);
+  } catch (const InputError&) {
+    plan_.result = before;
+    write_sweep_in_progress(file_, plan_.result, plan_.attributes);
+    throw;
+  }
 }
 
 void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {

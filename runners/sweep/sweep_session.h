@@ -35,6 +35,7 @@ class SweepSession {
   // Does everything that is left, round by round, and writes the finished file. progress: runs done, all runs
   // so far, and how many of them were done before. Returns false if nothing was left. Throws Interrupted, or
   // InputError when the file cannot be written or runs found no memory; finished runs are then in the file.
+  // Throws InputError when a recording changed meanwhile; no run of this call is then in the file.
   using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
@@ -42,6 +43,7 @@ class SweepSession {
 
  private:
   bool add_round_if_whole();
+  void require_unchanged_inputs(const SweepResult& before);
   void do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
   const Sweep& sweep_;

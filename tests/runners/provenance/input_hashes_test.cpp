@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernels/isa.h"
 #include "runners/experiment/experiment.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
@@ -145,6 +146,45 @@ TEST_F(Inputs, ThatAreNotThereAreRefusedAsByARun) {
   EXPECT_HAS(refused(part()), "0003.png: cannot be read");
   fs::remove(folder_ / "camera.json");
   EXPECT_HAS(refused(part()), "camera.json: is missing");
+}
+
+TEST_F(Inputs, ThatChangeDuringARunAreRefused) {
+  write_depth_folder(false);
+  const std::string before = text(0, 1);
+  require_unchanged({part(0, 1)}, before);
+  folder_.write("depth/0002.png", "not used");
+  require_unchanged({part(0, 1)}, before);
+  folder_.write("depth/0001.png", "another image");
+  const std::string message = refusal([&] { require_unchanged({part(0, 1)}, before); });
+  EXPECT_HAS(message, folder_.path().string() + ": changed while it was read (");
+  EXPECT_HAS(message, "expected files that nothing writes");
+}
+
+// The first run that ends changes the recording: no run of that call is kept, and the next call does them
+// all.
+TEST_F(Inputs, ThatChangeDuringASweepUndoItsRuns) {
+  const std::string cloud = xyz_header("2", "ascii") + "0 0 0.5\n0.001 0 0.5\n";
+  const std::string file = folder_.write("cloud.pcd", cloud).string();
+  const Sweep sweep =
+      Sweep::from_json(R"({"experiment": {"scenario": {"name": "recording", "path": ")" + file +
+                           R"("}, "renderer": {"name": "proxy"}, "duration_s": 0.01,
+              "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.4, 0], [0, 0, 0.4, 0.01]]}},
+          "measures": ["max_force"], "axes": [{"parameter": "renderer.steps_per_tick", "values": [10, 20, 30]}]})",
+                       "test");
+  const TextAttributes attributes{{"config", sweep.to_json()},
+                                  {"input_digests", input_hashes(sweep.inputs())}};
+  const auto result = folder_ / "sweep.h5";
+  const Kernels& kernels = kernels_for(best_isa());
+  const std::string message = refusal([&] {
+    SweepSession(sweep, {}, attributes, result).run(kernels, nullptr, [&](auto, auto, auto) {
+      folder_.write("cloud.pcd", cloud + "\n");
+    });
+  });
+  EXPECT_HAS(message, "changed while it was read");
+  EXPECT_EQ(read_sweep(result).result.runs_in(RunState::pending).size(), 3u);
+  folder_.write("cloud.pcd", cloud);
+  EXPECT_TRUE(SweepSession(sweep, {}, attributes, result).run(kernels, nullptr, [](auto, auto, auto) {}));
+  EXPECT_EQ(read_sweep(result).result.runs_in(RunState::done).size(), 3u);
 }
 
 TEST(ChangedInputs, AreToldByPath) {

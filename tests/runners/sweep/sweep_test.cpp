@@ -182,7 +182,7 @@ TEST(Axes, RefinementKeepsTheFirstRound) {
 // Whatever a parameter takes: integers, switches, choices, vectors, whole parts.
 TEST(Axes, ListsOfAnything) {
   const auto cells = [](const std::string& path, const std::string& values) {
-    const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}");
+    const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}", {"set={}"});
     const Json list = Json::parse(values);
     EXPECT_EQ(sweep.plan().cell_count(), list.size());
     for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(value_in(sweep, i, path), list[i]) << path;

@@ -1,0 +1,130 @@
+#include "runners/sweep/sweep_statements.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Keys = std::vector<std::string>;
+
+// A place in a list may be written with zeros before it.
+Keys keys_of(const std::string& path) {
+  Keys keys = path_keys(path);
+  for (std::string& key : keys)
+    if (!key.empty() && key.find_first_not_of("0123456789") == std::string::npos)
+      key.erase(0, std::min(key.find_first_not_of('0'), key.size() - 1));
+  return keys;
+}
+
+bool is_within(const Keys& inner, const Keys& outer) {
+  return outer.size() <= inner.size() && std::equal(outer.begin(), outer.end(), inner.begin());
+}
+
+// What a user writes, in the order in which it is applied.
+struct Statement {
+  enum class Of { option_of_own_experiment, set, option, axis };
+  Of of;
+  std::string subject;  // for errors
+  std::string name;     // as another's error names it
+  Keys keys;
+  Json value;  // of an axis null: it is the last
+};
+
+// The value has a member at these keys, below its own. An element of a list is no statement of its own.
+bool has_member(const Json& value, std::span<const std::string> keys) {
+  const Json* const object = find_value(value, keys.first(keys.size() - 1));
+  return object && object->is_object() && object->contains(keys.back());
+}
+
+bool overwrites(const Statement& later, const Statement& earlier) {
+  if (is_within(earlier.keys, later.keys)) return true;
+  if (!is_within(later.keys, earlier.keys)) return false;
+  if (earlier.value.is_null()) return true;  // it says that there is nothing
+  return has_member(earlier.value, std::span(later.keys).subspan(earlier.keys.size()));
+}
+
+// The last --set counts.
+bool may_overwrite(const Statement& later, const Statement& earlier) {
+  using Of = Statement::Of;
+  if (earlier.of == later.of) return later.of != Of::set;
+  return earlier.of == Of::set && later.of == Of::option;
+}
+
+Statement option(Statement::Of of, const std::string& assignment, const std::string& begin) {
+  auto [path, value] = read_assignment(assignment.substr(begin.size()));
+  const std::string name = "--set " + begin + path;
+  return {of, name + "=" + shown(value), name, keys_of(path), std::move(value)};
+}
+
+std::vector<Statement> statements_of(const Json& json, const std::vector<std::string>& overrides,
+                                     const std::vector<std::string>& of_experiment,
+                                     const std::vector<SweepAxis>& axes, const std::string& label) {
+  using Of = Statement::Of;
+  const std::string own = "experiment.";
+  std::vector<Statement> all;
+  for (const std::string& assignment : overrides)
+    if (assignment.starts_with(own)) all.push_back(option(Of::option_of_own_experiment, assignment, own));
+  if (const auto set = json.find("set"); set != json.end() && set->is_object())
+    for (const auto& item : set->items())
+      all.push_back(
+          {Of::set, label + ": set." + item.key(), "set." + item.key(), keys_of(item.key()), item.value()});
+  for (const std::string& assignment : of_experiment) all.push_back(option(Of::option, assignment, ""));
+  for (const SweepAxis& axis : axes)
+    all.push_back({Of::axis, "", "the axis " + axis.parameter, keys_of(axis.parameter), {}});
+  return all;
+}
+
+bool is_empty(const Json& value) {
+  return value.is_null() || (value.is_array() && value.empty());
+}
+
+bool states(const Json& stated, const Json& run) {
+  if (stated.is_null()) return is_empty(run);
+  if (stated.is_array()) {
+    if (!run.is_array() || stated.size() != run.size()) return false;
+    return std::equal(stated.begin(), stated.end(), run.begin(), states);
+  }
+  if (!stated.is_object()) return stated == run;
+  if (!run.is_object()) return false;
+  for (const auto& item : stated.items()) {
+    const auto member = run.find(item.key());
+    if (!states(item.value(), member == run.end() ? Json() : *member)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label) {
+  for (std::size_t later = 0; later < axes.size(); ++later)
+    for (std::size_t i = 0; i < later; ++i) {
+      const Keys a = keys_of(axes[i].parameter), b = keys_of(axes[later].parameter);
+      if (!is_within(a, b) && !is_within(b, a)) continue;
+      throw InputError(label + ": axes." + std::to_string(later) + " " + axes[later].parameter,
+                       "overlaps axes." + std::to_string(i) + " " + axes[i].parameter +
+                           ": expected each parameter once, and none that contains another");
+    }
+}
+
+void refuse_overwritten(const Json& json, const std::vector<std::string>& overrides,
+                        const std::vector<std::string>& of_experiment, const std::vector<SweepAxis>& axes,
+                        const std::string& label) {
+  const std::vector<Statement> all = statements_of(json, overrides, of_experiment, axes, label);
+  for (std::size_t later = 0; later < all.size(); ++later)
+    for (std::size_t i = 0; i < later; ++i)
+      if (!may_overwrite(all[later], all[i]) && overwrites(all[later], all[i]))
+        throw InputError(all[i].subject, "is overwritten by " + all[later].name + ": expected one of them");
+}
+
+void require_run(const Experiment& run, const std::string& axis, const Json& value) {
+  const Json there = run.value_at_start(axis);
+  if (!states(value, there))
+    throw InputError("axis " + axis + " = " + shown(value),
+                     "the run has " + shown(there) + ": expected a value that nothing else changes");
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,31 @@
+// A result states what was run. So no part of a sweep may overwrite what another part states, and every run
+// has the values of its cell.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runners/experiment/experiment.h"
+#include "runners/settings/json_parameters.h"
+#include "runners/sweep/sweep_axis.h"
+
+namespace remote_touch {
+
+// Throws InputError, with both paths, for two axes of one parameter, or if one contains the other.
+void refuse_overlapping(const std::vector<SweepAxis>& axes, const std::string& label);
+
+// Throws InputError, with both paths, for a value of `set` or of --set that something later replaces: --set
+// of the sweep's own experiment comes first, then `set`, then --set, then the axes. A --set may replace a
+// value of `set`, and an earlier --set. A value replaces another also where one is an object that has the
+// other as a member; the elements of a list may be axes, because a list cannot be given without them.
+// overrides: all "key=value" of the command line; of_experiment: those that do not begin with a key of the
+// sweep. json: the sweep with the others applied.
+void refuse_overwritten(const Json& json, const std::vector<std::string>& overrides,
+                        const std::vector<std::string>& of_experiment, const std::vector<SweepAxis>& axes,
+                        const std::string& label);
+
+// Throws InputError unless the run has the value of an axis in its first tick. Of an object it must have all
+// members; null is what is absent or empty.
+void require_run(const Experiment& run, const std::string& axis, const Json& value);
+
+}  // namespace remote_touch
