@@ -7,6 +7,7 @@
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/maker.h"
 #include "runners/provenance/recipe.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/simulation/simulation.h"
 #include "scenarios/text_files/json_text.h"
 
@@ -32,8 +33,9 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
     throw InputError(
         name,
         "is of a live run, without its frames: expected the trace that `remote-touch run` makes of its recording");
-  Experiment experiment = read_configuration(
-      trace, name, [&] { return Experiment::from_json(parse_json(attribute(trace, "config"), name)); });
+  Experiment experiment = read_configuration(trace, name, [&] {
+    return Experiment::from_json(parse_json(stored_configuration(attribute(trace, "config")), name));
+  });
   for (const ChangedInput& input :
        changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
     throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +
@@ -54,7 +56,9 @@ void frames_again(const Experiment& experiment, std::span<const double> time_s, 
   }
   FrameObserver observer(on_frame);
   const auto scenario = experiment.build_scenario(kernels);
-  FrameStream stream(*scenario, experiment.build_processing(kernels), experiment.settings().transport,
+  FrameProcessing processing = experiment.build_processing(kernels);
+  processing.needs = {};  // a run of an earlier version, which refused nothing, can be shown, too
+  FrameStream stream(*scenario, std::move(processing), experiment.settings().transport,
                      experiment.settings().key, false);
   for (const double now_s : time_s) {
     if (stop && *stop) throw Interrupted{};

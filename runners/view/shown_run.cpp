@@ -101,6 +101,7 @@ struct ShownRun::State {
         r2_m(length_m(configuration["renderer"], "r2_m")),
         contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
     if (note.empty() && changes_radii()) note = kOtherRadii;
+    add_stored_notes();
     read_path();
     if (source.columns->has("tool_orientation")) read_tool();
     find_action();
@@ -108,6 +109,11 @@ struct ShownRun::State {
 
   std::string of(const char* name) const { return attribute(source.attributes, name); }
 
+  // What the run itself reported, see RunReport.
+  void add_stored_notes() {
+    for (const char c : of("notes")) note_of_run += c == '\n' ? std::string("; ") : std::string(1, c);
+    if (!note_of_run.empty()) note += (note.empty() ? "" : "; ") + note_of_run;
+  }
   bool changes_radii() const {
     const auto& changes = experiment.changes();
     return std::any_of(changes.begin(), changes.end(), [](const RendererChange& change) {
@@ -181,15 +187,17 @@ struct ShownRun::State {
     Json list = Json::array();
     for (const ShownFrame& frame : some) list.push_back(frame_json(frame, numbers));
     run["frames"] = std::move(list);
-    if (!made.are_those_of_the_run) run["note"] = note = kOtherFrames;
+    if (!made.are_those_of_the_run)
+      run["note"] = note = kOtherFrames + (note_of_run.empty() ? "" : "; " + note_of_run);
     run["shown"] = shown = text_of(some);
     if (made.X_WC) run["sensor"] = sensor_json(*made.X_WC);
   }
   void add_truth(Json& run, PackedArrays& numbers) const {
     const auto scenario = experiment.build_scenario(kernels);
-    const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s.front(), path.time_s.back());
+    const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s);
     if (heights.empty()) return;
     run["truth"] = {{"columns", TrueHeights::kColumns},
+                    {"stays", heights.stays},
                     {"low_m", json_of(shown_box_W.min())},
                     {"high_m", json_of(shown_box_W.max())},
                     {"time_s", json_of(numbers.add(heights.time_s))},
@@ -207,7 +215,7 @@ struct ShownRun::State {
   ShownFrames made;  // with as many points as the first json() asked for
   BoundingBox shown_box_W;
   std::optional<TraceEvent> divergence;
-  std::string shown, note = source.note;
+  std::string shown, note_of_run, note = source.note;
 };
 
 ShownRun::ShownRun(RunSource source, const Kernels& kernels, const std::atomic<bool>* stop)

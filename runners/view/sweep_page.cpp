@@ -9,6 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/maker.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/simulation/simulation.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep.h"
@@ -35,11 +36,9 @@ void require_same_recordings(const StoredSweep& stored, const Sweep& sweep, cons
 
 Sweep sweep_of(const StoredSweep& stored, const std::string& file) {
   Sweep sweep = read_configuration(stored.attributes, file, [&] {
-    return Sweep::from_json(attribute(stored.attributes, "config"), file + " config");
+    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")), file + " config");
   });
-  if (sweep.plan().run_count() != stored.result.run_count() ||
-      sweep.measures().size() != stored.result.measures.size())
-    throw InputError(file, "damaged (its arrays do not fit its configuration)");
+  sweep.require_fits(stored.result, file);
   require_same_recordings(stored, sweep, file);
   return sweep;
 }

@@ -16,7 +16,7 @@ def read_claims(path):
         return []
     try:
         claims = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: {error}") from None
     if not isinstance(claims, list) or not all(isinstance(claim, dict) for claim in claims):
         raise PlotError(f"{path}: not a list of claims")
@@ -61,7 +61,7 @@ def claim_row(anchor, claim):
         style = " class=number" if name == "measured" else " class=short" if len(shown) <= SHORT else ""
         cells.append(f"<td{style}>{esc(shown)}</td>")
     style, word = verdict(claim)
-    return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{word}</td></tr>'
+    return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{esc(word)}</td></tr>'
 
 
 def table(rows):

@@ -10,20 +10,29 @@ import matplotlib.ticker
 import matplotlib.transforms
 import numpy as np
 
+from plotting.cells import cell_ends, cell_size, colour_range, distinct, outlines
 from plotting.scene import rgb
 
+NOTHING, NOTHING_COLOUR = "no value", "#d4d4d4"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
 HALO = [matplotlib.patheffects.withStroke(linewidth=4, foreground="white")]  # about a line over cells
 
 # Each style draws one curve of the panel it is in.
 
+def alone(curve):
+    """The samples whose neighbours have no value: a line through one point would not be seen."""
+    seen = np.pad(is_finite(curve), 1)
+    return [int(i) for i in np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:])]
+
+
 def draw_line(axes, curve, panel, colour, **options):
-    marker = "o" if curve.x.values.size == 1 else None  # a line of one point would not be seen
+    dots = alone(curve)
+    if dots:
+        options |= {"marker": "o", "markevery": dots}
     width = 1.5 if curve.x.values.size <= 2000 else 1.0  # a noisy trace stays a line
     if has_cells(panel):
         width, options = 2.0, options | {"path_effects": HALO}
-    axes.plot(curve.x.values, curve.y.values, color=colour, marker=marker, linewidth=width, label=curve.label,
-              **options)
+    axes.plot(curve.x.values, curve.y.values, color=colour, linewidth=width, label=curve.label, **options)
 
 
 def draw_dashed(axes, curve, panel, colour):
@@ -54,24 +63,32 @@ def draw_circles(axes, curve, _, colour):
 
 
 def draw_bars(axes, curve, panel, colour):
-    """The bar charts of one panel stand side by side."""
+    """The bar charts of one panel stand side by side. A cross stands where there is no value, which is not 0."""
     charts = [other for other in panel.curves if other.style == "bars"]
     places = np.unique(curve.x.values[np.isfinite(curve.x.values)])
     spacing = np.diff(places).min() if places.size > 1 else 1.0
     width = 0.8 * spacing / len(charts)
     offset = (charts.index(curve) - (len(charts) - 1) / 2) * width
     axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=colour, label=curve.label)
+    none = ~np.isfinite(curve.y.values)
+    if none.any():
+        axes.plot(curve.x.values[none] + offset, np.zeros(none.sum()), "x", color="black", label=NOTHING)
 
 
 def draw_squares(axes, curve, panel, colour):
     """Filled cells; an empty line makes the legend entry."""
     axes.plot([], [], "s", color=colour, markersize=9, markeredgewidth=0, label=curve.label)
-    add_cells(axes, curve, panel, facecolor=colour)
+    add_cells(axes, curve, panel, is_finite(curve), facecolor=colour)
 
 
 def draw_map(axes, curve, panel, _):
     """Cells coloured by z. The colour bar hangs on the panel, so it follows where equal aspect puts that."""
-    cells = add_cells(axes, curve, panel, array=curve.z.values[is_finite(curve)], cmap="viridis")
+    known = is_finite(curve)
+    none = ~known & np.isfinite(curve.x.values) & np.isfinite(curve.y.values)
+    if none.any():
+        axes.plot([], [], "s", color=NOTHING_COLOUR, markersize=9, markeredgewidth=0, label=NOTHING)
+        add_cells(axes, curve, panel, none, facecolor=NOTHING_COLOUR)
+    cells = add_cells(axes, curve, panel, known, array=curve.z.values[known], cmap="viridis")
     cells.set_clim(colour_range(curve.z))
     width = 0.03 if panel.place is None else 0.05
     bar = axes.figure.colorbar(cells, cax=axes.inset_axes([1.02, 0, width, 1]))
@@ -90,7 +107,8 @@ def draw_image(axes, curve, _, __):
     (columns, at_column), (rows, at_row) = (np.unique(values, return_inverse=True)
                                             for values in (curve.x.values, curve.y.values))
     pixels = np.ones((rows.size, columns.size, 3))
-    pixels[at_row, at_column] = rgb(curve.z.values)
+    known = is_finite(curve)
+    pixels[at_row[known], at_column[known]] = rgb(curve.z.values[known])
     across, up = (cell_size(values, (math.nan, math.nan)) / 2 for values in (columns, rows))
     axes.imshow(pixels, origin="lower", interpolation="nearest",
                 extent=(columns[0] - across, columns[-1] + across, rows[0] - up, rows[-1] + up))
@@ -105,35 +123,17 @@ def has_cells(panel):
     return any(curve.style in CELLS for curve in panel.curves)
 
 
-def cell_size(values, limits):
-    """The smallest distance between values that differ by more than rounding; of one value, a share of the panel."""
-    gaps = np.diff(np.unique(values[np.isfinite(values)]))
-    gaps = gaps[gaps > 1e-6 * gaps.sum()]
-    if gaps.size:
-        return gaps.min()
-    return 1.0 if any(math.isnan(limit) for limit in limits) else abs(limits[1] - limits[0]) / 50
-
-
-def add_cells(axes, curve, panel, **options):
-    """Without a seam between neighbours. Automatic limits end where the cells end."""
-    size = cell_size(curve.x.values, panel.x_range), cell_size(curve.y.values, panel.y_range)
-    centres = np.column_stack([curve.x.values, curve.y.values])[is_finite(curve)]
-    outlines = centres[:, np.newaxis] + 0.5 * np.multiply([(-1, -1), (1, -1), (1, 1), (-1, 1)], size)
-    cells = matplotlib.collections.PolyCollection(outlines, linewidth=0, antialiased=False, **options)
-    if centres.size:
-        corners = outlines.reshape(-1, 2)
+def add_cells(axes, curve, panel, shown, **options):
+    """Without a seam between neighbours. Automatic limits end where the cells end. shown: which of the samples."""
+    drawn = outlines(curve, panel, shown)
+    cells = matplotlib.collections.PolyCollection(drawn, linewidth=0, antialiased=False, **options)
+    if drawn.size:
+        corners = drawn.reshape(-1, 2)
         cells.sticky_edges.x[:], cells.sticky_edges.y[:] = np.transpose([corners.min(axis=0), corners.max(axis=0)])
-    axes.add_collection(cells)
+        axes.update_datalim(corners)  # what a collection says of itself is wrong on a log axis
+    axes.add_collection(cells, autolim=False)
     axes.autoscale_view()
     return cells
-
-
-def colour_range(column):
-    """Of a map. A share has the same colours in all figures; an enum has a colour for each name."""
-    values = np.array(list(column.names)) if column.names else column.values[np.isfinite(column.values)]
-    if not values.size or (values.min() >= 0 and values.max() <= 1):
-        return 0, 1
-    return values.min(), values.max()
 
 
 def is_finite(curve):
@@ -155,8 +155,7 @@ def reach(curve, panel):
     if curve.style == "band":
         return np.concatenate([y, curve.z.values[seen]])
     if curve.style in CELLS:
-        half = cell_size(curve.y.values, panel.y_range) / 2
-        return np.concatenate([y - half, y + half])
+        return np.concatenate([ends[seen] for ends in cell_ends(curve, panel)[1]])
     return y
 
 
@@ -174,7 +173,7 @@ def set_y_range(axes, panel):
     automatic = all(math.isnan(limit) for limit in panel.y_range)
     extended = any(curve.style in ("bars", "circle") for curve in panel.curves)  # reach beyond their samples
     values = np.concatenate([reach(curve, panel) for curve in panel.curves] or [[]])
-    if not automatic or extended or not values.size:
+    if not automatic or extended or not values.size or any(curve.y.is_log for curve in panel.curves):
         set_given(axes.set_ylim, panel.y_range)
         return
     size, span = np.abs(values).max(), np.ptp(values)
@@ -189,18 +188,54 @@ def set_given(set_limits, limits):
     set_limits(*(None if math.isnan(limit) else limit for limit in limits))
 
 
-def set_ticks(axis, limits, columns):
-    """Plain numbers without a common offset or factor; the names of an enum."""
+def plain(value, _=None):
+    return f"{value:.6g}".replace("-", "\u2212")
+
+
+def set_names(axis, names):
+    """Below a panel long words lean, so that they do not run into each other."""
+    words = [textwrap.fill(names[value], 24) for value in sorted(names)]
+    axis.set_ticks(sorted(names), words)
+    if axis.axis_name == "x" and sum(map(len, words)) > 60:
+        for label in axis.get_ticklabels():
+            label.set(rotation=25, ha="right", rotation_mode="anchor")
+
+
+def set_log_ticks(axis):
+    """At 1, 2 and 5 of each decade."""
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: plain(float(f"{value:.3g}"))))
+    axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
+def few_values(columns):
+    """Those of the cells of a map, where each has room for its number."""
+    values = distinct(np.concatenate([column.values for column in columns]))
+    at = np.log(values) if any(column.is_log for column in columns) else values
+    return values if 1 < values.size <= 8 and np.diff(at).min() > np.ptp(at) / 12 else None
+
+
+def set_ticks(axis, limits, columns, of_map=False):
+    """Plain numbers without a common offset or factor; the names of an enum; no half of what is counted."""
     names = next((column.names for column in columns if column.names), None)
     if names:
-        axis.set_ticks(sorted(names), [names[value] for value in sorted(names)])
+        set_names(axis, names)
+        return
+    few = few_values(columns) if of_map else None
+    if any(column.is_log for column in columns):
+        set_log_ticks(axis)
+    elif columns and all(column.is_count for column in columns):
+        axis.set_major_locator(matplotlib.ticker.MaxNLocator("auto", steps=[1, 2, 5, 10], integer=True))
+    if few is not None:
+        axis.set_major_locator(matplotlib.ticker.FixedLocator(few))
+    if axis.get_scale() == "log":
         return
     size = max(abs(limit) for limit in limits)
     if 1e-3 <= size < 1e6:
         formatter = matplotlib.ticker.ScalarFormatter(useOffset=False)
         formatter.set_scientific(False)
     else:
-        formatter = matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.6g}".replace("-", "\u2212"))
+        formatter = matplotlib.ticker.FuncFormatter(plain)
     axis.set_major_formatter(formatter)
 
 
@@ -250,18 +285,22 @@ def curve_key(curve, i):
 
 def draw_panel(axes, panel, colours):
     """colours: of each curve, by curve_key."""
+    xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
+    for set_scale, columns in ((axes.set_xscale, xs), (axes.set_yscale, ys)):
+        if any(column.is_log for column in columns):
+            set_scale("log")
     for i, curve in enumerate(panel.curves):
         DRAW[curve.style](axes, curve, panel, colours[curve_key(curve, i)])
-    xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
     axes.set_title(textwrap.fill(panel.title, 80), loc="left")
     if is_image(panel):
         without_axes(axes)
         return
-    set_ticks(axes.xaxis, axes.get_xlim(), xs)
-    set_ticks(axes.yaxis, axes.get_ylim(), ys)
-    if panel.place is not None:  # narrow: the labels would run into each other
+    of_map = any(curve.style == "map" for curve in panel.curves)
+    set_ticks(axes.xaxis, axes.get_xlim(), xs, of_map)
+    set_ticks(axes.yaxis, axes.get_ylim(), ys, of_map)
+    if panel.place is not None and axes.get_xscale() == "linear":  # narrow: the labels would run into each other
         axes.locator_params(axis="x", nbins=5)
     axes.set_xlabel(with_units(panel.x_label, xs))
     axes.set_ylabel(textwrap.fill(with_units(panel.y_label, ys), 36))

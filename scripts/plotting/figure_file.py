@@ -11,6 +11,7 @@ from plotting.plot_error import PlotError
 SCHEMA = "remote-touch-figure/2"
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image")
 NEED_Z = ("map", "band", "image")
+FRACTION = re.compile(r"(fraction|share|probability) of |1 when ")
 
 
 @dataclasses.dataclass
@@ -19,6 +20,17 @@ class Column:
     units: str
     long_name: str
     names: dict  # of an enum: value -> name
+    is_log: bool = False  # of an axis: equal ratios are equally wide
+
+    @property
+    def is_fraction(self):
+        """As its name declares: values between 0 and 1 may be anything, lengths in metres for example."""
+        return self.units == "1" and FRACTION.match(self.long_name) is not None
+
+    @property
+    def is_count(self):
+        values = self.values[np.isfinite(self.values)]
+        return self.units in ("", "1") and values.size > 0 and not self.is_fraction and (values == np.round(values)).all()
 
 
 @dataclasses.dataclass(eq=False)
@@ -108,14 +120,18 @@ def numbered(group, prefix):
     return [group[name] for name in sorted(found, key=lambda name: int(name[len(prefix):]))]
 
 
+def enum_names(data):
+    """value -> name, of a dataset of named values"""
+    return {value: name for name, value in (h5py.check_enum_dtype(data.dtype) or {}).items()}
+
+
 def read_column(file, table, name):
     path = f"/tables/{table}/{name}"
     if path not in file or not isinstance(file[path], h5py.Dataset):
         raise PlotError(f"{file.filename}: a curve asks for {path}, which is not there")
     data = file[path]
-    names = {value: key for key, value in (h5py.check_enum_dtype(data.dtype) or {}).items()}
     values = np.ravel(data[()]).astype(float)
-    return Column(values, text(data.attrs, "units"), text(data.attrs, "long_name"), names)
+    return Column(values, text(data.attrs, "units"), text(data.attrs, "long_name"), enum_names(data))
 
 
 def read_curve(file, group):

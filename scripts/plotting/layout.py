@@ -17,6 +17,7 @@ RC = {
     "figure.titlesize": 14, "axes.spines.top": False, "axes.spines.right": False,
     "axes.edgecolor": "#666666", "axes.grid": True, "axes.axisbelow": True,
     "grid.color": "#e3e3e3", "grid.linewidth": 0.8, "legend.frameon": False,
+    "text.parse_math": False,  # a dollar sign in a name is no formula
     "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
 }
 

@@ -1,6 +1,7 @@
 """Makes index.html: every figure with its caption and claims, and what is still to come while figures are made."""
 import json
 import os
+import urllib.parse
 
 from plotting.claims import claim_table, esc, figure_of, overview
 from plotting.progress import duration
@@ -35,15 +36,20 @@ def pretty(config):
         return config
 
 
+def address(name):
+    """Of a file beside the page, whose name may have any character."""
+    return esc(urllib.parse.quote(os.fsencode(name)))
+
+
 def view_links(views):
     """Pages that show a run of the figure in 3-D."""
-    links = ", ".join(f'<a href="{esc(view)}">{esc(view.rpartition("/")[2].removesuffix(".html"))}</a>' for view in views)
+    links = ", ".join(f'<a href="{address(view)}">{esc(view.rpartition("/")[2].removesuffix(".html"))}</a>' for view in views)
     return f"<p>Look at it in 3-D and over time: {links}.</p>" if links else ""
 
 
 def figure_section(figure, anchored, views):
     a = figure.attributes
-    image = f'<img src="{esc(figure.name)}.png" alt="{esc(figure.heading)}">' if figure.panels else ""
+    image = f'<img src="{address(figure.name)}.png" alt="{esc(figure.heading)}">' if figure.panels else ""
     config = f'<pre>{esc(pretty(a["config"]))}</pre>' if a.get("config") else ""
     return f"""<section id="{esc(figure.name)}">
 <h2>{esc(figure.heading)}</h2>
@@ -126,7 +132,8 @@ def page(figures, claims, progress=None, views=None):
 
 
 def write_page(path, text):
-    """Whoever reads it meanwhile sees the old page or the new one."""
+    """Whoever reads it meanwhile sees the old page or the new one. Half of a character, which JSON may have, is shown
+    as a question mark."""
     partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    partial.write_text(text, encoding="utf-8")
+    partial.write_text(text, encoding="utf-8", errors="replace")
     partial.replace(path)

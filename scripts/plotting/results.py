@@ -1,28 +1,39 @@
-"""Panels of a trace or a sweep, which are no figures yet: position and force over time, measures over the axes."""
+"""Panels of a trace or a sweep, which are no figures yet: position and force over time, measures over the axes. Lengths
+are in mm."""
+import dataclasses
+import json
 import math
 import warnings
 
 import h5py
 import numpy as np
 
-from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, open_file, read_figure, text
+from plotting.figure_file import SCHEMA, Column, Curve, Figure, Panel, enum_names, open_file, read_figure, text
 from plotting.plot_error import PlotError
 
 MAX_PANELS = 8
 AUTOMATIC = [math.nan, math.nan]
+SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
 
 
 def column(data, values=None):
-    """One column of a dataset, texts as the numbers of their names."""
+    """One column of a dataset as it is shown, texts as the numbers of their names."""
     values = data[()] if values is None else values
     if h5py.check_string_dtype(data.dtype):
         words = [word.decode("utf-8", "replace").rstrip("\0") for word in np.ravel(values)]
         return Column(np.arange(len(words), dtype=float), "1", text(data.attrs, "long_name"), dict(enumerate(words)))
-    return Column(np.ravel(values).astype(float), text(data.attrs, "units"), text(data.attrs, "long_name"), {})
+    stored = text(data.attrs, "units")
+    factor, units = SHOWN_UNITS.get(stored, (1, stored))
+    return Column(factor * np.ravel(values).astype(float), units, text(data.attrs, "long_name"), enum_names(data))
 
 
 def with_units(name, of):
     return f"{name} / {of.units}" if of.units not in ("", "1") else name
+
+
+def axis_label(name, of):
+    """The name of a parameter ends with its unit, which may not be the one that is shown."""
+    return with_units(name.removesuffix("_m") if of.units == "mm" else name, of)
 
 
 def panel(title, x_label, y_label, curves):
@@ -61,37 +72,74 @@ def over_replicates(data, axes):
         return np.nanmean(values, axis=axes)
 
 
+def log_axes(file, count):
+    """Which axes the sweep declares to have equal ratios."""
+    try:
+        axes = json.loads(text(file.attrs, "config"))["axes"]
+        return [axes[i].get("scale") == "log" for i in range(count)]
+    except (ValueError, LookupError, TypeError, AttributeError):
+        raise PlotError(f"{file.filename}: config is damaged: expected the axes of a sweep") from None
+
+
+def grid(file, axes):
+    """Of each axis the value at every cell."""
+    columns = [column(axis) for axis in axes]
+    places = np.meshgrid(*[each.values for each in columns], indexing="ij")
+    return [dataclasses.replace(each, values=np.ravel(place), is_log=is_log)
+            for each, place, is_log in zip(columns, places, log_axes(file, len(axes)))]
+
+
 def sweep_panels(file):
-    """A line for each measure over one axis, a map over two."""
+    """A line for each measure over one axis, dots where that has words, a map over two."""
     axes = [dataset(file, f"/sweep/{name}") for name in text(file.attrs, "axes").split(",")]
     names = text(file.attrs, "measures").split(",")[:MAX_PANELS]
     if len(axes) > 2:
         raise PlotError(f"{file.filename}: a sweep over {len(axes)} axes: expected one or two, to be drawn")
-    places = np.meshgrid(*[column(axis).values for axis in axes], indexing="ij")
+    at = grid(file, axes)
+    labels = [axis_label(axis.name.rsplit("/")[-1], place) for axis, place in zip(axes, at)]
     panels = []
     for name in names:
         measure = dataset(file, f"/sweep/{name}")
         values = column(measure, over_replicates(measure, len(axes)))
-        at = [Column(np.ravel(place), column(axis).units, column(axis).long_name, column(axis).names)
-              for place, axis in zip(places, axes)]
-        labels = [with_units(axis.name.rsplit("/")[-1], place) for axis, place in zip(axes, at)]
+        mean = f", mean of up to {measure.shape[-1]} runs" if measure.ndim > len(axes) else ""
+        values.long_name += mean
         if len(axes) == 1:
-            panels.append(panel("", labels[0], with_units(name, values), [Curve(at[0], values, "line", "", 0, None)]))
+            style = "dots" if at[0].names else "line"
+            panels.append(panel("", labels[0], with_units(name + mean, values), [Curve(at[0], values, style, "", 0, None)]))
         else:
             panels.append(panel(name, labels[0], labels[1], [Curve(at[0], at[1], "map", "", 0, values)]))
     return panels
 
 
+def left_out(file):
+    """What of a sweep the picture does not show, in words."""
+    words = []
+    measures = len(text(file.attrs, "measures").split(","))
+    if measures > MAX_PANELS:
+        words.append(f"the first {MAX_PANELS} of {measures} measures")
+    state = dataset(file, "/sweep/state")
+    names = enum_names(state)
+    states = [names.get(value) for value in np.ravel(state[()])]
+    planned = len(states) - states.count("not_sampled")
+    for what, count in (("failed", states.count("failed")),
+                        ("are not done", states.count("pending") + states.count("elsewhere"))):
+        if count:
+            words.append(f"without {count} of {planned} runs, which {what}")
+    return "".join(f"; {each}" for each in words)
+
+
 VERSION = SCHEMA.split("/")[1]
-PANELS = {f"remote-touch-trace/{VERSION}": trace_panels, f"remote-touch-sweep/{VERSION}": sweep_panels}
+TRACE, SWEEP = f"remote-touch-trace/{VERSION}", f"remote-touch-sweep/{VERSION}"
 
 
 def read_drawable(path):
     """A figure, or a trace or a sweep as one."""
     with open_file(path) as file:
         schema = text(file.attrs, "schema")
-        if schema in PANELS:
-            return Figure(path.stem, {"heading": text(file.attrs, "command") or path.name}, PANELS[schema](file))
+        if schema in (TRACE, SWEEP):
+            panels = sweep_panels(file) if schema == SWEEP else trace_panels(file)
+            heading = (text(file.attrs, "command") or path.name) + (left_out(file) if schema == SWEEP else "")
+            return Figure(path.stem, {"heading": heading}, panels)
     if schema != SCHEMA:
         raise PlotError(f"{path}: schema {schema!r}: expected a figure, a trace or a sweep of this program")
     return read_figure(path)

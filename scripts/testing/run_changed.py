@@ -26,7 +26,7 @@ OF_THE_PROGRAM = [
     (r"runners/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
     (r"runners/view/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
     (r"runners/python/|tests/runners/python/", ["python_module"]),
-    (r"scripts/(plot|plotting/)", ["plot", "scorecard_page", "figures_quick"]),
+    (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "scorecard_page", "figures_quick"]),
     (r".*\.md$", ["page_links", "reference"]),
     (r".*/(.*_settings|.*parameters?|settings)\.(h|cpp)$", ["reference", "page_links"]),
 ]

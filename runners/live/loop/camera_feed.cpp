@@ -96,6 +96,7 @@ void CameraFeed::handle(SensorFrame& sensed) {
   }
   ++index_;
   processing_.fill(frame, sensed, source_->view(), X_WC_, off);
+  processing_.needs.check(frame);
   renderer_.prepare(frame);
   send(std::move(frame), sensed.captured_s);
   counts_.processing_s += clock_.now_s() - begin_s;

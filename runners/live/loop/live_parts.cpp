@@ -38,6 +38,7 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       rows_(kRows) {
   require_rate();
   const SensorView& view = source->view();
+  experiment.check_needs(view);
   renderer_->reserve(expected_points(view));
   const RigidTransform registration = camera_registration(experiment.live());
   FrameProcessing processing =

@@ -1,6 +1,5 @@
 #include "runners/live/view/live_channel.h"
 
-#include <limits>
 #include <utility>
 
 #include "runners/live/view/page_message.h"
@@ -8,19 +7,21 @@
 
 namespace remote_touch {
 
-LiveChannel::LiveChannel(double haptic_rate_hz, const Kernels& kernels, std::shared_ptr<HandPoses> poses,
-                         std::shared_ptr<LiveControls> controls)
-    : rate_hz_(haptic_rate_hz), kernels_(kernels), poses_(std::move(poses)), controls_(std::move(controls)) {}
+LiveChannel::LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
+                         std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls)
+    : rate_hz_(haptic_rate_hz),
+      placement_(placement),
+      kernels_(kernels),
+      poses_(std::move(poses)),
+      controls_(std::move(controls)) {}
 
 // A page without some ticks is better than a run that ends.
 void LiveChannel::take(const LiveTick& tick) noexcept {
   if (!is_open_.load(std::memory_order_relaxed)) return;
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const std::lock_guard lock(mutex_);
   try {
     if (rows_.length() >= kMaxRows) rows_ = {};
-    rows_.append(static_cast<double>(tick.number) / rate_hz_, tick.device, tick.out,
-                 {kUnknown, kUnknown, tick.hash});
+    rows_.append(tick, rate_hz_, placement_);
   } catch (const std::bad_alloc&) {
     rows_ = {};
   }
@@ -93,16 +94,16 @@ bool LiveChannel::next(Message& message) {
 }
 
 LiveChannel::Message LiveChannel::tick_message() {
-  Trace rows;
+  LiveRows rows;
   {
     const std::lock_guard lock(mutex_);
     if (!sent_columns_) {
       sent_columns_ = true;
-      return {columns_message(rows_), true};
+      return {columns_message(rows_.columns()), true};
     }
     std::swap(rows, rows_);
   }
-  return {ticks_message(rows, ++sent_), false};
+  return {ticks_message(rows.columns(), ++sent_), false};
 }
 
 LiveChannel::Message LiveChannel::frame_message_of(const NeighbourSearch& points, std::int32_t index) {

@@ -9,12 +9,12 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/frame.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/servo.h"
+#include "runners/live/view/live_rows.h"
 
 namespace remote_touch {
 
@@ -24,8 +24,9 @@ class LiveChannel {
   static constexpr std::size_t kMaxPoints = 300000;  // of a frame
   static constexpr std::uint32_t kMaxInFlight = 2;   // messages that the page has not acknowledged
 
-  LiveChannel(double haptic_rate_hz, const Kernels& kernels, std::shared_ptr<HandPoses> poses,
-              std::shared_ptr<LiveControls> controls);
+  // placement: of the device in the world.
+  LiveChannel(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
+              std::shared_ptr<HandPoses> poses, std::shared_ptr<LiveControls> controls);
 
   // From the threads of the run.
   void take(const LiveTick& tick) noexcept;
@@ -49,12 +50,13 @@ class LiveChannel {
   Message frame_message_of(const NeighbourSearch& points, std::int32_t index);
 
   const double rate_hz_;
+  const DevicePlacement placement_;
   const Kernels& kernels_;
   const std::shared_ptr<HandPoses> poses_;
   const std::shared_ptr<LiveControls> controls_;
   std::atomic<bool> is_open_ = false;
   std::mutex mutex_;
-  Trace rows_;                                     // since the last message
+  LiveRows rows_;                                  // since the last message
   std::shared_ptr<const NeighbourSearch> points_;  // of the newest frame
   std::int32_t index_ = 0;
   bool frame_is_new_ = false;

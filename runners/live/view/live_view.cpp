@@ -73,7 +73,8 @@ LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, c
     : controls_(std::make_shared<LiveControls>(
           experiment, kernels,
           source.depth == "sim:" ? LiveControls::Camera::simulated : LiveControls::Camera::other)),
-      channel_(experiment.settings().haptic_rate_hz, kernels, poses_, controls_),
+      channel_(experiment.settings().haptic_rate_hz, DevicePlacement(experiment.live()), kernels, poses_,
+               controls_),
       server_(serve_view(page_of(experiment, source, *controls_, kernels), channel_, port)) {}
 
 void LiveView::connect(LiveOptions& options) {

@@ -51,9 +51,9 @@ void append_positions(std::string& bytes, const PointCloud& cloud, const std::ve
 
 }  // namespace
 
-std::string columns_message(const Trace& trace) {
+std::string columns_message(const std::vector<Column>& columns) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Column& column : trace.columns())
+  for (const Column& column : columns)
     if (!is_hash(column))
       list.push_back({{"name", column.name},
                       {"unit", column.units},
@@ -67,11 +67,11 @@ std::string parameters_message(const LiveControls& controls, const std::string& 
   return nlohmann::ordered_json{{"values", controls.values()}, {"refused", refused}}.dump();
 }
 
-std::string ticks_message(const Trace& trace, std::uint32_t number) {
+std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number) {
   std::string bytes;
-  for (const std::uint32_t head : {kTicks, number, static_cast<std::uint32_t>(trace.length()), 0u})
+  for (const std::uint32_t head : {kTicks, number, static_cast<std::uint32_t>(columns.front().length()), 0u})
     append(bytes, head);
-  for (const Column& column : trace.columns()) {
+  for (const Column& column : columns) {
     if (const auto* doubles = std::get_if<std::vector<double>>(&column.values))
       bytes.append(reinterpret_cast<const char*>(doubles->data()), 8 * doubles->size());
     else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values))

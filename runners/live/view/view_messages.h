@@ -3,23 +3,23 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/columns/column.h"
 #include "core/cloud/point_cloud.h"
 #include "runners/live/loop/live_controls.h"
 
 namespace remote_touch {
 
-// JSON: {"columns": [{"name", "unit", "meaning", "width", "names"}, ...]}, those of the trace whose rows are
-// sent; hashes are left out.
-std::string columns_message(const Trace& trace);
+// JSON: {"columns": [{"name", "unit", "meaning", "width", "names"}, ...]}; hashes are left out.
+std::string columns_message(const std::vector<Column>& columns);
 
 // JSON: {"values": [...], "refused": TEXT}, the present values of the live parameters, and why the newest
 // changes were not made; empty: they were.
 std::string parameters_message(const LiveControls& controls, const std::string& refused);
 
 // 1 (u32), number of the message (u32), rows (u32), 0 (u32); then of each column all rows (f64).
-std::string ticks_message(const Trace& trace, std::uint32_t number);
+std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number);
 
 // 2 (u32), number of the message (u32), index of the frame (i32), points (u32), what follows the positions
 // (u32: 1 colours, 2 radii of forbidden regions, 3 both), measured points (u32), step in metres and the

@@ -20,6 +20,12 @@ inline std::string between(const std::string& text, const std::string& begin, co
   return text.substr(start, text.find(end, start) - start);
 }
 
+inline std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
 inline std::string decompressed(const std::string& base64, std::size_t max_bytes) {
   std::string packed(base64.size(), '\0'), bytes(max_bytes, '\0');
   const int length =

@@ -104,6 +104,24 @@ TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyPart) {
   EXPECT_GT(divergence["tick"].get<std::size_t>(), 100u);
 }
 
+// Whoever made the result may have put a script into any of its texts.
+TEST_F(TracePageTest, HostileWordsStayWords) {
+  const std::string words = "\"'></script><script>alert(1)</script></title><img src=x onerror=alert(1)><!--";
+  store("plain.h5", "fig4.12", {"duration_s=0.05"});
+  const std::string plain = trace_page({folder_ / "plain.h5"}, options()).html;
+  const Experiment one = Experiment::load("fig4.12", {"duration_s=0.05", "title=" + Json(words).dump()});
+  TextAttributes attributes = provenance(one.to_json(), "a test", "");
+  for (auto& [name, value] : attributes)
+    if (name != "config" && name != "recipe" && name != "input_digests") value = words;
+  write_trace(folder_ / "hostile.h5", simulate(one), attributes, {});
+  const std::string html = trace_page({folder_ / "hostile.h5"}, options()).html;
+  for (const char* tag : {"<script", "</script", "<img", "</title", "<!--"})
+    EXPECT_EQ(count(html, tag), count(plain, tag)) << tag;
+  const Json run = ReadPage(html).json["runs"][0];
+  for (const char* field : {"title", "command", "version"}) EXPECT_EQ(run[field], words) << field;
+  EXPECT_EQ(run["configuration"]["title"], words);
+}
+
 // A program that makes other frames than the one that ran it shows what nobody touched.
 TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
   const Experiment one = Experiment::load("fig4.12");

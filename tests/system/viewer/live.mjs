@@ -54,7 +54,7 @@ const newest = (page) => page.evaluate(() => {
   const { run } = window.remoteTouch, tick = run.ticks - 1;
   return {
     tick, time: run.column("time").value(tick), hip: run.vector("hip_position", tick), force: run.column("force").magnitude(tick),
-    contacts: run.column("contact_count").value(tick), frames: run.frameCount, pictures: window.remoteTouch.page.pictures,
+    sent: run.column("device_force").magnitude(tick), contacts: run.column("contact_count").value(tick), frames: run.frameCount, pictures: window.remoteTouch.page.pictures,
   };
 });
 
@@ -173,6 +173,19 @@ function countWork() {
     look();
   });
 }
+
+test("the page shows the force that the device gets, and that it is limited", limit, async () => {
+  const { address, stop } = await startLive("fig4.16", "--set", "safety.max_force_N=0.2");
+  const { page, complaints } = await openLive(address);
+  await until(page, (now) => now.time > 0.7, async () => {}); // the force has begun
+  const touched = await touches(page);
+  assert.ok(touched.force > 0.3 && touched.sent <= 0.2 + 1e-9, `limited to 0.2 N: ${JSON.stringify(touched)}`);
+  await page.waitForFunction(() => /The device gets 0\.2 N of .*: limited for safety/.test(document.querySelector("footer .limited").textContent));
+  assert.equal(await page.evaluate(() => window.remoteTouch.run.forceName), "device_force", "the arrow and the sound");
+  assert.match(await page.textContent("figcaption"), /force of the device 0\.\d+ N.*commanded/);
+  assert.equal((await stop()).code, 0);
+  assert.deepEqual(complaints, []);
+});
 
 test("what cannot run has no address", () => {
   const { status, stdout, stderr } = spawnSync(program, ["live", "fig4.16", "--view", "--depth", "dir:/nowhere"], { encoding: "utf8" });

@@ -58,6 +58,20 @@ async function showsStoredNumbers(page, trace, ticks, names) {
   }
 }
 
+// Over a level plane: the drawn sheet is as far below the proxy as the column says.
+async function sheetIsWhereTheColumnMeasures(page, ticks) {
+  assert.match(await page.textContent(".legend"), /true surface at the last capture/);
+  for (const t of ticks) {
+    await goTo(page, t);
+    const [drawnMm, storedMm] = await page.evaluate(() => {
+      const { scene, runs, player } = window.remoteTouch, places = scene.truths[0].object.geometry.getAttribute("position");
+      const proxy = runs[0].vector("proxy_position", player.tick);
+      return [1000 * proxy[1] - places.getY((places.count - 1) / 2), 1000 * runs[0].column("signed_distance").value(player.tick)];
+    });
+    assert.ok(Math.abs(drawnMm - storedMm) < 0.001, `tick ${t}: the sheet is ${drawnMm} mm below the proxy, the column says ${storedMm} mm`);
+  }
+}
+
 async function picturesPerSecond(page) {
   return page.evaluate(() => new Promise((done) => {
     const { player, scene } = window.remoteTouch, draw = scene.draw.bind(scene), begin = performance.now();
@@ -137,6 +151,7 @@ test("a sweep: a click on its map shows another run", async () => {
   remoteTouch("sweep", "fig4.13", "--set", "axes.0.count=12", "--set", "axes.1.count=10", "-o", "map.h5");
   remoteTouch("view", "map.h5", "-o", "map.html");
   await withPage("map.html", {}, async (page) => {
+    await sheetIsWhereTheColumnMeasures(page, [100, 533, 700]);
     const proxyEnd = () => page.evaluate(() => window.remoteTouch.runs[0].vector("proxy_position", 790).join());
     const before = await proxyEnd(), cells = await page.locator(".map select").last().locator("option").count();
     assert.ok(cells >= 2, `${cells} runs on the page`);

@@ -10,7 +10,8 @@ interface StoredFrame {
   index: number; captured_s: number; measured: number;
   positions: Packed; colours?: Packed; fixture_radius_m?: Packed; touching: Packed; touching_end: Packed;
 }
-interface StoredTruth { columns: number; low_m: Vector; high_m: Vector; time_s: Packed; height_m: Packed }
+// stays: until the next of the times, at which there was a capture; otherwise it moves evenly between them.
+interface StoredTruth { columns: number; stays: boolean; low_m: Vector; high_m: Vector; time_s: Packed; height_m: Packed }
 interface StoredSensor { position_m: Vector; forward: Vector; up: Vector }
 
 export interface RunEvent { tick: number; kind: string; text: string }
@@ -138,6 +139,15 @@ export class Run {
   }
   numbers(packed: Packed): Numbers {
     return unpacked(this.buffer, packed);
+  }
+  // The column of the force that acts on the hand: of the device, where it is known, which may be limited, else what the
+  // renderer commands.
+  get forceName(): string {
+    return this.columns.has("device_force") ? "device_force" : "force";
+  }
+  // The surface from which signed_distance is measured.
+  get truthName(): string {
+    return this.stored.truth?.stays ? "true surface at the last capture" : "true surface";
   }
   // A position is low + step * number, m.
   grid(): { low: Vector; step: number } {

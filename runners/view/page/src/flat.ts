@@ -24,7 +24,7 @@ export class FlatView {
     const frame = this.runs[0].frameAt(tick);
     if (frame) for (let i = 0; i < frame.positions.length / 3; ++i) dot(this.runs[0].point(frame, i), 1, "#8888");
     for (const run of this.runs) {
-      const t = Math.min(tick, run.ticks - 1), hip = run.vector("hip_position", t), force = run.vector("force", t);
+      const t = Math.min(tick, run.ticks - 1), hip = run.vector("hip_position", t), force = run.vector(run.forceName, t);
       dot(run.vector("proxy_position", t), Math.max(factor * run.contactRadiusM, 4), `${colours.proxy}88`);
       dot(hip, 4, colours.hip);
       pen.strokeStyle = colours.force;

@@ -92,7 +92,7 @@ export class HandView {
     this.place(this.goal, this.run.vector("guidance_goal", tick));
     this.place(this.slave, slave.every((x, k) => x === proxy[k]) ? [Number.NaN, 0, 0] : slave);
     if (this.run.stored.tool) this.turnTools(hip, tick);
-    this.force.show(hip, this.run.vector("force", tick), this.mmPerN);
+    this.force.show(hip, this.run.vector(this.run.forceName, tick), this.mmPerN);
     const normal = this.run.vector("normal", tick), radius = 1000 * this.run.contactRadiusM || 5;
     if (!this.run.stored.tool && this.run.contactRadiusM > 0) this.proxy.scale.setScalar(this.run.contactRadiusM / this.run.stored.contact_radius_m);
     const away: Vector = [0, 1, 2].map((k) => proxy[k] + (radius / 1000) * normal[k]) as Vector;

@@ -4,11 +4,11 @@ import { colours } from "./colours";
 import { Connection } from "./connection";
 import type { StoredLive } from "./data";
 import { ForceSound } from "./force_sound";
-import { type ColumnInfo, LiveRun } from "./live_run";
+import { type ColumnInfo, LiveRun, whyLimited } from "./live_run";
 import { MouseHand } from "./mouse_hand";
 import { Pace } from "./pace";
 import { aboutDialog, keysDialog, legend, licence, Values } from "./panel";
-import { curvesOf, Plot } from "./plots";
+import { curvesOf, forceCurves, Plot } from "./plots";
 import { type CameraPreset, SceneView } from "./scene";
 import { Sliders } from "./sliders";
 
@@ -18,7 +18,7 @@ const keys: [string, string][] = [
   ["control and wheel", "zooms"], ["1 2 3", "camera: sensor, side, follow"], ["h, ?", "this help"],
 ];
 const plotted: [string, string, string][] = [
-  ["force", colours.force, "force"], ["nearest_distance", colours.proxy, "nearest distance"],
+  ["nearest_distance", colours.proxy, "nearest distance"],
   ["contact_count", colours.normal, "contacts"], ["surface_velocity", colours.velocity, "velocity estimate"],
 ];
 
@@ -37,6 +37,7 @@ class LivePage {
   private readonly pace = new Pace();
   private readonly sound = new ForceSound();
   private readonly hint = document.createElement("span");
+  private readonly limited = document.createElement("span"); // why the device gets another force than is commanded
   private readonly startMs = performance.now();
   private begun = false;
   private ended = "";
@@ -53,7 +54,8 @@ class LivePage {
     this.canvas = canvas;
     this.values = new Values([this.run]);
     this.sliders = new Sliders(stored.parameters, (changes) => this.connection.change(changes));
-    this.plots = plotted.map(([name, colour, label]) => new Plot(curvesOf([this.run], name, colour, label), 0, stored.haptic_rate_hz, null));
+    const curves = [forceCurves([this.run]), ...plotted.map(([name, colour, label]) => curvesOf([this.run], name, colour, label))];
+    this.plots = curves.map((some) => new Plot(some, 0, stored.haptic_rate_hz, null));
     this.layOut(canvas);
     requestAnimationFrame(this.picture);
   }
@@ -93,7 +95,8 @@ class LivePage {
     if (this.run.stored.parameters.length > 0) side.append(this.sliders.element);
     side.append(details);
     this.hint.textContent = this.isHand ? "Drag to move the hand, turn the wheel to push it. " : `The hand is ${this.run.stored.device}. `;
-    foot.append(this.hint, this.clock);
+    this.limited.className = "warning limited";
+    foot.append(this.hint, this.limited, this.clock);
     document.body.append(head, side, foot, about, help);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     document.addEventListener("keydown", (event) => {
@@ -111,7 +114,7 @@ class LivePage {
     if (!this.begun && this.run.frameCount > 0) this.begin(tick);
     this.scene.show(tick);
     ++this.pictures;
-    this.sound.show(this.run.column("force").magnitude(tick));
+    this.sound.show(this.run.column(this.run.forceName).magnitude(tick));
     if (this.pictures % 4 === 0) this.showTexts(tick);
   };
   private begin(tick: number): void {
@@ -125,6 +128,8 @@ class LivePage {
     const shown = Math.round(plottedS * this.run.stored.haptic_rate_hz);
     for (const plot of this.plots) plot.showWindow(Math.max(0, tick + 1 - shown), shown, tick);
     if (this.details.open) this.values.show(tick);
+    this.limited.textContent = this.ended ? "" : whyLimited(this.run, tick);
+    this.limited.hidden = this.limited.textContent === "";
     const seconds = (performance.now() - this.startMs) / 1000;
     this.clock.textContent = this.ended || `${this.run.column("time").value(tick).toFixed(1)} s, ${(this.pictures / seconds).toFixed(0)} pictures/s${this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn` : ""}`;
   }

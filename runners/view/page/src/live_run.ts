@@ -1,9 +1,22 @@
 // A live run: the last seconds of its ticks and its newest frame, as they come.
-import { Column, type Frame, Run, type StoredLive, type Vector } from "./data";
+import { Column, digits, type Frame, Run, type StoredLive, type Vector } from "./data";
 
 const keptS = 20;
 
 export interface ColumnInfo { name: string; unit: string; meaning: string; width: number; names: string[] }
+
+// Why the device gets another force than the renderer commands; empty: it gets that.
+export function whyLimited(run: Run, tick: number): string {
+  const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
+  const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);
+  if (!(apart > 0.01 * size(commanded) + 0.01)) return "";
+  const newtons = (v: Vector) => `${digits(Number(size(v).toPrecision(3)))} N`, gate = run.column("gate").text(tick);
+  const why = ({
+    waiting: "the force begins when the hand is free", ramping: "the force begins slowly", engaged: "limited for safety, or to what the device can do",
+    latched: "the safety gate has switched the force off, as the terminal says",
+  } as Record<string, string>)[gate];
+  return `The device gets ${newtons(sent)} of ${newtons(commanded)}: ${why}. `;
+}
 
 // Its ticks are numbered from the first that came; those before the last keptS seconds are gone.
 export class LiveRun extends Run {

@@ -43,11 +43,11 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   add(colours.hip, tool ? "HIP and device's pose" : "HIP: where the hand is");
   add(colours.proxy, tool ? "tool" : `proxy${run.contactRadiusM > 0 ? ", radius r_c" : ""}; path of 0.3 s`);
   if (runs.length === 2) add(colours.second, "HIP and proxy of run 2");
-  add(colours.force, `force: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
+  add(colours.force, `${run.forceName === "force" ? "force" : "force of the device"}: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
   add(colours.normal, "surface normal");
   add(colours.touching, "points that touch");
   if (frames.length === 0 || frames.some((frame) => !frame.colours)) add(rampStyle(heights), frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
-  if (run.stored.truth) add(colours.truth, "true surface");
+  if (run.stored.truth) add(colours.truth, run.truthName);
   if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s`);
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");

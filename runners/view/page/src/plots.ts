@@ -200,6 +200,13 @@ export class Plot {
   }
 }
 
+// The force on the hand; of a device what it exerts, and dashed what the renderer commands.
+export function forceCurves(runs: Run[]): Curve[] {
+  const name = runs[0].forceName, felt = curvesOf(runs, name, colours.force, name === "force" ? "force" : "force of the device");
+  return runs.length > 1 || name === "force" ? felt
+    : [...felt, { column: runs[0].column("force"), colour: colours.slave, label: "commanded", dashed: true }];
+}
+
 export function curvesOf(runs: Run[], name: string, colour: string, label: string): Curve[] {
   return runs.flatMap((run, i) => {
     const column = run.columns.get(name);

@@ -6,20 +6,19 @@ import { FlatView } from "./flat";
 import { Pace } from "./pace";
 import { aboutDialog, helpDialog, legend, licence, Values, whichIsWhich } from "./panel";
 import { Player } from "./player";
-import { type Curve, curvesOf, Plot } from "./plots";
+import { type Curve, curvesOf, forceCurves, Plot } from "./plots";
 import { type CameraPreset, SceneView } from "./scene";
 import { Timeline } from "./timeline";
 
 // The surface of a recording is what its camera measured. Of a tool the distance is that of its centre.
 function distanceLabel(run: Run): string {
   const { scenario } = run.stored.configuration as { scenario?: { name?: string } };
-  const surface = ["recording", "live-session"].includes(scenario?.name ?? "") ? "measured surface" : "true surface";
+  const surface = ["recording", "live-session"].includes(scenario?.name ?? "") ? "measured surface" : run.truthName;
   return run.stored.tool ? `tool's centre to the ${surface}` : `distance to the ${surface}`;
 }
 
 function standard(run: Run): [string, string, string][] {
   return [
-    ["force", colours.force, "force"],
     ["signed_distance", colours.truth, distanceLabel(run)],
     ["contact_count", colours.normal, "contacts"],
     ["surface_velocity", colours.velocity, "velocity estimate"],
@@ -49,8 +48,8 @@ function changes(curve: Curve): boolean {
 function makePlots(runs: Run[], player: Player): HTMLElement {
   const box = document.createElement("section");
   const plotOf = (curves: Curve[]) => new Plot(curves, player.ticks, runs[0].stored.haptic_rate_hz, (tick) => player.go(tick));
-  const plots = standard(runs[0]).map(([name, colour, label]) => curvesOf(runs, name, colour, label).filter(changes))
-    .filter((curves) => curves.length > 0).map(plotOf);
+  const standards = standard(runs[0]).map(([name, colour, label]) => curvesOf(runs, name, colour, label));
+  const plots = [forceCurves(runs), ...standards].map((curves) => curves.filter(changes)).filter((curves) => curves.length > 0).map(plotOf);
   for (const [name, colour] of runs.length === 2 ? [["force", colours.force], ["proxy_position", colours.proxy]] : []) {
     const column = differenceOf(runs, name);
     if (column) plots.push(plotOf([{ column, colour, label: column.name, dashed: false }]));
@@ -121,7 +120,7 @@ function listenToKeys(player: Player, timeline: Timeline, scene: SceneView | nul
 function opensAt(run: Run): number {
   const divergence = run.stored.events.find((event) => event.kind === "divergence");
   if (divergence) return divergence.tick;
-  const force = run.column("force");
+  const force = run.column(run.forceName);
   let largest = 0, tick = 0;
   for (let i = 0; i < run.ticks; ++i) largest = Math.max(largest, force.magnitude(i) || 0);
   while (tick < run.ticks - 1 && !(force.magnitude(tick) > 0.4 * largest)) ++tick;

@@ -15,7 +15,7 @@ export type CameraPreset = "sensor" | "side" | "follow";
 function largestForce(runs: Run[]): number {
   let largest = 0;
   for (const run of runs)
-    for (let tick = 0; tick < run.ticks; ++tick) largest = Math.max(largest, run.column("force").magnitude(tick) || 0);
+    for (let tick = 0; tick < run.ticks; ++tick) largest = Math.max(largest, run.column(run.forceName).magnitude(tick) || 0);
   return largest;
 }
 

@@ -1,4 +1,5 @@
-// The true surface as a translucent sheet that moves with the time. Millimetres.
+// The true surface from which signed_distance is measured, as a translucent sheet. It moves with the time, or stays as it
+// was at the last capture. Millimetres.
 import * as THREE from "three";
 import { colours } from "./colours";
 import type { Run } from "./data";
@@ -8,6 +9,7 @@ export class TruthView {
   private readonly heights: Float32Array;
   private readonly times: Float64Array;
   private readonly n: number;
+  private shown = -1; // which of the times
 
   constructor(private readonly run: Run) {
     const truth = run.stored.truth;
@@ -17,7 +19,7 @@ export class TruthView {
     const geometry = new THREE.BufferGeometry();
     if (truth) {
       geometry.setAttribute("position", new THREE.BufferAttribute(this.corners(), 3));
-      geometry.setIndex(this.triangles());
+      geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(6 * (this.n - 1) ** 2), 1));
     }
     this.object = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
       color: colours.truth, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false,
@@ -34,13 +36,16 @@ export class TruthView {
     if (!this.run.stored.truth) return;
     const time = this.run.column("time").value(tick), size = this.n * this.n, last = this.times.length - 1;
     let i = 0;
-    while (i < last - 1 && this.times[i + 1] <= time) ++i;
-    const part = last > 0 ? Math.min(Math.max((time - this.times[i]) / (this.times[i + 1] - this.times[i]), 0), 1) : 0;
+    while (i < last && this.times[i + 1] <= time) ++i;
+    const next = this.run.stored.truth.stays ? i : Math.min(i + 1, last);
+    const part = next > i ? Math.max((time - this.times[i]) / (this.times[next] - this.times[i]), 0) : 0;
     const places = this.object.geometry.getAttribute("position") as THREE.BufferAttribute;
     for (let k = 0; k < size; ++k) {
-      const before = this.heights[i * size + k], after = last > 0 ? this.heights[(i + 1) * size + k] : before;
-      places.setY(k, 1000 * (before + part * (after - before)));
+      const before = this.heights[i * size + k], after = this.heights[next * size + k];
+      places.setY(k, Number.isFinite(before + after) ? 1000 * (before + part * (after - before)) : 0);
     }
+    if (i !== this.shown) this.setTriangles(i, next);
+    this.shown = i;
     places.needsUpdate = true;
     this.object.geometry.computeVertexNormals();
   }
@@ -57,14 +62,18 @@ export class TruthView {
         }
     return places;
   }
-  // Where the height is known.
-  private triangles(): number[] {
-    const list: number[] = [];
+  // Where the height is known at two of the times.
+  private setTriangles(before: number, after: number): void {
+    const index = this.object.geometry.getIndex(), size = this.n * this.n;
+    if (!index) return;
+    let count = 0;
     for (let k = 0; k + 1 < this.n; ++k)
       for (let i = 0; i + 1 < this.n; ++i) {
-        const a = k * this.n + i, corners = [a, a + 1, a + this.n, a + this.n + 1];
-        if (corners.every((c) => Number.isFinite(this.heights[c]))) list.push(a, a + this.n, a + 1, a + 1, a + this.n, a + this.n + 1);
+        const a = k * this.n + i, b = a + this.n;
+        if (![a, a + 1, b, b + 1].every((c) => Number.isFinite(this.heights[before * size + c] + this.heights[after * size + c]))) continue;
+        for (const corner of [a, b, a + 1, a + 1, b, b + 1]) index.setX(count++, corner);
       }
-    return list;
+    index.needsUpdate = true;
+    this.object.geometry.setDrawRange(0, count);
   }
 }

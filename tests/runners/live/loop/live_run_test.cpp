@@ -224,6 +224,19 @@ TEST(LiveRun, AnUnknownDeviceIsRefusedWithThoseThereAre) {
              "--device sim: expected SCHEME");
 }
 
+// By what the sensor says of its frames, before it sends one.
+TEST(LiveRun, AToolWithoutNormalsIsRefusedBeforeItStarts) {
+  const auto line = [](const std::string& experiment) {
+    return refusal([&] { run_live(Experiment::from_json(experiment, "test"), options(0.1)); });
+  };
+  EXPECT_HAS(line(std::regex_replace(std::string(kTool), std::regex(R"("depth_pipeline": \{\},)"), "")),
+             "renderer.name = \"tool\": needs normals, and the points of the frames have none: add "
+             "depth_pipeline");
+  EXPECT_HAS(
+      line(std::regex_replace(std::string(kLift), std::regex("\"proxy\""), R"("tool", "tool_mesh": "ball")")),
+      "expected a scenario with normals");
+}
+
 TEST(LiveRun, AStopEndsItAtOnce) {
   const std::atomic<bool> stop = true;
   LiveOptions stopped = options(0);

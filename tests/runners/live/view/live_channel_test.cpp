@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "runners/live/view/page_message.h"
@@ -49,7 +50,12 @@ class LiveChannelTest : public testing::Test {
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
       Experiment::load("fig4.12"), scenes::kernels(), LiveControls::Camera::other);
-  LiveChannel channel_{kRate_hz, scenes::kernels(), poses_, controls_};
+  LiveSettings placed_ = [] {
+    LiveSettings settings;
+    settings.device_rotation_deg = Vec3(0, 90, 0);
+    return settings;
+  }();
+  LiveChannel channel_{kRate_hz, DevicePlacement(placed_), scenes::kernels(), poses_, controls_};
 };
 
 TEST_F(LiveChannelTest, TellsTheColumnsAndThenTheTicks) {
@@ -73,6 +79,30 @@ TEST_F(LiveChannelTest, TellsTheColumnsAndThenTheTicks) {
   EXPECT_EQ(number_at<double>(ticks.bytes, 24), 0.008);
   EXPECT_EQ(number_at<double>(ticks.bytes, 16 + 8 * (2 * hip + 2)), 7) << "z of the HIP";
   EXPECT_EQ(number_at<double>(ticks.bytes, 16 + 8 * (2 * hip + 5)), 8);
+}
+
+// The renderer commands 19 N, the safety gate lets 5 N pass.
+TEST_F(LiveChannelTest, TellsWhatTheDeviceGets) {
+  LiveTick limited = tick(1);
+  limited.out.force_N = Vec3(0, 19, 0);
+  limited.written.force_N = DevicePlacement(placed_).to_device({Vec3(0, 3, 4), Vec3::Zero()}).force_N;
+  limited.gate = GateState::engaged;
+  channel_.open();
+  channel_.take(limited);
+  const auto list = nlohmann::json::parse(next().bytes)["columns"];
+  const std::string ticks = next().bytes;
+  std::map<std::string, std::vector<double>> row;
+  std::size_t at = 16;
+  for (const auto& column : list)
+    for (std::size_t i = 0; i < column["width"].get<std::size_t>(); ++i, at += 8)
+      row[column["name"].get<std::string>()].push_back(number_at<double>(ticks, at));
+  ASSERT_EQ(at, ticks.size());
+  EXPECT_EQ(row["force"], (std::vector<double>{0, 19, 0}));
+  ASSERT_EQ(row["device_force"].size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(row["device_force"][k], Vec3(0, 3, 4)[static_cast<int>(k)], 1e-12) << "in the world";
+  EXPECT_EQ(row["gate"], std::vector<double>{2});
+  EXPECT_EQ(list.back()["names"][2], "engaged");
 }
 
 TEST_F(LiveChannelTest, AFrameHasItsPointsColoursAndRegions) {
