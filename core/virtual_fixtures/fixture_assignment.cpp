@@ -46,6 +46,10 @@ void about_rule(std::size_t i, const Act& act) {
 
 }  // namespace
 
+void FixtureAssignment::require(const PointCloud& cloud) const {
+  for (std::size_t i = 0; i < rules_.size(); ++i) about_rule(i, [&] { rules_[i]->require(cloud); });
+}
+
 void FixtureAssignment::assign(PointCloud& cloud, double captured_s, std::uint64_t off) const {
   if (empty()) return;
   if (cloud.fixture_radius_m.empty()) cloud.fixture_radius_m.assign(cloud.size(), 0);

@@ -22,6 +22,9 @@ class FixtureAssignment {
                              std::shared_ptr<const FixtureSwitches> switches = nullptr)
       : rules_(std::move(rules)), switches_(std::move(switches)) {}
 
+  // Throws InputError when the cloud lacks what a rule needs, also one that is off or of strength 0.
+  void require(const PointCloud& cloud) const;
+
   // Fills the columns of the cloud. They start with the cloud's own values; without a column r_f is 0 and k_s
   // the renderer's own. Then each forbidden rule in turn moves the values of its points towards its own, by
   // its weight for the point times its strength at captured_s, so a later rule overrides an earlier one. A

@@ -34,8 +34,10 @@ class FixtureRule {
   explicit FixtureRule(const FixtureValues& values) : values_(values) {}
   virtual ~FixtureRule() = default;
 
-  // The weight of the rule for each point, from 0, no effect, to 1; 0 for a point that was not measured.
   // Throws InputError when the frame lacks what the rule needs: colours, or an image.
+  virtual void require(const PointCloud& /*cloud*/) const {}
+  // The weight of the rule for each point, from 0, no effect, to 1; 0 for a point that was not measured.
+  // Throws as require().
   virtual std::vector<double> weights(const PointCloud& cloud) const = 0;
 
   const FixtureValues& values() const { return values_; }

@@ -45,8 +45,8 @@ Vec3 nearest_measured(const PointCloud& cloud, const CameraIntrinsics& camera, i
 
 }  // namespace
 
-Vec3 NearPoint::picked(const PointCloud& cloud) const {
-  if (settings_.row < 0) return settings_.point_m;
+void NearPoint::require(const PointCloud& cloud) const {
+  if (settings_.row < 0) return;
   if (!cloud.image)
     throw InputError("near-point: row, column",
                      "the frame is not an image: expected a scenario with a camera");
@@ -54,7 +54,12 @@ Vec3 NearPoint::picked(const PointCloud& cloud) const {
   if (settings_.row >= camera.height || settings_.column >= camera.width)
     throw InputError("near-point: row, column", "expected below " + std::to_string(camera.height) + " and " +
                                                     std::to_string(camera.width));
-  return nearest_measured(cloud, camera, settings_.column, settings_.row);
+}
+
+Vec3 NearPoint::picked(const PointCloud& cloud) const {
+  require(cloud);
+  if (settings_.row < 0) return settings_.point_m;
+  return nearest_measured(cloud, cloud.image->camera, settings_.column, settings_.row);
 }
 
 std::vector<double> NearPoint::weights(const PointCloud& cloud) const {

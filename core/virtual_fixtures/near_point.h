@@ -16,9 +16,10 @@ class NearPoint final : public FixtureRule {
     double falloff_m = 0;
   };
   explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
+  // With a pixel: an image that has it.
+  void require(const PointCloud& cloud) const override;
   // 1 up to inner_radius_m, then falling linearly to 0 over falloff_m. A selected pixel without a depth is
-  // replaced by the nearest one, in pixels, that has one; if there is none, all weights are 0. Throws
-  // InputError for a pixel of a cloud that is not an image, or outside it.
+  // replaced by the nearest one, in pixels, that has one; if there is none, all weights are 0.
   std::vector<double> weights(const PointCloud& cloud) const override;
 
  private:

@@ -9,6 +9,7 @@
 #include "runners/regression/baselines/baseline_check.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/comparison/comparison_text.h"
+#include "runners/regression/comparison/junit_report.h"
 
 namespace remote_touch {
 
@@ -41,9 +42,31 @@ std::vector<Baseline> chosen(const Manifest& manifest, const BaselineCheckReques
   return request.names.empty() ? manifest.baselines : list;
 }
 
+// What a check reads: no report may replace it.
+std::vector<std::string> files_of(const std::string& folder, const std::vector<Baseline>& list) {
+  std::vector<std::string> files{manifest_file(folder).string()};
+  for (const Baseline& baseline : list) {
+    files.push_back(file_of(folder, baseline).string());
+    files.push_back(subject_of(folder, baseline));
+  }
+  return files;
+}
+
 void print(const BaselineCheck& check) {
   std::printf("%-18s %-24s %s\n", word_for(check.state), check.name.c_str(), check.text.c_str());
   if (check.comparison && check.state != State::same) print_comparison(*check.comparison);
+}
+
+// "66 baselines: 63 same, 1 changed, 1 could not be compared, 1 not run; 0 missing"
+void print_summary(const std::vector<BaselineCheck>& checks, std::size_t missing) {
+  const auto count = [&](State state) {
+    return std::count_if(checks.begin(), checks.end(),
+                         [&](const auto& check) { return check.state == state; });
+  };
+  std::printf("%zu baselines: %td same, %td changed, %td could not be compared, %td not run; %zu missing\n",
+              checks.size() - missing, count(State::same),
+              count(State::changed) - static_cast<std::ptrdiff_t>(missing), count(State::not_comparable),
+              count(State::not_run), missing);
 }
 
 ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
@@ -68,8 +91,9 @@ std::vector<ResultComparison> comparisons(const std::vector<BaselineCheck>& chec
     else
       list.push_back({check.name, "this program", check.state == State::not_run ? "not run" : "none"});
     list.back().baseline = check.name;
-    if (check.state == State::changed) list.back().outcome = Outcome::regressed;
-    if (!check.comparison) list.back().verdict = check.text;
+    if (check.comparison) continue;
+    list.back().verdict = check.text;
+    if (check.state == State::changed) list.back().outcome = Outcome::changed;  // it is missing
   }
   return list;
 }
@@ -85,9 +109,11 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
 }  // namespace
 
 int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request) {
+  require_distinct({{"--json", request.json}, {"--junit", request.junit}});
   const Manifest manifest = read_manifest(request.folder);
-  if (!request.json.empty()) require_report(line, request.json, {}, kJsonReports);
-  if (!request.junit.empty()) require_report(line, request.junit, {}, kJunitReport);
+  const std::vector<std::string> inputs = files_of(request.folder, manifest.baselines);
+  if (!request.json.empty()) require_report(line, request.json, inputs, kJsonReports);
+  if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
   const std::vector<Baseline> list = chosen(manifest, request);
   std::vector<BaselineCheck> checks;
   Progress progress("baselines", line.quiet);
@@ -96,12 +122,13 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
     checks.push_back(check_baseline(request.folder, baseline, *line.kernels, line.stop));
     print(checks.back());
   }
-  if (request.names.empty())
-    for (BaselineCheck& missing : missing_baselines(request.folder, manifest)) {
-      print(missing);
-      checks.push_back(std::move(missing));
-    }
+  progress.clear();
+  std::vector<BaselineCheck> missing;
+  if (request.names.empty()) missing = missing_baselines(request.folder, manifest);
+  for (const BaselineCheck& check : missing) print(check);
+  checks.insert(checks.end(), missing.begin(), missing.end());
   if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
+  print_summary(checks, missing.size());
   if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
   if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));
   return exit_code(checks);

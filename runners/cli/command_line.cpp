@@ -11,25 +11,38 @@
 #include "runners/export/export_formats.h"
 #include "runners/plugins/plugin_library.h"
 #include "runners/provenance/provenance.h"
+#include "runners/schedule/enough_threads.h"
 
 namespace remote_touch {
 
 namespace {
 
-// One subcommand with its options. act is called when it was asked for; what the options fill lives as long
-// as it does.
+// That a command starts; 0: as OpenMP decides, less: none.
+template <class Request>
+int threads_of(const std::string& command, const Request& request) {
+  if constexpr (requires { request.threads; }) return request.threads;
+  for (const char* idle :
+       {"list", "describe", "inspect", "merge", "hashes", "devices", "cache", "jitter", "summary"})
+    if (command == idle) return -1;
+  return 0;
+}
+
+// One subcommand with its options. act is called when it was asked for, and there are threads for it; what
+// the options fill lives as long as it does.
 struct Subcommands {
   CLI::App& app;
   CommandLine& line;
   std::function<int()>& act;
+  int& threads;
 
   template <class Request>
   std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
                                      int (*run)(const CommandLine&, const Request&)) {
     auto request = std::make_shared<Request>();
     CLI::App* command = app.add_subcommand(name, meaning);
-    command->callback([&act = act, &line = line, request, run, command] {
+    command->callback([&act = act, &line = line, &threads = threads, request, run, command] {
       if (!command->get_subcommands().empty()) return;  // that one was asked for
+      threads = threads_of(command->get_name(), *request);
       act = [&line, request, run] { return run(line, *request); };
     });
     return {command, request.get()};
@@ -112,6 +125,8 @@ void add_run(Subcommands& commands) {
   add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
   command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
   command->add_flag("--timing", run->timing, "also store the duration of each tick");
+  command->add_flag("--strict", run->strict,
+                    "a note on the run is an error: exit code 2, and nothing is written");
 }
 
 void add_sweep(Subcommands& commands) {
@@ -123,7 +138,7 @@ void add_sweep(Subcommands& commands) {
       "-o,--output", sweep->output,
       "the HDF5 file to write or to resume; {shard} is replaced by the part, for example 2of7");
   command->add_option("--threads", sweep->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, kMaxThreads));
   command->add_option("--shard", sweep->shard,
                       "i/N: run only part i of N (default: from Slurm or mpirun, else everything)");
   command->add_flag("--dry-run", sweep->dry_run,
@@ -169,7 +184,7 @@ void add_scorecard_options(CLI::App* command, Request& request, const char* all)
   command->add_option("--scene", request.scenes, "a name from `remote-touch list`, or a JSON file" + unless);
   command->add_option("-o,--output", request.folder, "the folder to write to, or to resume; required");
   command->add_option("--threads", request.threads, "number of threads (default: OMP_NUM_THREADS, or all)")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, kMaxThreads));
 }
 
 void add_seeds(CLI::App* command, ScorecardRequest& request) {
@@ -189,7 +204,7 @@ void add_scorecard(Subcommands& commands) {
   add_seeds(command, *scorecard);
   command->add_flag("--view", scorecard->view,
                     "also make a page of each typical failure, as `remote-touch view` does");
-  Subcommands below{*command, commands.line, commands.act};
+  Subcommands below{*command, commands.line, commands.act, commands.threads};
   auto [check_command, check] = below.add(
       "check", "compare with the stored scorecard; exit code 0: agrees, 1: differs, 2: not comparable",
       command_scorecard_check);
@@ -205,14 +220,22 @@ void add_scorecard(Subcommands& commands) {
   summary_command->add_option("--stored", summary->file, "the stored scorecard")->capture_default_str();
 }
 
+constexpr const char* kExitCodesOfCompare = R"(Exit code:
+  0  same: every number is equal, or within its tolerance; with --paired also within the margins
+  1  REGRESSED: a measure got worse, or runs of a sweep failed that had not
+  2  they cannot be compared; with --paired also: too few runs to decide
+  4  CHANGED: different, and no measure is shown to be worse: an improvement, too, and whatever has no
+     direction, as figures and hashes)";
+
 void add_compare(Subcommands& commands) {
-  auto [command, compare] = commands.add(
-      "compare", "compare two results; exit code 0: same, 1: different, 2: not comparable", command_compare);
+  auto [command, compare] = commands.add("compare", "compare two results", command_compare);
+  command->footer(kExitCodesOfCompare);
   command->add_option("baseline", compare->baseline, "a trace, sweep, figure or file of hashes")->required();
   command->add_option("candidate", compare->candidate, "another file of the same kind")->required();
   command
-      ->add_option("--tolerance", compare->tolerances,
-                   "COLUMN=ABSOLUTE[,RELATIVE]; * stands for every column; default: exactly equal")
+      ->add_option(
+          "--tolerance", compare->tolerances,
+          "NAME=ABSOLUTE[,RELATIVE] of a column or a measure; * stands for all; default: exactly equal")
       ->allow_extra_args(false);
   command->add_flag("--paired", compare->paired,
                     "compare sweeps by paired tests over regions; single runs may differ");
@@ -228,11 +251,14 @@ void add_compare(Subcommands& commands) {
       ->capture_default_str();
   command
       ->add_option("--alpha", compare->alpha,
-                   "significance level: probability of reporting a change where there is none")
+                   "significance level: probability of reporting better, worse or changed where nothing is")
       ->check(between(0, 1))
       ->capture_default_str();
   command->add_option("--json", compare->json, "also write the complete report to this JSON file");
-  command->add_option("--junit", compare->junit, "also write a report in JUnit's XML format");
+  command->add_option(
+      "--junit", compare->junit,
+      "also write a report in JUnit's XML format: worse is a failure, other differences are skipped with a message, what "
+      "is not comparable or undecided is an error");
   command->add_option("--plot", compare->plot,
                       "also write a figure of the deviation over time (HDF5, for scripts/plot)");
   command->add_option("--view", compare->view, "also write a page that shows both traces in 3-D (HTML)");
@@ -249,9 +275,12 @@ void add_baseline(Subcommands& commands) {
   CLI::App* parent = commands.app.add_subcommand(
       "baseline", "check or store baselines: stored results that later versions are compared with");
   parent->require_subcommand(1);
-  Subcommands below{*parent, commands.line, commands.act};
-  auto [command, check] =
-      below.add("check", "compute every stored result again and compare", command_baseline_check);
+  Subcommands below{*parent, commands.line, commands.act, commands.threads};
+  auto [command, check] = below.add(
+      "check",
+      "compute every stored result again and compare; exit code 0: all the same, 1: some changed (better or "
+      "worse), 2: some could not be compared",
+      command_baseline_check);
   command->add_option("names", check->names, "names of baselines (default: all; none may be missing)");
   command->add_option("--folder", check->folder, "folder of the baselines")->capture_default_str();
   command->add_option("--json", check->json, "also write the complete report to this JSON file");
@@ -275,7 +304,10 @@ void add_repro_and_verify(Subcommands& commands) {
   auto [command, repro] = commands.add(
       "repro", "print the command that reproduces a result; with --run, run it and compare", command_repro);
   command->add_option("file", repro->file, "a trace, sweep or figure")->required();
-  command->add_flag("--run", repro->run, "run it again from the stored configuration and compare");
+  command->add_flag(
+      "--run", repro->run,
+      "run it again from the stored configuration and compare; exit code 0: the same, 1: different, 2: not "
+      "comparable");
   command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
 
   auto [other, verify] = commands.add(
@@ -372,13 +404,13 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   app.add_flag(
       "--force", line.force,
       "also overwrite files that are not results of this program; an input file is never overwritten");
-  std::vector<std::string> plugins;
-  app.add_option("--plugin", plugins,
+  app.add_option("--plugin", line.plugins,
                  "a shared library with renderers, one for each --plugin; see runners/plugins/README.md")
       ->allow_extra_args(false)
       ->type_name("FILE");
   std::function<int()> act;
-  Subcommands commands{app, line, act};
+  int threads = -1;
+  Subcommands commands{app, line, act, threads};
   for (const auto add : {add_lists, add_run, add_sweep, add_merge_and_replay, add_figure, add_scorecard,
                          add_compare, add_baseline, add_repro_and_verify, add_live, add_cache})
     add(commands);
@@ -388,8 +420,9 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     throw usage_error(app, error);
   }
+  if (threads >= 0) use_threads(threads);
   line.kernels = &choose_kernels();
-  take_plugins(plugins);
+  take_plugins(line.plugins);
   return act();
 }
 

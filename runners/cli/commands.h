@@ -10,12 +10,14 @@
 
 namespace remote_touch {
 
-enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3 };
+// kChanged: of `compare` alone, where something differs and nothing got worse.
+enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
 
 // What every command shares.
 struct CommandLine {
   bool quiet = false;
-  bool force = false;  // overwrite files that are not results of this program
+  bool force = false;                     // overwrite files that are not results of this program
+  std::vector<std::string> plugins = {};  // the files of --plugin
   const Kernels* kernels = nullptr;
   const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
   // Set by SIGUSR1 and SIGUSR2; the code that responds resets them.
@@ -36,6 +38,7 @@ struct RunRequest {
   std::vector<std::string> overrides;
   std::string output;
   bool timing = false;
+  bool strict = false;
 };
 int command_run(const CommandLine& line, const RunRequest& request);
 

@@ -12,6 +12,7 @@
 #include "runners/provenance/provenance.h"
 #include "runners/regression/comparison/comparison_report.h"
 #include "runners/regression/comparison/comparison_text.h"
+#include "runners/regression/comparison/junit_report.h"
 #include "runners/settings/json_parameters.h"
 
 namespace remote_touch {
@@ -65,6 +66,10 @@ void write_plot(const CommandLine& line, const CompareRequest& request, const Re
 }  // namespace
 
 int command_compare(const CommandLine& line, const CompareRequest& request) {
+  require_distinct({{"--json", request.json},
+                    {"--junit", request.junit},
+                    {"--plot", request.plot},
+                    {"--view", request.view}});
   ComparisonRules rules;
   for (const std::string& text : request.tolerances) add_tolerance(text, rules.tolerances);
   rules.paired = request.paired;

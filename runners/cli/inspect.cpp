@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/cli/commands.h"
 #include "runners/settings/json_parameters.h"
@@ -86,6 +87,9 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   const std::string& file = request.file;
   const Hdf5Content content = read_hdf5(file);
   std::printf("%s\n", file.c_str());
+  if (was_opened_for_writing(file))
+    std::puts(
+        "  note         another program opened it for writing; every value is as it was written (SHA-256)");
   for (const auto& [name, value] : content.attributes) {
     if (name == "config" && !value.empty())
       std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());

@@ -40,6 +40,14 @@ void report_line(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
 }
 
+// What a live run reads: the experiment's files, and those that replay:FILE and pcd:FILE name.
+std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment& experiment) {
+  std::vector<std::string> files = with_parts(request.experiment, experiment.inputs());
+  for (const std::string& address : {request.depth, request.device})
+    files.push_back(address.substr(address.find(':') + 1));
+  return files;
+}
+
 // A haptic device must be let go whatever ends the program, and a program that is halted holds on to it.
 void see_to_every_end() {
   struct sigaction interrupt {};
@@ -125,11 +133,12 @@ void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttri
 }  // namespace
 
 int command_live(const CommandLine& line, const LiveRequest& request) {
+  require_distinct(
+      {{"--record", request.record}, {"--output", request.output}, {"--report", request.report}});
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
   std::vector<FileLock> locks;
   for (const std::string& file : {request.record, request.output, request.report})
-    if (!file.empty())
-      locks.push_back(lock_output(line, file, with_parts(request.experiment, experiment.inputs())));
+    if (!file.empty()) locks.push_back(lock_output(line, file, inputs_of(request, experiment)));
   LiveOptions options;
   options.device = device_of(request), options.depth = request.depth;
   options.duration_s = request.duration_s.value_or(0);

@@ -16,13 +16,25 @@ bool holds_something(const std::string& file) {
   return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
 }
 
+bool is_one_file(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  std::error_code absent;
+  if (fs::exists(a, absent) && !fs::is_regular_file(a, absent)) return false;
+  if (fs::equivalent(a, b, absent)) return true;
+  const auto place = [&](const std::string& file) {
+    return fs::weakly_canonical(fs::absolute(resolved(file), absent), absent);
+  };
+  return place(a) == place(b);
+}
+
 bool begins_with(const std::string& file, const std::string& opening) {
-  return opening_of(file, opening.size()) == opening;
+  return holds_something(file) && opening_of(file, opening.size()) == opening;  // a pipe would wait
 }
 
 void require(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
              bool is_ours, const char* kind) {
-  for (const std::string& input : inputs) require_different_file(output, input);
+  for (const auto* all : {&inputs, &line.plugins})
+    for (const std::string& input : *all) require_different_file(output, input);
   if (!line.force && !is_ours && holds_something(output))
     throw InputError(output, std::string("is there already and is no ") + kind +
                                  " of this program: expected another file, or --force");
@@ -45,6 +57,14 @@ void require_report(const CommandLine& line, const std::string& output,
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
   require(line, output, inputs, begins_with(output, opening), "export of such a result");
+}
+
+void require_distinct(const std::vector<OutputOption>& outputs) {
+  for (auto a = outputs.begin(); a != outputs.end(); ++a)
+    for (auto b = a + 1; b != outputs.end(); ++b)
+      if (!a->file.empty() && !b->file.empty() && is_one_file(a->file, b->file))
+        throw InputError(std::string(b->option) + " " + b->file,
+                         std::string("is also the file of ") + a->option + ": expected another file");
 }
 
 std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts) {

@@ -12,8 +12,9 @@
 namespace remote_touch {
 
 // Throws InputError, before any work is done for it, unless the result can be written there: in a writable
-// folder, over none of the inputs, and over nothing but a result of this program, an empty file or a device,
-// or with --force; and while no other process writes it. That is so until the lock is destroyed.
+// folder, over none of the inputs and no plug-in, and over nothing but a result of this program, an empty
+// file or /dev/null, or with --force; and while no other process writes it. That is so until the lock is
+// destroyed.
 [[nodiscard]] FileLock lock_output(const CommandLine& line, const std::string& output,
                                    const std::vector<std::string>& inputs);
 // The same for a text report, without a lock: an existing file may be replaced if it begins with that
@@ -24,6 +25,14 @@ void require_report(const CommandLine& line, const std::string& output,
 // The same for a file of an export.
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
+
+// Options of one command and the files that they name, each empty where it was not given. Throws InputError
+// where two name one file, however its path is written: one result would be lost. /dev/null may come twice.
+struct OutputOption {
+  const char* option;
+  std::string file;
+};
+void require_distinct(const std::vector<OutputOption>& outputs);
 
 inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";

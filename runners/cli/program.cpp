@@ -77,6 +77,7 @@ CommandLine with_signals() {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
+  std::signal(SIGXFSZ, SIG_IGN);  // then a write beyond a limit fails, and says so
   std::signal(SIGUSR1, request_report);
   std::signal(SIGUSR2, request_rearm);
   CommandLine line;

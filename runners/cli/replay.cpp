@@ -9,6 +9,7 @@
 #include "runners/cli/progress.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/maker.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
 
@@ -50,12 +51,11 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
   const StoredSweep stored = read_sweep(request.map);
   const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
-    return Sweep::from_json(attribute(stored.attributes, "config"), request.map + " config");
+    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
+                            request.map + " config");
   });
   const SweepResult& result = stored.result;
-  const SweepResult planned = sweep.plan();
-  if (planned.run_count() != result.run_count() || planned.measures.size() != result.measures.size())
-    throw InputError(request.map, "damaged (its arrays do not fit its configuration)");
+  sweep.require_fits(result, request.map);
   const std::size_t cell = cell_of({"--cell", request.cell}, result);
   if (request.replicate < 0 || request.replicate >= result.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
@@ -70,6 +70,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const Replay replay = replay_run(stored, sweep, run, options, request.output);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), replay.trace.length(),
               replay.digest.c_str());
+  std::fputs(text_of(replay.report).c_str(), stdout);
   if (agrees(sweep, result, run, replay.trace)) return kDone;
   print_origin(stored, sweep, replay.experiment);
   return kCheckFailed;

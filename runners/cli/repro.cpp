@@ -20,6 +20,7 @@
 #include "runners/provenance/shell_command.h"
 #include "runners/regression/comparison/comparison_text.h"
 #include "runners/settings/configuration_difference.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -39,6 +40,7 @@ class Repro {
   Repro(const CommandLine& line, const std::string& file) : Repro(line, Hdf5Reader(file)) {}
 
   std::string of(const char* name) const { return attribute(attributes_, name); }
+  std::string config() const { return stored_configuration(of("config")); }
 
   // Comments about the build, then what to type.
   void print() const {
@@ -64,7 +66,7 @@ class Repro {
     if (kind_ == "figure")
       throw InputError("--config", "of a figure: expected with a trace, a sweep or hashes");
     require_report(line_, target, {file_}, kConfiguration);
-    const std::string text = of("config") + "\n";
+    const std::string text = config() + "\n";
     write_file_atomically(target, text.data(), text.size());
     std::printf("# configuration written to %s\n", target.c_str());
   }
@@ -104,11 +106,11 @@ class Repro {
   }
   Experiment stored_experiment() const {
     return read_configuration(attributes_, file_,
-                              [&] { return Experiment::from_json(of("config"), file_ + " config"); });
+                              [&] { return Experiment::from_json(config(), file_ + " config"); });
   }
   Sweep stored_sweep() const {
     return read_configuration(attributes_, file_,
-                              [&] { return Sweep::from_json(of("config"), file_ + " config"); });
+                              [&] { return Sweep::from_json(config(), file_ + " config"); });
   }
 
   // A replay's command is that of its sweep, and then its own.
@@ -151,7 +153,7 @@ class Repro {
   bool command_makes_it() const {
     try {
       const std::string now = recipe_ ? configuration_of(*recipe_) : std::string();
-      return !now.empty() && configuration_differences(of("config"), now).empty();
+      return !now.empty() && configuration_differences(config(), now).empty();
     } catch (const InputError&) {
       return false;
     }
@@ -247,7 +249,9 @@ int command_repro(const CommandLine& line, const ReproRequest& request) {
   std::fflush(stdout);
   const ResultComparison comparison = repro.again();
   print_comparison(comparison);
-  return static_cast<int>(comparison.outcome);
+  return comparison.outcome == Outcome::same             ? kDone
+         : comparison.outcome == Outcome::not_comparable ? kBadInput
+                                                         : kCheckFailed;
 }
 
 }  // namespace remote_touch

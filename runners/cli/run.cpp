@@ -53,17 +53,20 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   options.hash_frames = true;
   options.find_true_contact = true;
   options.progress = [&](double fraction) { progress.update(fraction); };
-  std::string remark;
-  options.remark = &remark;
+  RunReport report;
+  options.report = &report;
   if (request.timing) options.step_duration_s = &durations;
-  TextAttributes origin =
-      provenance(experiment.to_json(), Recipe{"run", request.experiment, request.overrides},
-                 line.kernels->isa, input_hashes(experiment.inputs()));
+  const std::string inputs = input_hashes(experiment.inputs());
+  TextAttributes origin = provenance(
+      experiment.to_json(), Recipe{"run", request.experiment, request.overrides}, line.kernels->isa, inputs);
   const Trace trace = simulate(experiment, options);
+  require_unchanged(experiment.inputs(), inputs);
+  if (request.strict) refuse_notes(report);
   experiment.add_depth_device(origin);
+  add_report(origin, report);
   const std::string sum = write_trace(request.output, trace, origin, durations);
   std::printf("%s: %zu ticks, digest %s\n", request.output.c_str(), trace.length(), sum.c_str());
-  if (!remark.empty()) std::printf("  note: %s\n", printable(remark).c_str());
+  std::fputs(text_of(report).c_str(), stdout);
   for (const Measure& measure : measures())
     if (applies(measure, trace))
       std::printf("  %-23s %12.6g %s\n", measure.name.c_str(), measure.of(trace), measure.unit.c_str());

@@ -1,5 +1,3 @@
-#include <omp.h>
-
 #include <cstdio>
 #include <filesystem>
 
@@ -40,6 +38,14 @@ std::string write_results(const ScorecardRequest& request, const BenchmarkPlan& 
   return sum;
 }
 
+// A method or a scene may be a file in the folder; none that is written there.
+void require_inputs_kept(const ScorecardRequest& request) {
+  for (const auto* names : {&request.methods, &request.scenes})
+    for (const std::string& name : *names)
+      for (const char* written : {kScorecardFile, "scorecard.json", "costs.json"})
+        require_different_file(std::filesystem::path(request.folder) / written, name);
+}
+
 void print(const ScorecardReport& report) {
   const Scorecard& card = report.card;
   for (const SceneScore& scene : card.scenes) {
@@ -59,7 +65,7 @@ void print(const ScorecardReport& report) {
 
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
   if (request.folder.empty()) throw InputError("--output", "is missing: expected a folder to write to");
-  if (request.threads > 0) omp_set_num_threads(request.threads);
+  require_inputs_kept(request);
   const BenchmarkPlan plan =
       plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
   const std::vector<BenchmarkSweep> sweeps = plan.sweeps();

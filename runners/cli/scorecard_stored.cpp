@@ -1,5 +1,3 @@
-#include <omp.h>
-
 #include <cstdio>
 #include <filesystem>
 
@@ -19,8 +17,7 @@ namespace remote_touch {
 namespace {
 
 // The runs of a plan without the audit, in its folder, and their scores.
-Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan, int threads) {
-  if (threads > 0) omp_set_num_threads(threads);
+Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
   std::vector<BenchmarkSweep> sweeps;
   for (const ScenePlan& one : plan.scenes) sweeps.insert(sweeps.end(), one.sweeps.begin(), one.sweeps.end());
   require_same_benchmark(sweeps);
@@ -48,9 +45,13 @@ int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest
   require_folder(request.folder);
   const BenchmarkPlan plan =
       plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
-  const FileLock lock = lock_output(line, request.file, {});
+  std::vector<std::string> files = request.methods;  // names, or files
+  files.insert(files.end(), request.scenes.begin(), request.scenes.end());
+  for (const BenchmarkSweep& sweep : plan.sweeps())
+    require_distinct({{"--output", sweep.file.string()}, {"--stored", request.file}});
+  const FileLock lock = lock_output(line, request.file, files);
   try {
-    const Scorecard card = scored(line, plan, request.threads);
+    const Scorecard card = scored(line, plan);
     const std::string config = configuration_of(plan);
     const std::string sum =
         write_stored_card(request.file, card, provenance(config, program_text() + " scorecard store", ""));
@@ -69,7 +70,7 @@ int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest
       plan_of(chosen_benchmark(wanted(request.methods, stored.methods), wanted(request.scenes, stored.scenes),
                                stored.replicates, request.folder));
   try {
-    const Scorecard card = scored(line, plan, request.threads);
+    const Scorecard card = scored(line, plan);
     const std::vector<std::string> list = differences(stored, plan, card);
     for (const std::string& difference : list) std::printf("differs: %s\n", difference.c_str());
     std::printf("%s: %zu scenes and %zu methods compared, %zu differences\n", request.file.c_str(),

@@ -86,7 +86,6 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line) 
 }  // namespace
 
 int command_sweep(const CommandLine& line, const SweepRequest& request) {
-  if (request.threads > 0) omp_set_num_threads(request.threads);
   const auto value_of = [](const char* variable) -> const char* { return std::getenv(variable); };
   const Shard shard =
       request.shard.empty() ? shard_from_environment(value_of).value_or(Shard{}) : parse_shard(request.shard);

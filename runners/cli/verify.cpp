@@ -6,6 +6,7 @@
 #include "runners/cli/outputs.h"
 #include "runners/experiment/catalog.h"
 #include "runners/regression/comparison/comparison_report.h"
+#include "runners/regression/comparison/junit_report.h"
 #include "runners/regression/verification/metamorphic_checks.h"
 
 namespace remote_touch {
@@ -62,7 +63,10 @@ ReportSuite suite_of(const std::string& renderer, const std::vector<CheckResult>
 }  // namespace
 
 int command_verify(const CommandLine& line, const VerifyRequest& request) {
-  if (!request.junit.empty()) require_report(line, request.junit, {}, kJunitReport);
+  std::vector<std::string> inputs;  // tool_mesh=FILE and the like; other values are no files
+  for (const std::string& assignment : request.overrides)
+    inputs.push_back(assignment.substr(assignment.find('=') + 1));
+  if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
   std::vector<const RendererEntry*> chosen;
   for (const std::string& name : request.renderers)
     chosen.push_back(&find_entry(renderers(), name, "renderer"));

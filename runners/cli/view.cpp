@@ -42,7 +42,9 @@ ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
 }  // namespace
 
 void write_view(const CommandLine& line, const ViewRequest& request) {
-  require_report(line, request.output, request.results, kPage);
+  std::vector<std::string> inputs = request.results;
+  inputs.push_back(request.claims);
+  require_report(line, request.output, inputs, kPage);
   ViewOptions options;
   options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
   options.claims = request.claims;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/cloud/near_origin.h"
 #include "runners/contract/checks.h"
 #include "runners/contract/flat_scene.h"
 
@@ -41,6 +42,7 @@ void frames_are_pure(const ScenarioEntry& entry, const FillSettings& fill) {
   for (const int frame : {0, last}) {
     const PointCloud a = one->cloud(frame), b = other->cloud(frame);
     EXPECT_GT(a.size(), 0u);
+    EXPECT_FALSE(is_far_from_origin(a));
     EXPECT_TRUE(same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z));
   }
 }

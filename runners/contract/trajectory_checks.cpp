@@ -1,6 +1,7 @@
 // The contract of every scripted hand.
 #include <gtest/gtest.h>
 
+#include "core/cloud/near_origin.h"
 #include "runners/contract/checks.h"
 #include "runners/contract/flat_scene.h"
 
@@ -24,6 +25,7 @@ void poses_are_pure_and_finite(const TrajectoryEntry& entry, const FillSettings&
   for (int i = 0; i < 200; ++i) {
     const double time_s = 0.01 * ((i * 37) % 200);  // asked in another order, it answers the same
     EXPECT_TRUE(one->at(time_s).position_W.allFinite());
+    EXPECT_TRUE(is_near_origin(one->at(time_s).position_W));
     EXPECT_EQ(one->at(time_s).position_W, other->at(time_s).position_W);
     EXPECT_EQ(one->at(time_s).orientation_W.coeffs(), other->at(time_s).orientation_W.coeffs());
     EXPECT_NEAR(one->at(time_s).orientation_W.norm(), 1, 4e-16);

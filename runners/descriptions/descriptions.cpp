@@ -179,8 +179,7 @@ void describe(const std::string& name, std::FILE* out) {
     if (name == entry.name) found = std::fprintf(out, "%s: a figure: %s\n", entry.name, entry.summary) > 0;
   for (const Measure& measure : measures())
     if (name == measure.name)
-      found = std::fprintf(out, "%s: a measure: %s; unit: %s; %s\n", measure.name.c_str(),
-                           measure.meaning.c_str(), measure.unit.c_str(), name_of(measure.runs)) > 0;
+      found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;
   if (!found) throw InputError(name, "unknown: expected a name from `remote-touch list`");
 }
 

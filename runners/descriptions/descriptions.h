@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "analysis/measures/measures.h"
+
 namespace remote_touch {
 
 // All parameters of an entry of a catalog, the configuration of an experiment, and so on, for every kind that
 // has the name. Throws InputError if none has; nothing is written then.
 void describe(const std::string& name, std::FILE* out);
+
+// Meaning, unit, which way it gets better, and the runs that have it.
+std::string summary_of(const Measure& measure);
 
 // The names of one kind.
 struct NamedKind {

@@ -22,6 +22,11 @@ void add_sections(std::vector<NamedKind>& all) {
 
 }  // namespace
 
+std::string summary_of(const Measure& measure) {
+  return measure.meaning + "; unit: " + measure.unit + "; " + text_of(measure.better) + "; " +
+         name_of(measure.runs);
+}
+
 std::vector<NamedKind> named_kinds() {
   std::vector<NamedKind> all;
   add_sections(all);
@@ -41,9 +46,7 @@ std::vector<NamedKind> named_kinds() {
   auto& drawn = add("figures");
   for (const auto& entry : figures()) drawn.push_back({entry.name, entry.summary});
   auto& numbers = add("measures");
-  for (const auto& measure : measures())
-    numbers.push_back(
-        {measure.name, measure.meaning + "; unit: " + measure.unit + "; " + name_of(measure.runs)});
+  for (const auto& measure : measures()) numbers.push_back({measure.name, summary_of(measure)});
   return all;
 }
 

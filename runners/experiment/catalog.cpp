@@ -125,10 +125,12 @@ std::vector<RendererEntry> built_in_renderers() {
           "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
       renderer_entry<SurfelRenderer, SurfelParameters>(
           "surfels", DegreesOfFreedom::three, ContactModel::oriented,
-          "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]"),
+          "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]",
+          {FrameNeed::view}),
       renderer_entry<AveragedProxyRenderer, AveragedProxyParameters>(
           "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
-          "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames"),
+          "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames",
+          {FrameNeed::view}),
       renderer_entry<DensityProxyRenderer, DensityProxyParameters>(
           "density-proxy", DegreesOfFreedom::three, ContactModel::points,
           "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
@@ -137,12 +139,15 @@ std::vector<RendererEntry> built_in_renderers() {
           "3-DOF oracle, simulations only: the proxy of chapter 4, told the true velocity of the surface"),
       renderer_entry<GodObjectRenderer, GodObjectParameters>(
           "god-object", DegreesOfFreedom::three, ContactModel::mesh,
-          "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995"),
+          "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995",
+          {FrameNeed::organised}),
       renderer_entry<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
-                                                       "6-DOF rendering of a rigid tool, chapter 6"),
+                                                       "6-DOF rendering of a rigid tool, chapter 6",
+                                                       {FrameNeed::normals}),
       renderer_entry<LoadedTrackedTool, LoadedTrackedTool::Settings>(
           "tracked-tool", DegreesOfFreedom::six, ContactModel::sheet,
-          "6-DOF rendering of a rigid tool on surfaces that are tracked from frame to frame and denoised; beyond the dissertation"),
+          "6-DOF rendering of a rigid tool on surfaces that are tracked from frame to frame and denoised; beyond the dissertation",
+          {FrameNeed::normals}),
       renderer_entry<LoadedToolPenalty, LoadedToolPenalty::Settings>(
           "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
           "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
@@ -151,7 +156,8 @@ std::vector<RendererEntry> built_in_renderers() {
           "6-DOF method for comparison: a god-object held by the contacts of its pose, Ortega, Redon and Coquillart 2007"),
       renderer_entry<LoadedSpheres, LoadedSpheres::Settings>(
           "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
-          "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7"),
+          "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7",
+          {FrameNeed::regions}),
   };
 }
 
@@ -263,6 +269,11 @@ std::span<const RendererEntry> renderers() {
 }
 std::span<const Measure> measures() {
   return catalog_in_use().measures();
+}
+Directions directions() {
+  Directions all;
+  for (const Measure& measure : measures()) all[measure.name] = measure.better;
+  return all;
 }
 
 }  // namespace remote_touch

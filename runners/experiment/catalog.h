@@ -56,6 +56,7 @@ std::span<const FixtureEntry> fixtures();
 std::span<const TrajectoryEntry> trajectories();
 std::span<const RendererEntry> renderers();
 std::span<const Measure> measures();
+Directions directions();  // of these measures
 
 // The entry of that name; throws InputError with the known names.
 template <class Entry>

@@ -39,6 +39,20 @@ std::string Experiment::to_json() const {
   return write_configuration(configuration_).dump();
 }
 
+Json Experiment::value_at_start(const std::string& path) const {
+  const std::vector<std::string> keys = path_keys(path);
+  if (keys.empty()) return {};
+  Json section = write_section_of(configuration_, keys.front());
+  if (keys.front() == "renderer")
+    for (const RendererChange& change : configuration_.changes) {
+      if (change.time_s > 0) continue;
+      Json& value = section["renderer"][path_keys(change.parameter).back()];
+      value = value.is_boolean() ? Json(change.value != 0) : Json(change.value);
+    }
+  const Json* const found = find_value(section, keys);
+  return found ? *found : Json();
+}
+
 std::vector<RecordingPart> Experiment::inputs() const {
   std::vector<RecordingPart> all;
   for (const ExperimentSection& section : experiment_sections()) section.add_inputs(configuration_, all);
@@ -85,11 +99,21 @@ void print_line(const std::string& line) {
 FrameProcessing Experiment::build_processing(const Kernels& kernels,
                                              std::shared_ptr<const FixtureSwitches> switches,
                                              const DepthReport& report) const {
-  FrameProcessing processing{nullptr, build_fixtures(std::move(switches))};
+  FrameProcessing processing{nullptr,
+                             build_fixtures(std::move(switches)),
+                             {configuration_.renderer.name, renderer_needs(configuration_)}};
   if (configuration_.depth_pipeline)
     processing.depth = make_depth_processor(*configuration_.depth_pipeline, kernels,
                                             report ? report : DepthReport(print_line));
   return processing;
+}
+
+void Experiment::check_needs(const Scenario& scenario) const {
+  remote_touch::check_needs(configuration_, build_fixtures(), scenario);
+}
+
+void Experiment::check_needs(const SensorView& view) const {
+  remote_touch::check_needs(configuration_, view);
 }
 
 void Experiment::add_depth_device(TextAttributes& provenance) const {

@@ -12,6 +12,7 @@
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/random/noise.h"
+#include "core/rendering/frame_need.h"
 #include "core/rendering/renderer.h"
 #include "core/virtual_fixtures/fixture_rule.h"
 #include "runners/experiment/rendered_contact.h"
@@ -110,6 +111,7 @@ enum class ContactModel { points, regions, mesh, sheet, nothing, oriented, resti
 struct RendererEntry : CatalogEntry<Renderer, double, const Kernels&> {  // the haptic rate in Hz
   DegreesOfFreedom degrees_of_freedom = DegreesOfFreedom::three;
   ContactModel contact_model = ContactModel::points;
+  std::vector<FrameNeed> needs = {};  // runs whose frames lack them are refused
 };
 
 // --- entries from classes ---
@@ -138,10 +140,12 @@ TrajectoryEntry trajectory_entry(std::string name, std::string summary, bool has
 
 template <class Product, class Settings = typename Product::Settings>
 RendererEntry renderer_entry(std::string name, DegreesOfFreedom degrees_of_freedom,
-                             ContactModel contact_model, std::string summary) {
+                             ContactModel contact_model, std::string summary,
+                             std::vector<FrameNeed> needs = {}) {
   return {{std::move(name), std::move(summary), factory<Product, Settings, Renderer, double, const Kernels&>},
           degrees_of_freedom,
-          contact_model};
+          contact_model,
+          std::move(needs)};
 }
 
 }  // namespace remote_touch

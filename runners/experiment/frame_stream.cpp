@@ -116,6 +116,7 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
     Frame frame{arrived.frame, captured_s(arrived.frame), arrived.arrives_s, nullptr};
     frame.truth = truth_;
     fill(frame);
+    processing_.needs.check(frame);
     if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
     renderer.on_frame(frame);
   }

@@ -9,6 +9,7 @@
 #include "core/random/noise.h"
 #include "core/rendering/renderer.h"
 #include "core/virtual_fixtures/fixture_assignment.h"
+#include "runners/experiment/frame_needs.h"
 #include "runners/sessions/sensor_frame.h"
 #include "scenarios/interface/scenario.h"
 
@@ -26,6 +27,7 @@ struct Transport {
 struct FrameProcessing {
   std::unique_ptr<DepthProcessor> depth;  // null: the points are sent as the scenario gives them
   FixtureAssignment fixtures;
+  RendererNeeds needs = {};  // of the frames that it has filled; who sends them on checks them
 
   bool changes_points() const { return depth || !fixtures.empty(); }
   // Gives the frame its points and targets, with these fixtures off. Throws InputError when the cloud is not
@@ -53,8 +55,8 @@ class FrameStream {
 
   // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the truth for
   // oracles. pre: times never
-  // decrease. Throws InputError when a frame cannot be read, has no depth image to be processed, or a fixture
-  // rule cannot be applied to it.
+  // decrease. Throws InputError when a frame cannot be read, has no depth image to be processed, lacks what
+  // the renderer needs, or a fixture rule cannot be applied to it.
   void deliver_until(double time_s, Renderer& renderer);
   // Hash of the newest frame delivered; 0 before the first or without hash_frames.
   std::uint64_t newest_hash() const { return hash_; }

@@ -298,4 +298,14 @@ Json write_configuration(const ExperimentConfiguration& configuration) {
   return json;
 }
 
+Json write_section_of(const ExperimentConfiguration& configuration, const std::string& key) {
+  const auto is_it = [&](const Section& section) { return !section.is_top_level && section.key == key; };
+  const auto found = std::find_if(std::begin(kSections), std::end(kSections), is_it);
+  Json json = Json::object();
+  for (const Section& section : kSections)
+    if (found == std::end(kSections) ? section.is_top_level : &section == found)
+      section.write(section, configuration, json);
+  return json;
+}
+
 }  // namespace remote_touch

@@ -50,5 +50,7 @@ std::span<const ExperimentSection> experiment_sections();
 ExperimentConfiguration read_configuration(const nlohmann::ordered_json& json);
 // Complete: every parameter of every section that is present.
 nlohmann::ordered_json write_configuration(const ExperimentConfiguration& configuration);
+// The part of it that a key of its top level belongs to: that section alone, as a member of an object.
+nlohmann::ordered_json write_section_of(const ExperimentConfiguration& configuration, const std::string& key);
 
 }  // namespace remote_touch

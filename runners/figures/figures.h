@@ -66,6 +66,7 @@ class FigureContext {
   std::string configurations() const;
   // Hashes of the recordings that all of them read, see input_hashes.h.
   std::string inputs() const { return inputs_.text(); }
+  void require_unchanged_inputs() const { inputs_.require_unchanged(); }
 
  private:
   Trace simulated(const Experiment& experiment) const;
@@ -124,6 +125,7 @@ Figure figure_7_5_guidance(const FigureContext& context);
 Figure figure_7_5_recorded(const FigureContext& context);
 Figure figure_bounds(const FigureContext& context);
 Figure figure_eq4_15(const FigureContext& context);
+Figure figure_frame_rates(const FigureContext& context);
 Figure figure_proxy_rates(const FigureContext& context);
 Figure figure_tool_forces(const FigureContext& context);
 Figure figure_tool_lifts(const FigureContext& context);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/cloud/colour.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -163,7 +164,7 @@ std::vector<std::uint32_t> colours_of(const py::handle& array, std::size_t n, co
   std::vector<std::uint32_t> values;
   for (std::size_t i = 0; i < n; ++i) {
     const double value = numbers.data()[i];
-    if (!(value >= 0 && value <= 0xffffff && value == std::floor(value)))
+    if (!(value >= 0 && value <= 0xffffff && value == std::floor(value)) && value != kNoColour)
       throw InputError(subject(), "expected " + expected);
     values.push_back(static_cast<std::uint32_t>(value));
   }

@@ -61,9 +61,13 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
   const auto model = choice_of<ContactModel>(type.attr("contact_model").cast<std::string>(),
                                              {"points", "regions", "mesh", "sheet", "nothing", "oriented"},
                                              entry.name + ": contact_model");
+  std::vector<FrameNeed> needs;
+  for (const py::handle need : type.attr("needs"))
+    needs.push_back(choice_of<FrameNeed>(
+        need.cast<std::string>(), {"normals", "organised", "regions", "view"}, entry.name + ": needs"));
   put(all.renderers,
       renderer_entry_of(std::move(entry), freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three,
-                        model));
+                        model, std::move(needs)));
 }
 
 // A class of the same name takes the place of an earlier one: a cell of a notebook is run again.

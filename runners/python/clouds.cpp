@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/cloud/near_origin.h"
 #include "core/kernels/noise_kernels.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog.h"
@@ -41,6 +43,15 @@ py::array_t<double> rows_of(const std::vector<double>& x, const std::vector<doub
   return rows;
 }
 
+// The method takes their length for 1 wherever it multiplies by them.
+void require_unit_length(const PythonPoints& normals, const std::string& subject) {
+  for (std::size_t i = 0; i < normals.x.size(); ++i) {
+    const double length = std::hypot(normals.x[i], normals.y[i], normals.z[i]);
+    if (!(std::abs(length - 1) > 1e-3)) continue;  // NaN: there is none
+    throw InputError(subject + ": row " + std::to_string(i), "expected a normal of length 1, or three NaN");
+  }
+}
+
 std::unique_ptr<PythonCloud> make_cloud(const py::object& points, const py::object& normals,
                                         const py::object& colour, const py::object& fixture_radius_m,
                                         const py::object& stiffness_N_per_m, int columns) {
@@ -52,6 +63,7 @@ std::unique_ptr<PythonCloud> make_cloud(const py::object& points, const py::obje
   if (!normals.is_none()) {
     PythonPoints given = points_of(normals, named("normals"));
     if (given.x.size() != n) throw InputError("Cloud: normals", "expected one for each point");
+    require_unit_length(given, "Cloud: normals");
     cloud.nx = std::move(given.x), cloud.ny = std::move(given.y), cloud.nz = std::move(given.z);
   }
   if (!colour.is_none()) cloud.colour = colours_of(colour, n, named("colour"));
@@ -79,7 +91,8 @@ void bind_cloud(py::module_& module) {
       .def_property_readonly("nx", &column_view<&PC::nx>, "unit normals, or None")
       .def_property_readonly("ny", &column_view<&PC::ny>)
       .def_property_readonly("nz", &column_view<&PC::nz>)
-      .def_property_readonly("colour", &column_view<&PC::colour>, "0xRRGGBB, or None")
+      .def_property_readonly("colour", &column_view<&PC::colour>,
+                             "0xRRGGBB, 0xFF000000 where it is not known; or None")
       .def_property_readonly("fixture_radius_m", &column_view<&PC::fixture_radius_m>)
       .def_property_readonly("stiffness_N_per_m", &column_view<&PC::stiffness_N_per_m>)
       .def_property_readonly("columns", [](const PythonCloud& cloud) { return cloud.shown->columns(); })
@@ -250,10 +263,14 @@ PythonFrame::PythonFrame(const Frame& frame, const Kernels& kernels)
 }
 
 PointCloud cloud_of(const py::handle& value, const Subject& subject) {
-  if (py::isinstance<PythonCloud>(value)) return *value.cast<const PythonCloud&>().shown;
-  PythonPoints xyz = points_of(value, subject);
   PointCloud cloud;
-  cloud.x = std::move(xyz.x), cloud.y = std::move(xyz.y), cloud.z = std::move(xyz.z);
+  if (py::isinstance<PythonCloud>(value)) {
+    cloud = *value.cast<const PythonCloud&>().shown;
+  } else {
+    PythonPoints xyz = points_of(value, subject);
+    cloud.x = std::move(xyz.x), cloud.y = std::move(xyz.y), cloud.z = std::move(xyz.z);
+  }
+  if (is_far_from_origin(cloud)) throw InputError(subject(), far_from_origin("all points are"));
   return cloud;
 }
 

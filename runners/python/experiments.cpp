@@ -19,6 +19,7 @@
 #include "runners/python/bindings.h"
 #include "runners/python/long_work.h"
 #include "runners/python/outputs.h"
+#include "runners/settings/stored_configuration.h"
 #include "runners/simulation/simulation.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_replay.h"
@@ -80,11 +81,16 @@ RunResult run(const RunRequest& request, const LongWork& work) {
   SimulationOptions options = options_of(work);
   options.hash_frames = options.find_true_contact = true;
   std::vector<double> durations;
+  RunReport report;
+  options.report = &report;
   if (request.timing) options.step_duration_s = &durations;
+  const std::string inputs = input_hashes(experiment.inputs());
   TextAttributes origin = provenance(experiment.to_json(), Recipe{"run", request.subject, request.overrides},
-                                     work.kernels.isa, input_hashes(experiment.inputs()));
+                                     work.kernels.isa, inputs);
   const Trace trace = simulate(experiment, options);
+  require_unchanged(experiment.inputs(), inputs);
   experiment.add_depth_device(origin);
+  add_report(origin, report);
   RunResult result{trace.columns(), measures_of(trace), {}, {}};
   result.attributes = trace_attributes(
       origin,
@@ -125,7 +131,9 @@ StoredSweep stored_sweep(const std::string& file) {
 StoredSweep sweep_of(const TextAttributes& attributes) {
   StoredSweep stored;
   stored.attributes = provenance_of(attributes);
-  stored.result = Sweep::from_json(attribute(attributes, "config"), "config of the data set").plan();
+  stored.result =
+      Sweep::from_json(stored_configuration(attribute(attributes, "config")), "config of the data set")
+          .plan();
   return stored;
 }
 
@@ -140,15 +148,13 @@ struct ReplayRequest {
 
 RunResult replay(const ReplayRequest& request, const LongWork& work) {
   const StoredSweep stored = request.file.empty() ? sweep_of(request.attributes) : stored_sweep(request.file);
-  const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"),
+  const Sweep sweep = Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
                                        request.file.empty() ? "config" : request.file + " config");
-  const SweepResult planned = sweep.plan();
-  if (planned.run_count() != stored.result.run_count())
-    throw InputError(request.file, "damaged (its arrays do not fit its configuration)");
+  sweep.require_fits(stored.result, request.file);
   const std::size_t cell = cell_of({"cell", request.cell}, stored.result);
-  if (request.replicate < 0 || request.replicate >= planned.replicates)
+  if (request.replicate < 0 || request.replicate >= stored.result.replicates)
     throw InputError("replicate = " + std::to_string(request.replicate),
-                     "expected 0 to " + std::to_string(planned.replicates - 1));
+                     "expected 0 to " + std::to_string(stored.result.replicates - 1));
   const OutputFile output(request.output, request.force, request.file, {});
   Replay again = replay_run(stored, sweep, stored.result.run(cell, request.replicate), options_of(work), "");
   RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/cloud/near_origin.h"
 #include "core/parameters/input_error.h"
 #include "runners/python/arrays.h"
 #include "runners/python/clouds.h"
@@ -84,7 +85,12 @@ class PythonTrajectory final : public Trajectory {
   ~PythonTrajectory() override { scene_->take_back(); }
 
   DeviceState at(double time_s) const override {
-    return type_->call("at", [&] { return device_of((*at_)(time_s)); });
+    return type_->call("at", [&] {
+      const DeviceState hand = device_of((*at_)(time_s));
+      if (!is_near_origin(hand.position_W))
+        throw InputError(type_->subject("at"), far_from_origin("a position"));
+      return hand;
+    });
   }
   double duration_s() const override { return duration_s_; }
 

@@ -86,13 +86,14 @@ class ObservedFrames final : public Renderer {
 Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const Kernels& kernels = options.kernels ? *options.kernels : kernels_for(best_isa());
   const auto scenario = experiment.build_scenario(kernels);
-  if (options.remark) *options.remark = scenario->without_faults().remark();
+  experiment.check_needs(*scenario);
   const auto trajectory = experiment.build_trajectory(*scenario);
   const auto switches = std::make_shared<FixtureSwitches>();
   const auto renderer = experiment.build_renderer(kernels, switches);
-  FrameStream frames(*scenario, experiment.build_processing(kernels, switches),
-                     experiment.settings().transport, experiment.settings().key, options.hash_frames,
-                     options.generate_all_points);
+  FrameProcessing processing = experiment.build_processing(kernels, switches);
+  const bool has_fixtures = !processing.fixtures.empty();
+  FrameStream frames(*scenario, std::move(processing), experiment.settings().transport,
+                     experiment.settings().key, options.hash_frames, options.generate_all_points);
   ObservedFrames observed(*renderer, options);
   RendererChanges changes(experiment.changes(), *renderer);
   SimulatedHand hand = experiment.build_hand();
@@ -122,6 +123,14 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     trace.append(time_s, device, out, known, hand.state());
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
+  }
+  if (options.report) {
+    const double end_s = static_cast<double>(ticks) / experiment.settings().haptic_rate_hz;
+    *options.report = report_of(scenario->without_faults(), *trajectory, trace, end_s);
+    // Regions are larger than the contact radius, and a tool touches with an area.
+    if (contact.rest_distance_m > 0 && !has_fixtures && !trace.has_tool())
+      for (Note& note : spacing_notes(scenario->without_faults(), trace, contact.rest_distance_m))
+        options.report->notes.push_back(std::move(note));
   }
   return trace;
 }

@@ -8,6 +8,7 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/experiment.h"
+#include "runners/simulation/run_report.h"
 
 namespace remote_touch {
 
@@ -18,7 +19,7 @@ struct SimulationOptions {
   std::vector<double>* step_duration_s = nullptr;   // wall-clock time of each tick; null: not measured
   std::vector<double>* frame_duration_s = nullptr;  // and of the renderer's work on each frame
   std::function<void(const Frame&)> on_frame;       // sees each frame that arrives, before the renderer
-  std::string* remark = nullptr;  // gets what the scenario says of its input, see Scenario::remark()
+  RunReport* report = nullptr;                      // receives what the run read and its notes
   bool generate_all_points =
       false;  // frames come with every point computed: durations without noise generation
   bool find_true_contact = false;  // fill Trace::contact, for measures that need it

@@ -31,6 +31,7 @@ class ImagePress final : public Trajectory {
   ImagePress(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override;
   double duration_s() const override { return 0; }
+  std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
 
  private:
   double surface_depth(int frame) const;

@@ -22,6 +22,7 @@ class Press final : public Trajectory {
   Press(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override;
   double duration_s() const override { return 0; }
+  std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
 
  private:
   const Settings settings_;

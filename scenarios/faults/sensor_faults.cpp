@@ -95,6 +95,11 @@ std::string validate(const SensorFaults& s) {
   return s.view_direction.norm() < 0.001 ? "view_direction: expected 0.001 or longer" : "";
 }
 
+bool use_view_direction(const SensorFaults& s) {
+  return s.ray_noise.sigma_m > 0 || s.flying_probability > 0 || s.outlier_probability > 0 ||
+         s.quantisation_m > 0 || s.hole_fraction > 0;
+}
+
 FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,
                            const NoiseKey& key, const Kernels& kernels)
     : scenario_(std::move(scenario)), settings_(settings), key_(key), kernels_(kernels) {

@@ -32,6 +32,8 @@ struct SensorFaults {
 
 Parameters parameters(SensorFaults& s);
 std::string validate(const SensorFaults& s);
+// Some of these faults depend on view_direction where points are no image.
+bool use_view_direction(const SensorFaults& s);
 
 // Frames are a pure function of the scenario, the settings, the noise key and the frame's number; with every
 // fault at 0 they are the scenario's bit for bit. A lost point becomes NaN in all three coordinates, so that
@@ -57,6 +59,7 @@ class FaultySensor final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return scenario_->signed_distance(p_W, time_s);
   }
+  double truth_time_s(double time_s) const override { return scenario_->truth_time_s(time_s); }
   double surface_height(double x, double z, double time_s) const override {
     return scenario_->surface_height(x, z, time_s);
   }

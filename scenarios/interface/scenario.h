@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/cloud/point_cloud.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/random/noise.h"
 #include "core/search/neighbour_search.h"
+#include "scenarios/interface/note.h"
 
 namespace remote_touch {
 
@@ -33,8 +35,14 @@ class Scenario {
   virtual bool ends() const { return false; }
   // The scene as scripted hands use it, without the faults of a sensor.
   virtual const Scenario& without_faults() const { return *this; }
-  // Empty, or what the user should know of the input, in one line: a recording that was cut short.
-  virtual std::string remark() const { return {}; }
+  // The parts of the motion, in order. Empty: the scene rests, or its motion has no parts.
+  virtual std::vector<Phase> phases() const { return {}; }
+  // One line about what was read so far: the frames of a recording. Empty: nothing is read.
+  virtual std::string input() const { return {}; }
+  // Notes on what was read so far: a recording that was cut short, points that were dropped.
+  virtual std::vector<Note> input_notes() const { return {}; }
+  // Of a recording: where its sensor is, which looks along its z, world frame.
+  virtual std::optional<RigidTransform> sensor_pose() const { return {}; }
 
   // When the frame leaves the sensor, if that is not when it was captured: it was late, or a recorded live
   // session stores when the renderer got it (infinite if it never did).
@@ -53,7 +61,10 @@ class Scenario {
   // Ground truth at a time: distance to the true surface, m, positive on the side that the sensor sees; NaN
   // where the truth is not known.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
-  // Height (y) of the true surface over (x, z); NaN where the scene is not a height field.
+  // When the surface was where signed_distance() measures from: at that time, or, where the truth is what the
+  // camera has seen, at the last capture.
+  virtual double truth_time_s(double time_s) const { return time_s; }
+  // Height (y) of the surface over (x, z) as it moves; NaN where the scene is not a height field.
   virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {
     return std::numeric_limits<double>::quiet_NaN();
   }

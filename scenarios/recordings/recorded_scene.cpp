@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cloud/near_origin.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bag_frames.h"
@@ -18,7 +19,7 @@ Parameters parameters(RecordedScene::Settings& s) {
   return {
       {"path", &s.path, 0, 0,
        "recording folder, TUM folder, folder of PCD files, one PCD file, or a bag of ROS: .bag, .mcap, .db3, "
-       "or the folder of a bag"},
+       "or the folder of a bag; coordinates up to 1000 m from the origin along each axis"},
       {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last there is"},
       {"playback", choice(s.playback, {"hold", "loop", "ping_pong"}), 0, 0,
@@ -40,6 +41,9 @@ Parameters parameters(RecordedScene::Settings& s) {
        "rectified if the name of their topic has rect"},
       {"frame_id", &s.bag.frame_id, 0, 0,
        "of a bag: the coordinate frame, of tf_static, in which the points are; empty: that of the messages"},
+      {"depth_unit_m", &s.bag.depth_unit_m, 0, 1,
+       "of a bag: metres in a unit of depth images; 0: 0.001 of integers (16UC1), or what a RealSense recorded, and 1 "
+       "of floats (32FC1)"},
   };
 }
 
@@ -62,7 +66,10 @@ RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingInde
   const RigidTransform X_registered =
       Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
   if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
-  return X_registered * recording.bag->pose();
+  const RigidTransform X_WC = X_registered * recording.bag->pose();
+  if (!is_near_origin(X_WC.translation()))
+    throw InputError(s.path, far_from_origin("tf_static has its sensor"));
+  return X_WC;
 }
 
 }  // namespace
@@ -70,7 +77,8 @@ RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingInde
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : settings_(settings),
       recording_(index_recording(find_recording(settings.path), settings.bag)),
-      X_WC_(camera_pose(settings, recording_)) {
+      X_WC_(camera_pose(settings, recording_)),
+      statistics_(recording_.frames.size()) {
   const FrameRange frames = frames_of(input_files(settings), recording_);
   first_ = frames.first, count_ = frames.last - frames.first + 1;
   rate_hz_ = settings.frame_rate_hz > 0 ? settings.frame_rate_hz : recording_.frame_rate_hz;
@@ -100,9 +108,28 @@ double RecordedScene::captured_s(int frame) const {
   return frames[source_frame(frame)].captured_s - frames[static_cast<std::size_t>(first_)].captured_s;
 }
 
-std::string RecordedScene::remark() const {
-  const std::string remark = recording_.bag ? recording_.bag->remark() : "";
-  return remark.empty() ? remark : settings_.path + ": " + remark;
+std::string RecordedScene::input() const {
+  return recording_.description + "; " + statistics_.text();
+}
+
+std::vector<Note> RecordedScene::input_notes() const {
+  std::vector<Note> notes = statistics_.notes(settings_.max_depth_m);
+  if (recording_.bag && !recording_.bag->remark().empty())
+    notes.push_back({"recording incomplete", recording_.bag->remark()});
+  if (!recording_.remark.empty()) notes.push_back({"viewpoint unused", recording_.remark});
+  const auto used = static_cast<std::size_t>(count_);
+  if (settings_.playback == Playback::hold && statistics_.frames_read() < used)
+    notes.push_back({"frames unused", std::to_string(used - statistics_.frames_read()) + " of " +
+                                          std::to_string(used) +
+                                          " frames were not used: the run ends before"});
+  // A camera has a rate between these; otherwise the stamps are probably not in seconds.
+  constexpr double kSlowest_Hz = 1, kFastest_Hz = 1000;
+  if (const double rate = recording_.frame_rate_hz; rate < kSlowest_Hz || rate > kFastest_Hz)
+    notes.push_back(
+        {"unusual rate", std::to_string(rate) + " Hz: stamps are read as seconds, " +
+                             (rate < kSlowest_Hz ? "these may be milliseconds" : "these may not be")});
+  for (Note& note : notes) note.text = settings_.path + ": " + note.text;
+  return notes;
 }
 
 // Ping-pong turns round at both ends without repeating them: 0 1 2 3 2 1 0 1 ...
@@ -127,13 +154,25 @@ std::size_t RecordedScene::source_frame(int frame) const {
 
 // A frame in the base frame. Without a registration the bits stay as they were read.
 PointCloud RecordedScene::registered(std::size_t source) const {
-  PointCloud cloud = read_frame(recording_, source, settings_.max_depth_m);
-  if (X_WC_.matrix().isIdentity(0)) return cloud;
+  RigidTransform X_FC;  // the camera in the coordinates of the file
+  PointCloud cloud = read_frame(recording_, source, std::numeric_limits<double>::infinity(), &X_FC);
+  statistics_.add(source, cloud, settings_.max_depth_m);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (cloud.z[i] > settings_.max_depth_m)
+      cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  if (is_far_from_origin(cloud))
+    throw InputError(settings_.path,
+                     far_from_origin("frame " + std::to_string(source) + " has all its points"));
+  if (!is_near_origin(X_FC.translation()))
+    throw InputError(settings_.path,
+                     far_from_origin("frame " + std::to_string(source) + " has its VIEWPOINT"));
+  const RigidTransform X_WC = X_FC.matrix().isIdentity(0) ? X_WC_ : X_WC_ * X_FC;
+  if (X_WC.matrix().isIdentity(0)) return cloud;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 p_W = X_WC_ * cloud.point(i);
+    const Vec3 p_W = X_WC * cloud.point(i);
     cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
   }
-  if (cloud.image) cloud.image->X_WC = X_WC_ * cloud.image->X_WC;
+  if (cloud.image) cloud.image->X_WC = X_WC * cloud.image->X_WC;
   return cloud;
 }
 
@@ -200,12 +239,13 @@ Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, i
 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const RigidTransform X_CW = X_WC_.inverse();
-  const Vec3 p_C = X_CW * p_W;
-  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
+  if (!p_W.allFinite()) return unknown;
   const auto points = measured(newest_frame(time_s));
   const PointCloud& cloud = dynamic_cast<const CloudSearch&>(*points).cloud();
   if (!cloud.image) return unknown;
+  const RigidTransform X_CW = cloud.image->X_WC.inverse();
+  const Vec3 p_C = X_CW * p_W;
+  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
   const CameraIntrinsics& camera = cloud.image->camera;
   const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
   const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);

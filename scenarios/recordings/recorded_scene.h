@@ -7,6 +7,7 @@
 
 #include "core/parameters/parameter.h"
 #include "scenarios/interface/scenario.h"
+#include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/recording.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -35,7 +36,10 @@ class RecordedScene final : public Scenario {
   double frame_rate_hz() const override { return rate_hz_; }
   int frame_count() const override;
   double captured_s(int frame) const override;
-  std::string remark() const override;
+  // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels; 12 read: ..."
+  std::string input() const override;
+  std::vector<Note> input_notes() const override;
+  std::optional<RigidTransform> sensor_pose() const override { return X_WC_; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
@@ -60,6 +64,7 @@ class RecordedScene final : public Scenario {
     std::shared_ptr<const NeighbourSearch> points;
   };
   mutable std::vector<CachedFrame> cache_;
+  mutable FrameStatistics statistics_;
 };
 
 Parameters parameters(RecordedScene::Settings& s);

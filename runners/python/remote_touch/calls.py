@@ -73,10 +73,14 @@ def open(path):
 
 
 class Comparison:
-    """The comparison of two results. str() is what `remote-touch compare` prints."""
+    """The comparison of two results. str() is what `remote-touch compare` prints.
+
+    outcome: "same"; "regressed": a measure got worse; "changed": different, and no measure is shown to be worse;
+    "not comparable": also where there are too few runs to decide.
+    """
 
     def __init__(self, outcome, text, report):
-        self.outcome = ("same", "regressed", "not comparable")[outcome]
+        self.outcome = {0: "same", 1: "regressed", 2: "not comparable", 4: "changed"}[outcome]
         self.text, self.report = text, report
 
     @property
@@ -87,8 +91,15 @@ class Comparison:
     @property
     def differences(self):
         """The names of columns or measures of which a value is outside."""
-        parts = self.report.get("columns") or self.report.get("measures") or []
+        parts = self.report.get("columns") or self.report.get("sweep", {}).get("measures") or []
         return [part["name"] for part in parts if part.get("outside") or part.get("problem")]
+
+    @property
+    def judgements(self):
+        """{"popped_through": "better", ...}: equal, within_margin, better, worse, changed or undecided, of every measure
+        of sweeps, and of traces that differ."""
+        measures = self.report.get("measures") or self.report.get("sweep", {}).get("measures") or []
+        return {measure["name"]: measure["judgement"] for measure in measures}
 
     def __str__(self):
         return self.text

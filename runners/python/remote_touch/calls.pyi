@@ -40,7 +40,7 @@ def replay(
 def open(path: _Path) -> Any: ...
 
 class Comparison:
-    outcome: Literal["same", "regressed", "not comparable"]
+    outcome: Literal["same", "regressed", "not comparable", "changed"]
     text: str
     report: dict[str, Any]
     def __init__(self, outcome: int, text: str, report: dict[str, Any]) -> None: ...
@@ -48,6 +48,8 @@ class Comparison:
     def same(self) -> bool: ...
     @property
     def differences(self) -> _List[str]: ...
+    @property
+    def judgements(self) -> dict[str, str]: ...
 
 def compare(
     baseline: _Path | xarray.Dataset,

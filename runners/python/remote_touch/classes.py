@@ -37,6 +37,7 @@ class Renderer(_Base):
 
     degrees_of_freedom = 3  # or 6: outputs have torque_Nm and tool_orientation
     contact_model = "points"  # or regions, mesh, sheet, nothing, oriented: see runners/experiment/factory.h
+    needs = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
     haptic_rate_hz = 1000.0  # set before __init__ too
 
     def on_frame(self, frame):

@@ -30,6 +30,7 @@ class _Base:
 class Renderer(_Base):
     degrees_of_freedom: ClassVar[int]
     contact_model: ClassVar[str]
+    needs: ClassVar[tuple[str, ...]]
     haptic_rate_hz: float
     def on_frame(self, frame: Frame) -> None: ...
     def step(self, device: Device, time_s: float) -> Output: ...

@@ -118,7 +118,15 @@ TEST(BrokenRenderer, EachMistakeIsFound) {
 
 // --- scenarios: a flat grid with one mistake ---
 
-enum class SceneMistake { none, no_points, noise_without_key, other_search, still_clock, long_normals };
+enum class SceneMistake {
+  none,
+  no_points,
+  noise_without_key,
+  other_search,
+  still_clock,
+  long_normals,
+  far_away
+};
 
 struct NoSettings {};
 Parameters parameters(NoSettings&) {
@@ -148,6 +156,8 @@ class Grid final : public Scenario {
     if (kMistake == SceneMistake::noise_without_key) made.y[7] = 1e-4 * ++asked_;
     if (kMistake == SceneMistake::long_normals)
       made.nx.assign(made.size(), 0), made.ny.assign(made.size(), 1.1), made.nz.assign(made.size(), 0);
+    if (kMistake == SceneMistake::far_away)
+      for (double& x : made.x) x += 1e6;
     return made;
   }
   double signed_distance(const Vec3& p_W, double) const override { return p_W.y(); }
@@ -168,6 +178,7 @@ TEST(BrokenScenario, AGridWithoutAMistakeKeepsIt) {
 TEST(BrokenScenario, EachMistakeIsFound) {
   EXPECT_TRUE(has(broken_scene<SceneMistake::no_points>(), "FramesArePure"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::noise_without_key>(), "FramesArePure"));
+  EXPECT_TRUE(has(broken_scene<SceneMistake::far_away>(), "FramesArePure"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::other_search>(), "SearchAndCloudShowTheSamePoints"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::still_clock>(), "RatesAndTimesMakeSense"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::long_normals>(), "NormalsAreOneAPointAndOfUnitLength"));
@@ -190,6 +201,20 @@ TEST(BrokenTrajectory, AHandThatCountsItsCallsIsFound) {
   EXPECT_EQ(broken_rules(trajectory_entry<Jittery>("jittery", "a hand that is no function of time"),
                          trajectory_checks()),
             (Names{"PosesArePureAndFinite", "IsAtRestAfterTheEnd"}));
+}
+
+class Distant final : public Trajectory {
+ public:
+  using Settings = NoSettings;
+  Distant(const Settings&, const Scenario&) {}
+  DeviceState at(double) const override { return {Vec3(0, 0, -1001)}; }
+  double duration_s() const override { return 1; }
+};
+
+TEST(BrokenTrajectory, AHandFarFromTheOriginIsFound) {
+  EXPECT_EQ(
+      broken_rules(trajectory_entry<Distant>("distant", "a hand beyond all scenes"), trajectory_checks()),
+      Names{"PosesArePureAndFinite"});
 }
 
 TEST(BrokenMeasure, EachMistakeIsFound) {

@@ -64,6 +64,12 @@ TEST(Catalog, FixtureRulesPickPointsWithTheirDefaults) {
   }
 }
 
+TEST(Catalog, HasTheDirectionOfEveryMeasure) {
+  EXPECT_EQ(directions().size(), measures().size());
+  EXPECT_EQ(directions().at("popped_through"), Better::smaller);
+  EXPECT_EQ(directions().at("max_force"), Better::neither);
+}
+
 TEST(Catalog, AnEntryNeedsAFreeAndPlainName) {
   Catalog catalog = built_in_catalog();
   const auto add = [&](const char* name) {

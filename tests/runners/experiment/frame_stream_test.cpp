@@ -252,7 +252,7 @@ TEST(FrameStream, TheNewestHashIsThatOfTheNewestFrame) {
 // Its points are made when asked for, by the frame's number: a scene that is sent on shows its last frame.
 TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
   MovingLift::Settings settings;
-  settings.grid = {4, 4, 0.0015, 0, 0}, settings.rise_frames = 2, settings.acceleration_frames = 0;
+  settings.grid = {4, 4, 0.0015, 0, 0}, settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
   const MovingLift lift(settings, {1}, scenes::kernels());
   FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, true);
   Recorder recorder;
@@ -265,7 +265,7 @@ TEST(FrameStream, AFrameThatIsSentOnHasTheHashOfTheLast) {
 TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
   MovingLift::Settings settings;
   settings.grid = {4, 4, 0.0015, 0, 0}, settings.noise_sigma_m = 0.001;
-  settings.rise_frames = 2, settings.acceleration_frames = 0;
+  settings.lift.rise_s = 2 / 30.0, settings.lift.acceleration_s = 0;
   const MovingLift lift(settings, {1}, scenes::kernels());
   for (const bool made : {false, true}) {
     FrameStream stream(lift, {}, {0, 0, 1e-300}, {1}, false, made);

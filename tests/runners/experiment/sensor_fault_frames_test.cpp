@@ -28,7 +28,7 @@ TEST(SensorFaultFrames, RepeatedFramesShowTheOneBeforeThem) {
   SensorFaults s;
   s.repeat_probability = 0.4, s.dropout_probability = 0.1, s.flying_probability = 0.1;
   MovingShape::Settings noisy = rising_plane();
-  noisy.motion.rise_frames = 400, noisy.noise_sigma_m = 0.001, noisy.grid = {8, 8, 0.002, 0, 0};
+  noisy.motion.lift.rise_s = 400 / 30.0, noisy.noise_sigma_m = 0.001, noisy.grid = {8, 8, 0.002, 0, 0};
   const FaultySensor sensor = faulty(s, bare(noisy));
   double repeated = 0, chained = 0;
   bool before = false;
@@ -62,7 +62,7 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
   SensorFaults s;
   s.late_probability = 0.3, s.late_delay_s = 0.05;
   MovingShape::Settings plane = rising_plane();
-  plane.motion.rise_frames = 299, plane.grid = {4, 4, 0.002, 0, 0};
+  plane.motion.lift.rise_s = 299 / 30.0, plane.grid = {4, 4, 0.002, 0, 0};
   const FaultySensor sensor = faulty(s, bare(plane));
   const auto frames = received(sensor, 11);
   ASSERT_EQ(frames.size(), 300u);

@@ -68,6 +68,8 @@ BAD = {
     "two numbers a point": (lambda: rt.Cloud(np.zeros((3, 2))), "Cloud: points: an array of shape (3, 2)"),
     "texts": (lambda: rt.Cloud([["a", "b", "c"]]), "Cloud: points: an array of <U1"),
     "half a point": (lambda: rt.Cloud([[0, 0, 0], [1, np.nan, 2]]), "Cloud: points: row 1: a number is not finite"),
+    "long normals": (lambda: rt.Cloud(np.zeros((2, 3)), normals=[[0, 1, 0], [0, 0, 1e200]]),
+                     "Cloud: normals: row 1: expected a normal of length 1"),
     "fewer normals": (lambda: rt.Cloud(np.zeros((3, 3)), normals=np.zeros((2, 3))), "Cloud: normals: expected one for each"),
     "a colour": (lambda: rt.Cloud(np.zeros((1, 3)), colour=[2**24]), "Cloud: colour: expected 1 integers"),
     "a radius": (lambda: rt.Cloud(np.zeros((1, 3)), fixture_radius_m=[np.nan]), "Cloud: fixture_radius_m: expected"),

@@ -107,6 +107,15 @@ class A(rt.Trajectory):
 
 class A(rt.Trajectory):
     duration_s = 1
+    def at(self, t): return (0, 0, 1e8)
+-> trajectory a: A.at: a position farther than 1000 m from the origin
+
+class A(rt.Scenario):
+    def cloud(self, frame): return [[1e6, 0, 0], [1e6, 1, 0]]
+-> scenario a: A.cloud: points: all points are farther than 1000 m from the origin
+
+class A(rt.Trajectory):
+    duration_s = 1
     def at(self, t): return (0, 0, 0), (1, 1, 0, 0)
 -> trajectory a: A.at: its length is not 1
 
@@ -170,6 +179,9 @@ rt.register(a_class({"degrees_of_freedom": 4}), "a")
 
 rt.register(a_class({"contact_model": "air"}), "a")
 -> a: contact_model = air: expected points
+
+rt.register(a_class({"needs": ("normals", "air")}), "a")
+-> a: needs = air: expected normals, organised, regions, view
 
 rt.run(PRESS, set={"renderer": {"name": a_class({})}})
 -> class A: is not in the catalog

@@ -22,6 +22,21 @@ for experiment in (PRESS, AT_REST):
 ''')
 
 
+def test_a_run_without_what_a_renderer_needs_is_refused(in_python):
+    in_python(PENALTY + '''
+class Careful(Penalty):
+    "needs normals and rows"
+    needs = ("normals", "organised")
+rt.register(Careful, "careful")
+try:
+    rt.run(PRESS, set={"renderer": {"name": "careful"}})
+except rt.InputError as error:
+    assert str(error).startswith('renderer.name = "careful": needs normals'), error
+else:
+    raise AssertionError("it ran")
+''')
+
+
 def test_live_settings_change_during_a_run(in_python):
     in_python(PENALTY + '''
 change = [{"time_s": 0.1, "parameter": "renderer.stiffness_N_per_m", "value": 1200}]

@@ -162,7 +162,10 @@ def test_compare_is_the_command(command_line, tmp_path):
     assert not other.same and "force" in other.differences and "first divergent tick" in str(other)
     assert "time" not in other.differences
     in_memory = rt.compare(first, second)
-    assert in_memory.differences == other.differences and in_memory.outcome == "regressed"
+    assert in_memory.differences == other.differences and in_memory.outcome == other.outcome
+    assert in_memory.judgements == other.judgements and other.judgements["max_force"] == "changed"  # a force is no merit
+    assert other.outcome == ("regressed" if "worse" in other.judgements.values() else "changed")
+    assert not same.judgements
     assert rt.compare(first, a).same
     wide = rt.compare(a, b, tolerance={"*": 1e9})
     assert wide.same == command_line("compare", a, b, "--tolerance", "*=1e9").rstrip().splitlines()[-1].startswith("same")

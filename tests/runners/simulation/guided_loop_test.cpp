@@ -69,10 +69,14 @@ Trace beside_a_goal(const std::vector<std::string>& overrides, double duration_s
 }
 
 Trace of_a_tool(const std::string& rotation_deg, const std::vector<std::string>& overrides) {
-  std::vector<std::string> all{R"(renderer={"name": "tool", "tool_mesh": "ball"})",
-                               "trajectory.waypoints=[[0,0.5,0,0]]", "guidance.rotation_deg=" + rotation_deg,
-                               // The goal stays where it is when the tool's axes turn.
-                               "guidance.standoff_m=0", "guidance.offset_m=[0,0.5,0]"};
+  std::vector<std::string> all{
+      R"(renderer={"name": "tool", "tool_mesh": "ball"})",
+      // A tool needs normals.
+      R"(scenario={"name": "moving-plane", "columns": 10, "rows": 10, "start_height_m": 0,
+                                            "wait_s": 100})",
+      "trajectory.waypoints=[[0,0.5,0,0]]", "guidance.rotation_deg=" + rotation_deg,
+      // The goal stays where it is when the tool's axes turn.
+      "guidance.standoff_m=0", "guidance.offset_m=[0,0.5,0]"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   return beside_a_goal(all);
 }

@@ -12,8 +12,8 @@ double popped_at(double velocity, const std::vector<std::string>& more) {
                                        "scenario.acceleration_m_per_s2=0",
                                        "scenario.start_velocity_m_per_s=" + std::to_string(velocity),
                                        "scenario.start_depth_m=" + std::to_string(velocity / 2),
-                                       "scenario.rise_frames=30",
-                                       "scenario.acceleration_frames=0",
+                                       "scenario.rise_s=1",
+                                       "scenario.acceleration_s=0",
                                        "duration_s=1"};
   settings.insert(settings.end(), more.begin(), more.end());
   return popped_through(simulate(Experiment::load("fig4.12", settings)));

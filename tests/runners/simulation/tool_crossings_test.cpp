@@ -124,7 +124,7 @@ TEST(ToolCrossings, ThereAreNoneAtFramesByTheContinuousRuleWhereASurfaceRises) {
     const auto entered = [&](const std::string& rule) {
       return audited("tool-lift", rule, kContinuous_m,
                      {"renderer.tool_mesh=slab-5", "scenario.start_velocity_m_per_s=0.24",
-                      "scenario.rise_frames=4", "duration_s=0.65", surface},
+                      "scenario.rise_s=0.13333333333333333", "duration_s=0.65", surface},
                      Frames::followed)
           .entered;
     };

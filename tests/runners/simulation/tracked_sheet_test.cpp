@@ -141,8 +141,9 @@ TEST(TrackedSheet, FixturesKeepTheirDistance) {
 TEST(TrackedSheet, AMissingFrameIsBridgedWithItsFixture) {
   const Trace trace =
       run("vanishing-plane",
-          {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_frame=-1",
-           "scenario.empty_frame=20", setting("scenario.noise_sigma_m", 0.3 * kRc), "duration_s=1",
+          {kSheet, R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])", "scenario.vanish_at_s=-1",
+           "scenario.empty_frame_at_s=0.6666666666666666", setting("scenario.noise_sigma_m", 0.3 * kRc),
+           "duration_s=1",
            R"(trajectory={"name": "press", "start_m": [0, 0.06, 0], "depth_m": -0.01, "per_frame": false})"});
   double min = 1, max = 0, min_force = 1e9;
   for (std::size_t i = 600; i < trace.length(); ++i) {

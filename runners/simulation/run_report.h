@@ -1,0 +1,36 @@
+// What a run read, and what did not happen in it: lines for the user, stored with the result.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/trace/trace.h"
+#include "runners/trajectories/trajectory.h"
+#include "scenarios/interface/scenario.h"
+
+namespace remote_touch {
+
+struct RunReport {
+  std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()
+  std::vector<Note> notes;
+};
+
+// end_s: the time of the first tick that was not simulated.
+RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace, double end_s);
+
+// A note if the points around the first contact are so far apart that a proxy of this contact radius falls
+// through between them, 4.2.1: farther than sqrt(2) contact_radius_m. None without a contact.
+std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m);
+
+// "  read LINE\n" for each input and "  note: LINE\n" for each note.
+std::string text_of(const RunReport& report);
+
+// Appends the attributes `frames_read` and `notes`, one line for each entry; an attribute without a line is
+// left out. The names of the kinds are not stored.
+void add_report(TextAttributes& attributes, const RunReport& report);
+
+// Throws InputError with the first note, for --strict. Does nothing without a note.
+void refuse_notes(const RunReport& report);
+
+}  // namespace remote_touch

@@ -1,0 +1,47 @@
+// What a recording contained, counted over the frames that were read: a part of the line that a run prints
+// about its input, and notes about frames that may not be what the user meant.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/cloud/point_cloud.h"
+#include "scenarios/interface/note.h"
+
+namespace remote_touch {
+
+class FrameStatistics {
+ public:
+  explicit FrameStatistics(std::size_t frame_count) : is_read_(frame_count, false) {}
+
+  bool has(std::size_t frame) const { return is_read_[frame]; }
+  // cloud: the frame as it was measured, in the camera's frame, before the limit is applied. A frame that was
+  // added before is ignored.
+  void add(std::size_t frame, const PointCloud& cloud, double max_depth_m);
+
+  std::size_t frames_read() const { return frames_; }
+  // "12 read: 68.3 % of the points measured, depth 0.41 to 2.98 m, with colours".
+  std::string text() const;
+  // Points that were dropped, points without colour, and frames that do not overlap with the frame before
+  // them.
+  std::vector<Note> notes(double max_depth_m) const;
+
+ private:
+  void count(const PointCloud& cloud, double max_depth_m);
+  void compare_with_last(std::size_t frame, const PointCloud& cloud, double max_depth_m);
+
+  std::vector<bool> is_read_;
+  std::size_t frames_ = 0, points_ = 0, measured_ = 0, beyond_limit_ = 0, colourless_ = 0;
+  double nearest_m_ = std::numeric_limits<double>::infinity(), farthest_m_ = 0;
+  bool has_colours_ = false;
+  std::size_t last_ = 0;              // the frame that was read last, if there is one
+  std::vector<std::uint64_t> cells_;  // that its points occupy, sorted
+  // Pairs of successive frames without overlap: how many, the later frame of the first, and their overlap.
+  std::size_t apart_ = 0, first_apart_ = 0;
+  double least_overlap_ = 1;
+};
+
+}  // namespace remote_touch

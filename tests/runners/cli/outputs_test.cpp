@@ -1,0 +1,63 @@
+// Which files a command may write: none twice, and none that it reads.
+#include "runners/cli/outputs.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::outputs_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Outputs : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  static std::string refusal_of(const std::string& json, const std::string& junit) {
+    return refusal([&] { require_distinct({{"--json", json}, {"--plot", ""}, {"--junit", junit}}); });
+  }
+  const TestFolder folder_{"outputs_test"};
+};
+
+constexpr const char* kNone = "no InputError";
+
+TEST_F(Outputs, OneFileForTwoOptionsIsRefusedHoweverItIsWritten) {
+  fs::create_directory(folder_ / "sub");
+  fs::create_directory_symlink(folder_ / "sub", folder_ / "other");
+  fs::create_symlink("sub/report", folder_ / "link");  // to what is not there yet
+  EXPECT_EQ(refusal_of(file("x"), file("x")),
+            "--junit " + file("x") + ": is also the file of --json: expected another file");
+  const std::string here = fs::relative(folder_.path()).string();
+  for (const std::string& same : {file("sub/../x"), file("./x"), here + "/x", file("other/../x")})
+    EXPECT_HAS(refusal_of(file("x"), same), "is also the file of --json") << same;
+  EXPECT_HAS(refusal_of(file("sub/x"), file("other/x")), "is also the file of --json");
+  EXPECT_HAS(refusal_of(file("sub/report"), file("link")), "is also the file of --json");
+  EXPECT_EQ(refusal_of(file("x"), file("y")), kNone);
+  EXPECT_EQ(refusal_of(file("x"), file("sub/x")), kNone);
+}
+
+TEST_F(Outputs, TwoNamesOfOneFileAreRefused) {
+  folder_.write("x", "x");
+  fs::create_hard_link(folder_ / "x", folder_ / "y");
+  EXPECT_HAS(refusal_of(file("x"), file("y")), "is also the file of --json");
+}
+
+TEST_F(Outputs, NothingAndADeviceMayComeTwice) {
+  EXPECT_EQ(refusal_of("", ""), kNone);
+  EXPECT_EQ(refusal_of("/dev/null", "/dev/null"), kNone);
+}
+
+// Not even with --force.
+TEST_F(Outputs, AnInputOrAPlugInIsNoOutput) {
+  CommandLine line;
+  line.force = true;
+  line.plugins = {folder_.write("mine.so", "a library").string()};
+  const std::string input = folder_.write("in.h5", "a result").string();
+  for (const std::string& read : {input, line.plugins.front()})
+    EXPECT_HAS(refusal([&] { require_report(line, read, {input}, kJsonReport); }), "is the input file");
+}
+
+}  // namespace
+}  // namespace remote_touch::outputs_test
