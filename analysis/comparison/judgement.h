@@ -1,4 +1,4 @@
-// What became of a measure.
+// The judgement of a measure that was compared.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ bool is_change(Judgement judgement);  // better, worse or changed
 // "equal", "within_margin", "better", ...
 const char* name_of(Judgement judgement);
 
-// Of one number: equal, better, worse or changed. What was not a number, or is none now, changed.
+// Judges one number: equal, better, worse or changed. A number that was or became NaN has changed.
 Judgement judged(double baseline, double candidate, Better better, const Tolerance& tolerance);
 
 // A measure of one run, before and now.

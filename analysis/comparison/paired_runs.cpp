@@ -20,7 +20,7 @@ bool holds(const std::pair<double, double>& interval, double margin) {
   return interval.first >= -margin && interval.second <= margin;
 }
 
-// Of a measure that has a direction, where something changed.
+// The direction of a change. pre: the measure has a direction.
 Judgement direction_of_change(const RegionComparison& c, double alpha) {
   const bool one_way = sign_test(c.got_worse, c.got_better) < alpha, on_average = c.worse_p < alpha;
   if ((one_way && c.got_worse > c.got_better) || (on_average && c.mean_worse > 0)) return Judgement::worse;

@@ -103,7 +103,7 @@ bool is_event(const std::vector<double>& baseline, const std::vector<double>& ca
   return any && (happened || in_candidate);
 }
 
-// Of each run, in the measures that tell it.
+// True for each run whose outcomes agree, see is_outcome().
 std::vector<bool> same_outcomes(const SweepResult& a, const SweepResult& b) {
   std::vector<bool> same(a.run_count(), true);
   for (const Column& measure : a.measures)

@@ -70,7 +70,7 @@ struct RegionComparison {
   double symmetry_p = 1;               // over the pairs outside; 1 for an event, where it adds nothing
   double worse_p = 1, mean_worse = 0;  // symmetry test and mean of how much worse they got; not of an event
   double adjusted_p = 1;  // the smaller of the two, adjusted for all tests of all regions and measures
-  // By the paired tests, see PairedVerdict.
+  // The result of the paired tests, see PairedVerdict.
   Judgement judgement = Judgement::undecided;
 };
 
@@ -144,8 +144,8 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
                         const Tolerances& tolerances = {}, const PairedRule& rule = {},
                         const Directions& directions = {});
 
-// Of a measure, by the rule that judges the sweeps: run by run; or by pairs, where one region that got worse
-// counts before one that changed, and that before one that got better.
+// The judgement of a measure, run by run or by pairs. By pairs the regions are combined: worse in any region
+// counts first, then changed, then better.
 Judgement judgement_of(const SweepComparison& sweep, std::size_t measure, bool paired);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-// Which way a measure gets better.
+// The direction in which a measure gets better.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@ namespace remote_touch {
 
 enum class Better { neither, smaller, larger, near_zero };
 
-// By the name of a measure; one that is not there has no direction.
+// The keys are the names of measures. A measure without an entry has no direction.
 using Directions = std::map<std::string, Better>;
 Better direction_of(const Directions& directions, const std::string& measure);
 

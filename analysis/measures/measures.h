@@ -50,7 +50,7 @@ struct Measure {
   std::string meaning;  // one line that continues "the measure is the ..."
   MeasuredRuns runs = MeasuredRuns::all;
   std::function<double(const Trace&)> of;  // NaN where nothing can be said; called from many threads
-  // Whether a later result is worse or only another one. Last, so that a program may leave it out.
+  // The direction in which it gets better. It is the last member, so that a program may omit it.
   Better better = Better::neither;
 };
 // Those of this program, in the order in which summaries print them. A program may have more, see

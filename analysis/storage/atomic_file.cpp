@@ -56,7 +56,7 @@ bool is_folder(const std::filesystem::path& target) {
   return std::filesystem::is_directory(target, unreachable);
 }
 
-// Whether nothing can be renamed over the target, but it can be written. A pipe would wait for one who reads.
+// True for a device that is written in place, because a file cannot be renamed over it. A pipe would block.
 bool is_written_in_place(const std::filesystem::path& target) {
   struct stat there = {};
   if (::stat(target.c_str(), &there) != 0 || S_ISREG(there.st_mode) || S_ISDIR(there.st_mode)) return false;

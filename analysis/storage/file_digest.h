@@ -34,9 +34,9 @@ enum class FileDigest { valid, absent, broken };
 // Throws InputError when the file cannot be read.
 FileDigest file_digest_of(const std::filesystem::path& file);
 
-// Whether another program opened a finished result for writing and changed nothing: the HDF5 library then
-// writes two addresses of the file's first block anew, counted from another place. With the addresses as they
-// were the seal holds. Throws InputError when the file cannot be read.
+// True if another program opened a finished result for writing and changed nothing. The HDF5 library then
+// rewrites two addresses in the first block of the file. The SHA-256 holds with the original addresses.
+// Throws InputError when the file cannot be read.
 bool was_opened_for_writing(const std::filesystem::path& file);
 
 }  // namespace remote_touch

@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-// In the column of colours of a cloud: the colour of this point is not known.
+// The value in the colour column of a cloud for a point whose colour is unknown.
 inline constexpr std::uint32_t kNoColour = 0xFF000000;
 
 // The colour in a float of 32 bits, by which files and messages of clouds pass on 0xAARRGGBB: with A = 0 or,

@@ -26,7 +26,7 @@ inline bool is_far_from_origin(const PointCloud& cloud) {
   return any;
 }
 
-// What a refusal says of it.
+// The text of the refusal.
 inline std::string far_from_origin(const std::string& what) {
   return what + " farther than " + std::to_string(static_cast<int>(kMaxCoordinate_m)) +
          " m from the origin, along an axis: expected a scene and a hand near the origin";

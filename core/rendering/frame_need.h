@@ -1,5 +1,5 @@
-// What a renderer can need of the points of its frames. Without it there would be no force, or a wrong one,
-// so a run is refused.
+// The needs that a renderer can have of the points of its frames. A run is refused if its frames lack one,
+// because there would be no force, or a wrong one.
 #pragma once
 
 namespace remote_touch {

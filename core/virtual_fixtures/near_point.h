@@ -16,7 +16,7 @@ class NearPoint final : public FixtureRule {
     double falloff_m = 0;
   };
   explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
-  // With a pixel: an image that has it.
+  // If a pixel is set, the cloud must be an image that contains it.
   void require(const PointCloud& cloud) const override;
   // 1 up to inner_radius_m, then falling linearly to 0 over falloff_m. A selected pixel without a depth is
   // replaced by the nearest one, in pixels, that has one; if there is none, all weights are 0.

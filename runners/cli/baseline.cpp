@@ -42,7 +42,7 @@ std::vector<Baseline> chosen(const Manifest& manifest, const BaselineCheckReques
   return request.names.empty() ? manifest.baselines : list;
 }
 
-// What a check reads: no report may replace it.
+// The files that a check reads. No report may replace them.
 std::vector<std::string> files_of(const std::string& folder, const std::vector<Baseline>& list) {
   std::vector<std::string> files{manifest_file(folder).string()};
   for (const Baseline& baseline : list) {

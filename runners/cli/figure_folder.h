@@ -20,7 +20,7 @@ class FigureFolder {
 
   // The two calls of make_figures().
   void finish(std::size_t run, const FigureContext& context, Figure figure);
-  // What the figures say is printed in their order, whichever was made first.
+  // Prints the lines of the figures in the order of the figures, whichever was made first.
   void report(const FigureProgress& progress, Progress& shown);
 
   // A claim that failed comes before all else. What was not made is said on the standard error too; where

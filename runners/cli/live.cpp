@@ -40,7 +40,7 @@ void report_line(const std::string& text) {
   std::fprintf(stderr, "live: %s%s", text.c_str(), text.ends_with('\n') ? "" : "\n");
 }
 
-// What a live run reads: the experiment's files, and those that replay:FILE and pcd:FILE name.
+// The files that a live run reads: those of the experiment, of replay:FILE and of pcd:FILE.
 std::vector<std::string> inputs_of(const LiveRequest& request, const Experiment& experiment) {
   std::vector<std::string> files = with_parts(request.experiment, experiment.inputs());
   for (const std::string& address : {request.depth, request.device})

@@ -38,8 +38,8 @@ class Experiment {
   const std::vector<SequenceStep>& sequence() const { return configuration_.sequence; }
   const std::vector<RendererChange>& changes() const { return configuration_.changes; }
   std::string to_json() const;  // complete: every parameter, one line
-  // What the first tick has at a path like "renderer.r1_m": the value of the configuration, or that of a
-  // change at 0 s. Null where there is nothing.
+  // The value that the first tick has at a path like "renderer.r1_m": that of the configuration, or of a
+  // change at 0 s. Null if there is none.
   nlohmann::ordered_json value_at_start(const std::string& path) const;
   // The recordings that a run reads, as named in the configuration, not yet searched for.
   std::vector<RecordingPart> inputs() const;
@@ -58,8 +58,8 @@ class Experiment {
   FrameProcessing build_processing(const Kernels& kernels,
                                    std::shared_ptr<const FixtureSwitches> switches = nullptr,
                                    const DepthReport& report = {}) const;
-  // Before a run: throws InputError, which says what to add, if the frames of the scenario or the sensor lack
-  // what the renderer, a fixture rule or guidance needs. Frames of build_processing() are checked one by one.
+  // Called before a run. Throws InputError, which says what to add, if the frames of the scenario lack a need
+  // of the renderer, a fixture rule or guidance. build_processing() checks each later frame.
   void check_needs(const Scenario& scenario) const;
   void check_needs(const SensorView& view) const;
   // After build_processing(): adds `depth_device` to the provenance of a result, the name of the OpenCL

@@ -12,7 +12,7 @@ namespace remote_touch {
 
 namespace {
 
-// What all frames of a run have, before the depth pipeline.
+// The properties that all frames of a run have, before the depth pipeline.
 struct FrameContents {
   bool normals = false, organised = false, image = false;
 };

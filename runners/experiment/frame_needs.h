@@ -17,7 +17,7 @@ namespace remote_touch {
 
 struct ExperimentConfiguration;
 
-// Of a renderer. Without any, every frame will do.
+// The needs of one renderer. A renderer without needs accepts every frame.
 class RendererNeeds {
  public:
   RendererNeeds() = default;
@@ -32,13 +32,13 @@ class RendererNeeds {
   std::vector<FrameNeed> needs_;
 };
 
-// As its line in the catalog says.
+// The needs in the catalog's line of the renderer.
 std::vector<FrameNeed> renderer_needs(const ExperimentConfiguration& configuration);
 
 // Before a run. Each throws InputError. fixtures: those of the configuration.
 void check_needs(const ExperimentConfiguration& configuration, const FixtureAssignment& fixtures,
                  const Scenario& scenario);
-// What a sensor says of its frames before it sends any: only what the renderer needs.
+// Checks the renderer's needs against what a live sensor reports before its first frame.
 void check_needs(const ExperimentConfiguration& configuration, const SensorView& view);
 
 }  // namespace remote_touch

@@ -12,7 +12,7 @@ namespace {
 
 const std::string kRatesFigure = "frame-rates";
 
-// Of one frame rate: the accelerations between which lifts begin to pop through.
+// The accelerations between which lifts begin to pop through, at one frame rate.
 struct Threshold {
   double frame_rate_hz = 0;
   double survives = 0, pops = std::numeric_limits<double>::infinity();  // m/s^2

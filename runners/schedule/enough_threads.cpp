@@ -18,7 +18,7 @@ namespace remote_touch {
 
 namespace {
 
-// In the child, which says nothing and may hang for some seconds only.
+// Runs in the child process, which prints nothing and is ended after some seconds.
 [[noreturn]] void start_threads() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGALRM})
     std::signal(signal, SIG_DFL);

@@ -1,4 +1,4 @@
-// Whether the system gives OpenMP its threads: where it does not, the library ends the program or crashes.
+// Checks that the system can start the threads of OpenMP. If it cannot, the library would end the program.
 #pragma once
 
 namespace remote_touch {

@@ -28,7 +28,7 @@ void WorkPool::run(const std::vector<std::function<void()>>& jobs, double every_
   const auto all_ended = [&] { return ended_jobs_ == jobs.size(); };
   for (bool ended = false; !ended;) {
     std::unique_lock lock(mutex_);
-    // What ends during a report was not seen by it: the loop ends after a report that began later.
+    // A report does not see jobs that end while it runs. The loop therefore ends after a later report.
     ended = changed_.wait_for(lock, std::chrono::duration<double>(every_s), all_ended);
     lock.unlock();
     report();

@@ -47,8 +47,8 @@ std::string object_of(const Json& object, const char* part, const std::string& l
   return found->dump();
 }
 
-// Of a measure in a scene. "judged" is the measure's own direction; a scene gives one only to a measure that
-// has none, as less force is better where nothing should be touched.
+// The direction of a measure in a scene. "judged" is the measure's own direction. A scene gives one only to a
+// measure without a direction: less force is better in a scene where nothing should be touched.
 Better better_of(const Json& word, const std::string& measure, const std::string& label) {
   const Better own = direction_of(directions(), measure);
   if (word == "reported") return Better::neither;

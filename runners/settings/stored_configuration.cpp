@@ -34,14 +34,14 @@ double number_or(const Json& scenario, const char* name, double otherwise) {
   return found != scenario.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
-// Nothing if the key is not a count. -1 stands for never.
+// Null if the key is not a count. A count of -1 means never.
 const Count* count_of(const std::string& key, const Json& value) {
   const auto found =
       std::find_if(std::begin(kCounts), std::end(kCounts), [&](const Count& c) { return key == c.frames; });
   return found != std::end(kCounts) && value.is_number() ? found : nullptr;
 }
 
-// In the order of the keys, which a comparison of texts sees.
+// Keeps the order of the keys, because configurations are also compared as texts.
 Json told_in_seconds(const Json& scenario) {
   const double rate_hz = number_or(scenario, "frame_rate_hz", kUsualRate_hz);
   Json told = Json::object();

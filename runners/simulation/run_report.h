@@ -1,4 +1,4 @@
-// What a run read, and what did not happen in it: lines for the user, stored with the result.
+// The report of a run: what it read, and notes on what did not happen. It is stored with the result.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ bool is_within(const Keys& inner, const Keys& outer) {
   return outer.size() <= inner.size() && std::equal(outer.begin(), outer.end(), inner.begin());
 }
 
-// What a user writes, in the order in which it is applied.
+// A value that the user sets. Statements are applied in this order.
 struct Statement {
   enum class Of { option_of_own_experiment, set, option, axis };
   Of of;

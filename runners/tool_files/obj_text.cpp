@@ -13,7 +13,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-// Behind a line and the lines that continue it after a backslash.
+// Returns the end of a line, including the lines that continue it after a backslash.
 std::size_t end_of_line(const std::string& text, std::size_t at) {
   for (std::size_t from = at;;) {
     const std::size_t end = text.find_first_of("\r\n", from);
@@ -32,7 +32,7 @@ bool has_corners(std::string_view line) {
   return line.size() > 1 && (line[0] == 'f' || line[0] == 'l' || line[0] == 'p') && is_blank(line[1]);
 }
 
-// Of "3/1/2" only the vertex.
+// Keeps only the vertex of a corner such as "3/1/2".
 void add_vertices(std::string_view line, std::string& text) {
   bool is_vertex = true;
   for (const char c : line) {
@@ -42,7 +42,7 @@ void add_vertices(std::string_view line, std::string& text) {
   }
 }
 
-// Without a colour: the library leaves out vertices whose colour has other than three numbers.
+// Drops the colour, because the library skips vertices whose colour does not have three numbers.
 void add_position(std::string_view line, std::string& text) {
   std::vector<std::string_view> numbers;
   for (std::size_t at = 1; at < line.size();) {

@@ -109,7 +109,7 @@ struct ShownRun::State {
 
   std::string of(const char* name) const { return attribute(source.attributes, name); }
 
-  // What the run itself reported, see RunReport.
+  // Adds the notes that the run stored, see RunReport.
   void add_stored_notes() {
     for (const char c : of("notes")) note_of_run += c == '\n' ? std::string("; ") : std::string(1, c);
     if (!note_of_run.empty()) note += (note.empty() ? "" : "; ") + note_of_run;

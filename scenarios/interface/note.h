@@ -1,4 +1,4 @@
-// What a run's input and motion tell about themselves: phases of a motion, and notes for the user.
+// Phases of a motion, and notes on a run for the user.
 #pragma once
 
 #include <limits>

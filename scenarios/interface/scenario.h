@@ -41,7 +41,7 @@ class Scenario {
   virtual std::string input() const { return {}; }
   // Notes on what was read so far: a recording that was cut short, points that were dropped.
   virtual std::vector<Note> input_notes() const { return {}; }
-  // Of a recording: where its sensor is, which looks along its z, world frame.
+  // The pose of the sensor in the world frame, for a recording. The sensor looks along its z axis.
   virtual std::optional<RigidTransform> sensor_pose() const { return {}; }
 
   // When the frame leaves the sensor, if that is not when it was captured: it was late, or a recorded live

@@ -38,7 +38,7 @@ bool has_messages(const BagFile& bag, std::size_t topic) {
   return !bag.places(topic).empty();
 }
 
-// Of an image: its encoding, which its first message tells. Empty for others, and where that is damaged.
+// The encoding of an image topic, from its first message. Empty for other topics and damaged messages.
 std::string encoding_of(const BagFile& bag, std::size_t t) {
   const BagTopic& topic = bag.topics()[t];
   if (topic.type != kImageType || !is_readable(topic) || !has_messages(bag, t)) return {};

@@ -12,11 +12,11 @@ namespace remote_touch {
 std::vector<std::filesystem::path> files_in_order(const std::filesystem::path& folder,
                                                   const std::string& extension);
 
-// For each depth image its colour image, or an empty path. Where the folder has a file with the name of any
-// depth image, names decide: a depth image whose name is not there has no colour image. Otherwise the numbers
-// in the names do: frame-000007.color.png belongs to frame-000007.depth.png. Throws InputError, naming an
-// image of each kind, when no image or several have the numbers of another, and about the folder when it
-// holds only files of other kinds. Without the folder there are no colour images.
+// Returns the colour image of each depth image, or an empty path. If any colour image has the name of a depth
+// image, images are paired by name, and a depth image without a namesake has no colour image. Otherwise they
+// are paired by the numbers in their names: frame-000007.color.png belongs to frame-000007.depth.png. Throws
+// InputError, which names an image of each kind, when the numbers do not give exactly one partner, and when
+// the folder holds only files of other kinds. If there is no folder, there are no colour images.
 std::vector<std::filesystem::path> colour_images(const std::vector<std::filesystem::path>& depth,
                                                  const std::filesystem::path& folder);
 

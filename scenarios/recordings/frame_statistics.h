@@ -1,5 +1,5 @@
-// What a recording contained, counted over the frames that were read: a part of the line that a run prints
-// about its input, and notes about frames that may not be what the user meant.
+// Statistics of a recording, counted over the frames that were read. They give a part of the line that a run
+// prints about its input, and notes on frames that may not be what the user meant.
 #pragma once
 
 #include <cstddef>

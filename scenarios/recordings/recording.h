@@ -32,7 +32,7 @@ struct RecordingIndex {
   // Files that were read in addition to the frames, if they exist: camera.json, depth.txt, rgb.txt.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // of kind bag
-  // Of kind pcd: empty, or what the first file tells that is not used, in one line.
+  // For kind pcd: one line about a part of the first file that is not used, or empty.
   std::string remark;
 };
 

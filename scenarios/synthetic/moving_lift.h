@@ -39,7 +39,7 @@ class MovingLift final : public Scenario {
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));
   }
-  // Of the plane as it moves, whatever the frames.
+  // The height of the plane as it moves, also between frames.
   double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }
 
  private:

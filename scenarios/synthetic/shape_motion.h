@@ -46,7 +46,7 @@ class ShapeMotion {
 
   // Number of frames up to the first after the lift.
   int lift_frames() const { return lift_.frame_count(frame_rate_hz_); }
-  // Those of the lift; then all else that moves, which never ends.
+  // The phases of the lift, then one phase for all other motion, which never ends.
   std::vector<Phase> phases() const;
   bool ever_rests() const;
   bool is_a_lift_alone() const;  // neither rotated nor moved along x

@@ -14,7 +14,7 @@ inline constexpr std::size_t kMaxTextBytes = 16 << 20;
 // there, when it cannot be read, is longer than that, or a signal interrupts the wait for data.
 std::string read_text_file(const std::filesystem::path& file, const std::string& expected);
 
-// Without the mark that editors of Windows write in front of UTF-8.
+// Returns the text without a byte order mark, which some editors write in front of UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
 }  // namespace remote_touch

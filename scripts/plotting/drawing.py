@@ -164,7 +164,7 @@ def with_units(label, columns):
     names, units = ({getattr(column, field) for column in columns} for field in ("long_name", "units"))
     label = label or (names.pop() if len(names) == 1 else "")
     unit = units.pop() if len(units) == 1 else ""
-    written = re.search(r"[\[(/]|\bin\b", label) or label == unit
+    written = re.search(rf"[\[(/]|\bin {re.escape(unit)}\b", label) or label == unit
     return label if written or unit in ("", "1") else f"{label} [{unit}]".strip()
 
 

@@ -40,8 +40,8 @@ bool is_line(const std::vector<Vec3>& corners) {
   return max_area <= 1e-10 * max_length;
 }
 
-// From the side on which it runs counter-clockwise. A coordinate is left out and none computed: rounding
-// would bend straight edges.
+// Projects the polygon, seen from the side on which it runs counter-clockwise. One coordinate is dropped and
+// none is computed, because rounding would bend straight edges.
 std::vector<Vec2> seen_flat(const std::vector<Vec3>& corners, const Vec3& normal) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);

@@ -15,8 +15,8 @@ class LiveRows {
   std::size_t length() const { return trace_.length(); }
   void append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement);
 
-  // Those of the trace, in which force and torque are what the renderer commands, then device_force and, of a
-  // tool, device_torque: what was written to the device, behind the safety gate; and gate, its state.
+  // The columns of the trace, whose force and torque the renderer commands; device_force and, for a tool,
+  // device_torque, which the safety gate sent to the device; and gate, the state of the gate.
   std::vector<Column> columns() const;
 
  private:

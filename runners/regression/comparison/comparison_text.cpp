@@ -120,7 +120,7 @@ void print_measures(const SweepComparison& sweep, bool paired, std::FILE* out) {
   }
 }
 
-// Those of two traces that are not equal.
+// Prints the measures of two traces that are not equal.
 void print_measures(const std::vector<ValueComparison>& measures, std::FILE* out) {
   if (measures.empty()) return;
   std::size_t equal = 0;

@@ -43,7 +43,7 @@ struct MeasureJudgement {
   std::string name;
   Judgement judgement = Judgement::equal;
 };
-// Of all measures of traces that differ, or of sweeps, by the rule that judged the whole.
+// The judgements of all measures of two traces that differ, or of two sweeps, by the rule of the comparison.
 std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison);
 
 // "trace", "sweep", "figure" or "hashes", from the schema; the reader refuses another version. Throws

@@ -8,7 +8,7 @@
 
 namespace remote_touch {
 
-// What the numbers of a depth image are multiplied by, m: those of integers and those of floats.
+// The factors from the values of a depth image to metres, for integers and for floats.
 struct DepthUnits {
   double of_integers_m = 0.001;
   double of_floats_m = 1;
@@ -18,8 +18,8 @@ struct DepthUnits {
 bool is_depth_encoding(const std::string& encoding);
 inline constexpr const char* kDepthEncodings = "16UC1, mono16, Z16 or 32FC1";
 
-// What is 0, negative, not finite or beyond max_depth_m becomes NaN. Throws InputError about the subject for
-// another encoding, or when the data are shorter than height and step claim. At most 2^26 pixels.
+// A depth that is 0, negative, not finite or beyond max_depth_m becomes NaN. Throws InputError about the
+// subject for another encoding, or when the data are shorter than height and step claim. At most 2^26 pixels.
 DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
                               const std::string& subject);
 

@@ -56,8 +56,8 @@ struct PlumbBob {
   }
 };
 
-// Whether a lens of this model is a pinhole where all its coefficients are 0, or it has none. A fisheye is
-// not. RealSense writes the names with capitals.
+// True if a lens of this model is a pinhole when all its coefficients are 0 or missing. A fisheye is not.
+// RealSense writes the names with capitals.
 bool bends_by_coefficients_only(const std::string& model) {
   static const std::array<std::string_view, 9> kModels = {"",
                                                           "none",

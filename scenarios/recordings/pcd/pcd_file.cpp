@@ -203,7 +203,7 @@ bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   const auto each_column = [&](const auto& change) {
     change(cloud.x), change(cloud.y), change(cloud.z), change(cloud.colour);
   };
-  // As it is, from right to left, from the bottom to the top, and both.
+  // Tries the image as it is, mirrored left to right, upside down, and both.
   for (const bool upside_down : {false, true}) {
     if (upside_down) each_column([](auto& values) { std::reverse(values.begin(), values.end()); });
     for (const bool mirrored : {false, true}) {

@@ -91,7 +91,7 @@ TEST(JudgedInPairs, AFewThatGotMuchWorseAreWorse) {
   EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kSmaller), 1, true), Judgement::changed);
 }
 
-// Where one of two runs popped through, the other measures do not say which is better.
+// If one of two runs popped through, the other measures do not show which run is better.
 TEST(JudgedInPairs, RunsWithAnotherOutcomeAreJudgedByThatAlone) {
   SweepResult a = map(), b = a;
   for (SweepResult* one : {&a, &b}) one->measures[0].name = "popped_through", one->measures[1].name = "noise";

@@ -1,4 +1,4 @@
-// Which way each measure gets better.
+// The direction in which each measure gets better.
 #include "analysis/measures/better.h"
 
 #include <gtest/gtest.h>

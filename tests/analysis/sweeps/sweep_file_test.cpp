@@ -214,7 +214,7 @@ TEST(SweepInProgress, ThatIsReplacedWhileItIsReadIsReadAgain) {
   }
 }
 
-// As by a program that never stops.
+// The file is replaced as if by a program that never stops.
 TEST(SweepInProgress, ThatIsReplacedAllTheTimeIsRefused) {
   const TestFolder folder("sweep_file_test");
   const auto file = folder / "x.h5";

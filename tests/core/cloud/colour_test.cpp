@@ -29,7 +29,7 @@ TEST(Colour, TheCornersOfTheCubeAreKnown) {
   expect_colour(0xFFFFFF, 0, 0, 1);
 }
 
-// Of PCL: 0x00RRGGBB, or opaque 0xFFRRGGBB, of which those from 0xFF800001 on are a NaN.
+// PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. As floats, those from 0xFF800001 on are NaN.
 TEST(Colour, AFloatHoldsAColourOrNone) {
   for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00000u, 0xFFFFFFu})
     for (const std::uint32_t alpha : {0x00u, 0xFFu}) EXPECT_EQ(colour_of_float(alpha << 24 | rgb), rgb);

@@ -1,4 +1,4 @@
-// What the command `figure` prints of figures that are made side by side, and its exit code.
+// The output and the exit code of the command `figure` for figures that are made side by side.
 #include "runners/cli/figure_folder.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Figure nothing(const FigureContext&) {
   return {};
 }
 
-// By the names of figures that there are, whose claims have places in claims.json.
+// They have the names of real figures, because claims.json has an order of figures.
 const FigureEntry kFirst{"4.11", "the first", nothing, 1}, kSecond{"4.12", "the second", nothing, 2};
 const std::vector<FigureRun> kRuns = {{&kFirst}, {&kSecond}};
 
@@ -31,7 +31,7 @@ struct Told {
   int code = -1;
 };
 
-// As command_figure() makes them.
+// Makes the figures as command_figure() does.
 Told told(const std::filesystem::path& folder, const Claims& claims) {
   CommandLine line;
   line.quiet = true;

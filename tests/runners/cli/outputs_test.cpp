@@ -1,4 +1,4 @@
-// Which files a command may write: none twice, and none that it reads.
+// A command writes no file twice, and none that it reads.
 #include "runners/cli/outputs.h"
 
 #include <gtest/gtest.h>

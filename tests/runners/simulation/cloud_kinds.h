@@ -50,7 +50,7 @@ inline std::string validate(const Plate::Settings&) {
   return {};
 }
 
-// What a kind of cloud has, and how a run says that it is there.
+// The properties of a kind of cloud, and the settings that make it.
 struct Kind {
   std::string scenario;
   std::string press;  // 1 cm deep

@@ -57,7 +57,7 @@ struct RandomSweep {
   bool has_changes = false;
   std::string text;
 
-  // Whether no two of its parts meet.
+  // True if no two of its parts overlap.
   bool is_disjoint() const {
     std::vector<std::string> paths = axes;
     for (const Statement& each : set) paths.push_back(each.path);

@@ -120,7 +120,7 @@ TEST(OverwrittenValues, OfTheOwnExperimentAreRefused) {
   EXPECT_EQ(why_with(R"({"duration_s": 0.7})", {"experiment.haptic_rate_hz=900"}), "no InputError");
 }
 
-// What an axis changes of the experiment itself was never asked for; and the command line comes last.
+// An axis may replace a value of the experiment file, and --set may replace a value of `set`.
 TEST(OverwrittenValues, OthersAreAccepted) {
   expect_accepted({kNoise}, R"({"scenario": {"name": "moving-lift", "columns": 50}})");
   expect_accepted({kNoise}, R"({"scenario": {"name": "moving-lift"}, "scenario.columns": 50})");

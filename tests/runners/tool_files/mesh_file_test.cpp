@@ -98,7 +98,7 @@ TEST_F(MeshFileTest, ConcavePolygonsKeepTheirArea) {
   EXPECT_NEAR(surface_m2(u), 2 * 18 + 2 * (4 + 6 + 4 + 2 + 3 + 2 + 3 + 2), 1e-9);
 }
 
-// Before a repair, which would make some closed surface of it.
+// They are refused before the repair, which would make a closed surface of them.
 TEST_F(MeshFileTest, PolygonsThatCrossThemselvesAreRefused) {
   const fs::path file =
       folder_.write("u.obj", std::string(kU) + "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 15 14 16\n");
@@ -145,7 +145,7 @@ TEST_F(MeshFileTest, ByteOrderMarksArePassedOver) {
   EXPECT_TRUE(check("t.ply", kMark + ply).closed());
 }
 
-// What a tool does not use may be missing or wrong: texture coordinates, normals, materials.
+// Texture coordinates, normals and materials may be missing or wrong, because a tool does not use them.
 TEST_F(MeshFileTest, ObjFacesMayNameWhatIsMissing) {
   EXPECT_TRUE(
       check("cube.obj", "mtllib none.mtl\nvt 0.5 0.5\nvt\nvn 0 0 1\n" + kVertices +

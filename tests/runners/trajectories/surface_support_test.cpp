@@ -1,4 +1,4 @@
-// Where a device can touch a depth image, against plain loops that ask for each pixel whether it is there.
+// The pixels at which a device can touch a depth image, compared with plain loops over all pixels.
 #include "runners/trajectories/surface_support.h"
 
 #include <gtest/gtest.h>

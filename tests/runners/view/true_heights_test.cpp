@@ -70,7 +70,7 @@ TEST(TrueHeights, NoneWhereNothingIsKnown) {
   EXPECT_TRUE(true_heights(RisingPlane(0.1), left, ticks(0, 3)).empty());
 }
 
-// What the page draws at a time, over the node in the middle.
+// The height that the page draws at a time, over the node in the middle.
 double drawn_m(const TrueHeights& all, double time_s) {
   const auto height = [&](std::size_t t) {
     return static_cast<double>(all.height_m[(t * n + n / 2) * n + n / 2]);

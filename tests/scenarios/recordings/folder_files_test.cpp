@@ -1,4 +1,4 @@
-// Which colour image belongs to which depth image of a folder.
+// The pairing of colour images with depth images of a folder.
 #include "scenarios/recordings/folder_files.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is reported about the frames of a recording.
+// The report about the frames of a recording.
 #include "scenarios/recordings/frame_statistics.h"
 
 #include <gtest/gtest.h>

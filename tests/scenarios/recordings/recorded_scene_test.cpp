@@ -122,7 +122,7 @@ TEST(RecordedSceneTest, AFirstFrameOfNothingIsRefused) {
              "its first frame has no point");
 }
 
-// As a cloud in the coordinates of a map. A single point there is none.
+// A cloud in the coordinates of a map is refused. A single far point is not.
 TEST(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
   const TestFolder folder("recorded_scene_test");
   RecordedScene::Settings settings;

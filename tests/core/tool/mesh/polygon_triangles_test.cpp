@@ -37,7 +37,7 @@ void expect_covered(const Polygon& polygon) {
   EXPECT_NEAR(sum, whole.norm(), 1e-9 * whole.norm());
 }
 
-// From every corner on, in both directions, in the plane and in no plane in particular.
+// Checks the polygon with each corner as the first, in both directions, in several planes.
 void expect_covered_from_everywhere(Polygon polygon) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
@@ -49,7 +49,7 @@ void expect_covered_from_everywhere(Polygon polygon) {
   }
 }
 
-// Of a regular polygon, or a star for a step above one.
+// A regular polygon, or a star if the step is above one.
 Polygon around(int corners, int step) {
   Polygon polygon;
   for (int i = 0; i < corners; ++i) {

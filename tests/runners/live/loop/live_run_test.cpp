@@ -224,7 +224,7 @@ TEST(LiveRun, AnUnknownDeviceIsRefusedWithThoseThereAre) {
              "--device sim: expected SCHEME");
 }
 
-// By what the sensor says of its frames, before it sends one.
+// The refusal comes from what the sensor reports before its first frame.
 TEST(LiveRun, AToolWithoutNormalsIsRefusedBeforeItStarts) {
   const auto line = [](const std::string& experiment) {
     return refusal([&] { run_live(Experiment::from_json(experiment, "test"), options(0.1)); });

@@ -103,7 +103,7 @@ TEST_F(CompareSweepFiles, AnImprovementIsAChange) {
   EXPECT_HAS(junit_of(better), "name=\"popped_through\"><skipped message=\"1 of 240 runs outside");
 }
 
-// As many each way: neither is called.
+// Equally many runs got better and worse, so that the measure is neither.
 TEST_F(CompareSweepFiles, BothWaysAreUndecided) {
   write("a.h5", [](SweepResult& sweep) { event(sweep)[47] = 1, event(sweep)[48] = 0; });
   write("b.h5", [](SweepResult& sweep) { event(sweep)[47] = 0, event(sweep)[48] = 1; });
@@ -113,7 +113,7 @@ TEST_F(CompareSweepFiles, BothWaysAreUndecided) {
   EXPECT_HAS(junit_of(other), counts(3, 0, 0, 2));
 }
 
-// Of a program's own measure nobody knows.
+// A program's own measure has no direction by default.
 TEST_F(CompareSweepFiles, AMeasureWithoutADirectionIsOnlyAnother) {
   const auto as_own = [](double value) {
     return [value](SweepResult& sweep) { sweep.measures[1].name = "own", event(sweep)[47] = value; };

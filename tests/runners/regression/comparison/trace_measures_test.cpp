@@ -74,7 +74,7 @@ TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereOneRunPoppedThrough) {
   EXPECT_EQ(measure_in(better, "force_noise")["judgement"], "changed");
 }
 
-// What is the same has the same measures: they are not asked for.
+// Traces that are the same have the same measures, which are not computed.
 TEST_F(CompareMeasuresOfTraces, AreNoneWhereEveryColumnIsWithin) {
   ComparisonRules rules;
   rules.tolerances = {{"signed_distance", {1, 0}}};

@@ -1,4 +1,4 @@
-// Where the camera of a PCD file is.
+// The position of the camera of a PCD file.
 #include <gtest/gtest.h>
 
 #include <numbers>
