@@ -29,7 +29,23 @@ def unit_tests(build):
     for test in json.loads(listed.stdout)["tests"]:
         labels = [p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"]
         if labels == [["unit"]]:
-            yield Test(test["name"], test["command"][:2], "unit")
+            program, chosen = (*test["command"], "")[:2]
+            if not program.endswith("_tests"):
+                yield Test(test["name"], [program, chosen], "unit")
+            for name in names_in(program, chosen) if program.endswith("_tests") else ():
+                yield Test(f"{test['name']}.{name}", [program, f"--gtest_filter={name}"], "unit")
+
+
+def names_in(program, chosen):
+    """The names of the tests that a program of GoogleTest has."""
+    text = subprocess.run([program, chosen, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
+    suite = ""
+    for line in text.splitlines():
+        name = line.split("#")[0].rstrip()
+        if name.startswith("  "):
+            yield suite + name.strip()
+        elif name.endswith("."):
+            suite = name
 
 
 def listed(program, section):

@@ -98,7 +98,7 @@ def main():
         if code != 0:
             print("test: FAILED: the build (see above)")
             sys.exit(2)
-    names = [f"{re.escape(room)}\\." for room in with_tests] + [f"{test}$" for test in ALWAYS + of_program]
+    names = [f"{re.escape(room)}(\\..*)?$" for room in with_tests] + [f"{test}$" for test in ALWAYS + of_program]
     sys.exit(subprocess.run([ROOT / "scripts" / "testing" / "run_ctest.py", build, "-R", f"^({'|'.join(names)})",
                              "-LE", "^evidence$"], check=False).returncode)
 

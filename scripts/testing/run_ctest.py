@@ -3,9 +3,10 @@
 
 Usage: run_ctest.py BUILD_FOLDER [--jobs N] [--stop-after N] [CTEST_OPTION...]
 
-Prints what ctest prints. After --stop-after failures (default 10) the run ends. Then follow: the slowest tests, the first
+Prints what ctest prints, without the lines of GoogleTest about tests that passed. After --stop-after failures (default 10) the run ends. Then follow: the slowest tests, the first
 failure once more with its output, skips that tests/allowed_skips does not list, and one line with the counts.
-A skip that is not listed counts as a failure. Exit: 0 all passed, 1 not.
+A skip that is not listed counts as a failure. Of a program of GoogleTest each of its tests counts.
+Exit: 0 all passed, 1 not.
 """
 import argparse
 import os
@@ -19,7 +20,12 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULT = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) \.*( *Passed|\*\*\*\S+(?: \S+)?) +(\d+\.\d+) sec")
 NEXT_TEST = re.compile(r"^ *(Start +\d+: |\d+/\d+ Test +#\d+: |\d+% tests passed)")
-SKIPPED_PART = re.compile(r"^skipped ([^:]+): ")
+SKIPPED_PART = re.compile(r"^skipped ([^:]+): ", re.MULTILINE)
+BEGUN = re.compile(r"^\[ RUN      \] ")
+ENDED_WELL = re.compile(r"^\[       OK \] ")
+ENDS = {verdict: re.compile(r"\[" + word + r"\] (\S+?),?(?: .*)? \(\d+ ms")
+        for verdict, word in (("passed", "       OK "), ("failed", "  FAILED  "), ("skipped", "  SKIPPED "))}
+OUTPUT = re.compile(r"^\d+/\d+ Testing: (.*)$", re.MULTILINE)
 LONGEST_OUTPUT = 120  # lines of the first failure that are printed once more
 SLOWEST = 30
 HUNG_AFTER_S = "7200"  # ends a test that would never end; none takes so long on the slowest machine
@@ -52,12 +58,25 @@ class Watch:
             self.failed.append(name)
 
 
+def without_passed(lines):
+    """Leaves out the pairs of lines in which GoogleTest tells that a test begins and passes."""
+    begun = ""
+    for line in lines:
+        if begun and not ENDED_WELL.match(line):
+            yield begun
+        if not BEGUN.match(line) and not (begun and ENDED_WELL.match(line)):
+            yield line
+        begun = line if BEGUN.match(line) else ""
+    if begun:
+        yield begun
+
+
 def run(command, stop_after):
     """Runs ctest and ends it early after so many failures. Returns what was seen."""
     watch, ended_early = Watch(), False
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
                           cwd=ROOT, start_new_session=True) as ctest:
-        for line in ctest.stdout:
+        for line in without_passed(ctest.stdout):
             print(line, end="", flush=True)
             watch.read(line)
             if not ended_early and len(watch.failed) >= stop_after and not watch.in_first_failure:
@@ -76,13 +95,29 @@ def allowed_skips():
     return [re.compile(each.group(2)) for each in found if holds[each.group(1)]]
 
 
-def unlisted_skips(watch, build):
-    """Skipped tests, and skipped parts of tests that passed, that no line of the list allows."""
+def outputs(build):
+    """{test: what it printed} of the run that has just ended."""
     log = build / "Testing" / "Temporary" / "LastTest.log"
-    parts = [SKIPPED_PART.match(line) for line in log.read_text(errors="replace").splitlines()] if log.exists() else []
-    names = watch.skipped + [part.group(1) for part in parts if part]
-    allowed = allowed_skips()
-    return sorted({name for name in names if not any(each.fullmatch(name) for each in allowed)})
+    parts = OUTPUT.split(log.read_text(errors="replace")) if log.exists() else [""]
+    return {name: text.partition("\nOutput:\n")[2] for name, text in zip(parts[1::2], parts[2::2])}
+
+
+class Counts:
+    """How many tests passed, failed and were skipped; names of the skipped ones, also of skipped parts of a test."""
+
+    def __init__(self, watch, texts):
+        self.passed, self.failed, self.skips, parts = 0, 0, list(watch.skipped), []
+        for name in watch.passed + watch.failed:
+            found = {verdict: end.findall(texts.get(name, "")) for verdict, end in ENDS.items()}
+            within = [f"{name}.{each}" for each in found["skipped"]]
+            self.skips += within
+            parts += SKIPPED_PART.findall(texts.get(name, ""))
+            good = name in watch.passed
+            self.passed += len(found["passed"]) or int(good and not within)
+            self.failed += 0 if good else len(found["failed"]) or 1
+        self.skipped = len(self.skips)
+        allowed = allowed_skips()
+        self.unlisted = sorted({name for name in self.skips + parts if not any(each.fullmatch(name) for each in allowed)})
 
 
 def report(watch, code, build, seconds):
@@ -90,20 +125,20 @@ def report(watch, code, build, seconds):
     print(f"\nThe slowest {min(SLOWEST, len(watch.seconds))}:")
     for name in sorted(watch.seconds, key=watch.seconds.get, reverse=True)[:SLOWEST]:
         print(f"{watch.seconds[name]:8.1f} s  {name}")
-    unlisted = unlisted_skips(watch, build)
+    counts = Counts(watch, outputs(build))
     if watch.failed:
         print("\nThe first failure once more:")
         print("\n".join(watch.first_failure[:LONGEST_OUTPUT]))
         print("test: FAILED: " + ", ".join(watch.failed))
-    if unlisted:
-        print("test: FAILED: skipped, and not listed in tests/allowed_skips: " + ", ".join(unlisted))
+    if counts.unlisted:
+        print("test: FAILED: skipped, and not listed in tests/allowed_skips: " + ", ".join(counts.unlisted))
     if code != 0 and not watch.failed:
         print(f"test: FAILED: ctest ended with {code}")
     if not watch.passed:
         print("test: FAILED: no test passed")
     print(f"The tests took {seconds:.0f} s.")
-    print(f"{len(watch.passed)} passed, {len(watch.failed)} failed, {len(watch.skipped)} skipped", flush=True)
-    return not watch.failed and not unlisted and code == 0 and bool(watch.passed)
+    print(f"{counts.passed} passed, {counts.failed} failed, {counts.skipped} skipped", flush=True)
+    return not watch.failed and not counts.unlisted and code == 0 and bool(watch.passed)
 
 
 def main():
