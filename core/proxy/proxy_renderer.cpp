@@ -7,6 +7,7 @@
 #include "core/proxy/admissible_motion.h"
 #include "core/proxy/proxy_step.h"
 #include "core/proxy/region_exit.h"
+#include "core/rendering/elapsed_ticks.h"
 
 namespace remote_touch {
 
@@ -18,6 +19,7 @@ constexpr double kMaxHipDistance_m = 1e6;
 ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
     : p_(parameters),
       kernels_(kernels),
+      haptic_rate_hz_(haptic_rate_hz),
       near_(parameters.r3_m, kernels),
       velocity_(parameters.max_prediction_s),
       coupling_(parameters, haptic_rate_hz) {}
@@ -242,6 +244,7 @@ Vec3 ProxyRenderer::slave_command(const Vec3& hip_W, double time_s) {
 }
 
 Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderOutput& out) {
+  const double ticks = elapsed_ticks(std::exchange(force_time_s_, time_s), time_s, haptic_rate_hz_);
   const bool send =
       p_.force_gate == ForceGate::latest_contact ? in_contact_ : out.state == ContactState::contact;
   if (!send) {
@@ -251,7 +254,7 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
   const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
   // Bounded: when frames stop to come, the surface is no longer taken to go on.
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
-  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_);
+  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_, ticks);
 }
 
 // (5.8) as a weighted mean, where the points carry a stiffness; else the renderer's own.

@@ -3,7 +3,7 @@
 namespace remote_touch {
 
 Vec3 VirtualCoupling::force(const Vec3& u, double since_frame_s, const Vec3& velocity,
-                            double stiffness_N_per_m) {
+                            double stiffness_N_per_m, double ticks) {
   // Between updates the surface goes on along v_hat, and so would the proxy: with u = HIP - P the term is
   // subtracted.
   Vec3 u_hat = u;
@@ -11,7 +11,7 @@ Vec3 VirtualCoupling::force(const Vec3& u, double since_frame_s, const Vec3& vel
   if (p_.velocity_force == VelocityForce::plus) u_hat += since_frame_s * velocity;
 
   const double length = u_hat.norm();
-  const double rate = has_previous_ ? haptic_rate_hz_ * (length - previous_length_) : 0;
+  const double rate = has_previous_ ? haptic_rate_hz_ * (length - previous_length_) / ticks : 0;
   previous_length_ = length;
   has_previous_ = true;
   if (!(length > p_.contact_radius_m())) return Vec3::Zero();

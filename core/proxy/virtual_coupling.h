@@ -13,8 +13,11 @@ class VirtualCoupling {
       : p_(parameters), haptic_rate_hz_(haptic_rate_hz) {}
 
   // (4.15), (4.16): the force on the hand, N, towards the proxy (a damper can reverse it); zero while |u_hat|
-  // of (4.15) is r_c or less. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector.
-  Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m);
+  // of (4.15) is r_c or less. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector, ticks = the
+  // number of ticks since the last call, more than 1 after missed ones: the damper's rate is a difference
+  // over all of them.
+  Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m,
+             double ticks = 1);
   // No contact: the next force starts without a finite difference.
   void release() { has_previous_ = false; }
   // r1 and r2 of Table 4.2, whose mean is r_c.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/proxy/proxy_step.h"
+#include "core/rendering/elapsed_ticks.h"
 
 namespace remote_touch {
 
@@ -34,8 +35,9 @@ PenaltyRenderer::PenaltyRenderer(const PenaltyParameters& parameters, double hap
       haptic_rate_hz_(haptic_rate_hz) {}
 
 void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  const double ticks = elapsed_ticks(std::exchange(previous_time_s_, time_s_), time_s_, haptic_rate_hz_);
   const Vec3 velocity =
-      has_previous_ ? Vec3(haptic_rate_hz_ * (hip_W - previous_hip_W_)) : Vec3(Vec3::Zero());
+      has_previous_ ? Vec3(haptic_rate_hz_ * (hip_W - previous_hip_W_) / ticks) : Vec3(Vec3::Zero());
   previous_hip_W_ = proxy_W_ = hip_W;
   has_previous_ = true;
 

@@ -51,6 +51,7 @@ class PenaltyRenderer final : public RivalRenderer {
   PenaltyParameters p_;
   double haptic_rate_hz_;
   Vec3 previous_hip_W_ = Vec3::Zero();
+  double previous_time_s_ = 0;
   bool has_previous_ = false;
 };
 

@@ -16,7 +16,8 @@ void RivalRenderer::on_frame(const Frame& frame) {
   usable_ = take(*points);
 }
 
-RenderOutput RivalRenderer::step(const DeviceState& device, double) {
+RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {
+  time_s_ = time_s;
   const Vec3& hip_W = device.position_W;
   RenderOutput out;
   out.frame_index = order_.newest();

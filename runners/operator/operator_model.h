@@ -2,6 +2,7 @@
 // device's force moves. Not in the dissertation, whose operators were people.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/rendering/frame.h"
 #include "core/tool/dynamics/tool_pose.h"
 #include "core/tool/dynamics/wrench_coupling.h"
+#include "runners/operator/held_force_step.h"
 
 namespace remote_touch {
 
@@ -27,26 +29,42 @@ Parameters parameters(OperatorSettings& s);
 std::string validate(const OperatorSettings& s);
 
 // m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
-// grip; rotations likewise, with the inertia inertia_kg_m2 about every axis. Semi-implicit steps of one tick,
-// with the springs at its start and the damper at its end: stable for k tick^2 < 4 m, which validate()
-// requires at 100 ticks a second.
+// grip: the hand's spring and damper to the intended position have g k and g c, and (1 - g) c damps the
+// motion of a hand that lets go. Rotations have the same form about the pose at the beginning of the tick,
+// with rotation vectors in world axes and the inertia inertia_kg_m2 about every axis.
+//
+// In a tick f and g are constant and x_i is linear in time. The solution is exact (HeldForceStep): the device
+// is a zero-order hold, which gives energy to a hand that a spring pushes, so a stiff device can make it
+// unstable.
 class OperatorModel {
  public:
+  // pre: validate(settings) is empty.
   OperatorModel(const OperatorSettings& settings, double tick_s);
 
-  // Advances one tick: the hand's pose at time_s, if the path is at `intended` and the device exerted
-  // device_wrench since the last tick. The first call puts the hand onto the path. Buttons come from the
-  // settings.
+  // Returns the hand's pose at time_s, if the path is at `intended` then and the device has exerted
+  // device_wrench since the last call. After n ticks without a call it makes one step of n ticks. The first
+  // call puts the hand onto the path, at rest. Buttons come from the settings.
   DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
 
+  // The energies of the last step, translation and rotation; zero before the second call. What a change of
+  // the grip between two ticks adds to the springs, half the change of the stiffness times the squared
+  // distance, is not in them.
+  StepEnergy last_energy() const;
+
  private:
+  void prepare(double grip, double duration_s);
   std::uint32_t buttons(double time_s) const;
 
   const OperatorSettings s_;
   const double tick_s_;
-  bool placed_ = false;
-  ToolPose pose_, intended_;  // intended_: one tick ago
+  ToolPose pose_, intended_;  // of the last call
   Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
+  std::optional<double> last_time_s_;
+
+  // The last step, for translation and rotation, and what it was made for.
+  std::optional<HeldForceStep> step_, turning_step_;
+  double grip_ = 0, duration_s_ = 0;
+  HeldForceStep::Start start_, turning_start_;
 };
 
 }  // namespace remote_touch

@@ -31,7 +31,7 @@ class SimulatedDevice final : public HapticDevice {
   }
 
  private:
-  // After a longer pause the hand restarts at the present time.
+  // After a longer pause the hand passes the time before these ticks in one step.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::unique_ptr<const Trajectory> script_;

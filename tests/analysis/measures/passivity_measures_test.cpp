@@ -105,6 +105,20 @@ TEST(PassivityMeasures, EnergyPerUpdateIsOfWholePiecesWithForce) {
   EXPECT_TRUE(std::isnan(max_energy_per_update_J(trace_of({}))));
 }
 
+// Updates at 1, 3 and 5; the renderer always commands a force, and the device exerts one in the second piece.
+TEST(PassivityMeasures, APieceWithACommandThatNoMotorExertsDoesNotCount) {
+  Trace trace;
+  for (int i = 0; i < 7; ++i) {
+    RenderOutput out;
+    out.force_N = {3, 0, 0};
+    out.frame_index = (i + 1) / 2;
+    HandState hand;
+    hand.force_N = {0, i == 3 || i == 4 ? 2.0 : 0.0, 0};
+    trace.append(0.001 * i, {Vec3(0.01 * i, 0.01 * i, 0)}, out, {}, hand);
+  }
+  EXPECT_NEAR(mean_energy_per_update_J(trace), 2 * 2 * 0.01, 1e-17);
+}
+
 // Updates at 1, 3 and 5; the hand turns by 0.1 rad a tick, and the tool exerts a torque of 0.5 N m between
 // the first two of them alone, and never a force.
 TEST(PassivityMeasures, APieceWithATorqueAloneHasItsEnergy) {

@@ -99,6 +99,17 @@ TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
   EXPECT_NEAR(pull_N(0.007), expected_N(0.007, 0.003), 1e-12);
 }
 
+// After missed ticks the rate is a difference over all of them, not n times too large.
+TEST(VirtualCoupling, TheDamperSpreadsADifferenceOverMissedTicks) {
+  const double damping = 5;
+  for (const double ticks : {1.0, 2.0, 40.0}) {
+    VirtualCoupling c = coupling(damping);
+    still(c, {0, -0.010, 0});
+    const Vec3 force = c.force({0, -0.011, 0}, 0, Vec3::Zero(), kStiffness, ticks);
+    EXPECT_NEAR(force.y(), kStiffness * (0.011 - kContactRadius) + damping * 0.001 * kRate / ticks, 1e-11);
+  }
+}
+
 // HIP distance 2 cm + 5 mm sin(2 pi t), sampled at the haptic rate.
 double distance(double time) {
   return 0.02 + 0.005 * std::sin(6.283185307179586 * time);

@@ -73,6 +73,14 @@ TEST(PenaltyRenderer, TheDamperSlowsAlongTheNormalAndNeverPulls) {
   EXPECT_TRUE(force(r, {0, 0.0049, 0}, 0.002).isZero(0)) << "out at 1.4 m/s: the damper would pull";
 }
 
+TEST(PenaltyRenderer, TheDamperSpreadsADifferenceOverMissedTicks) {
+  PenaltyParameters p;
+  p.damping_Ns_per_m = 2;
+  PenaltyRenderer r = over(point_at(Vec3::Zero()), p);
+  force(r, {0, 0.004, 0}, 0);
+  EXPECT_NEAR(force(r, {0, 0.003, 0}, 0.004).y(), kStiffness_N_per_m * 0.002 + 2 * 0.25, 1e-9);
+}
+
 // (5.5), (5.8): a point with a region and a stiffness of its own.
 TEST(PenaltyRenderer, TakesRegionsAndStiffnessOfThePoints) {
   PointCloud cloud = point_at(Vec3::Zero());

@@ -1,0 +1,15 @@
+// How many ticks passed between two calls of a renderer or of a simulated hand.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace remote_touch {
+
+// The number of ticks from before_s to now_s, rounded: 1 if none was missed, and also where the time stands
+// still, goes back or is NaN.
+inline double elapsed_ticks(double before_s, double now_s, double haptic_rate_hz) {
+  return std::max(1.0, std::floor((now_s - before_s) * haptic_rate_hz + 0.5));
+}
+
+}  // namespace remote_touch
