@@ -7,6 +7,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/contact_point.h"
 #include "analysis/measures/force_change_measures.h"
+#include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/perceived_force_measures.h"
@@ -94,6 +95,14 @@ constexpr Row kMeasures[] = {
      contact_force_fraction},
     {"contact_known_fraction", "1", "fraction of the settled ticks with a known truth", contact, neither,
      contact_known_fraction},
+    {"mean_lateral_force", "1",
+     "mean ratio of the force along the true surface to the force along its normal, in contact", true_normal,
+     smaller, mean_lateral_force},
+    {"lateral_force_95", "1",
+     "95th percentile of the ratio of the force along the true surface to that along its normal, in contact",
+     true_normal, smaller, lateral_force_95},
+    {"mean_force_angle", "rad", "mean angle between the force and the normal of the true surface, in contact",
+     true_normal, smaller, mean_force_angle_rad},
     {"jump_fraction_5", "1", "fraction of the frame updates at which the force changes by more than 5 %", all,
      smaller, [](const Trace& trace) { return felt_jump_fraction(trace, 0.05); }},
     {"jump_fraction_10", "1", "fraction of the frame updates at which the force changes by more than 10 %",
@@ -169,6 +178,8 @@ const char* name_of(MeasuredRuns runs) {
       return "runs with a tool";
     case guidance:
       return "runs with guidance";
+    case true_normal:
+      return "runs with a known true normal";
     default:
       return "all runs";
   }
@@ -184,9 +195,16 @@ bool applies(const Measure& measure, const Trace& trace) {
       return trace.has_tool();
     case guidance:
       return trace.has_guidance();
+    case true_normal:
+      return std::any_of(trace.true_normal.begin(), trace.true_normal.end(),
+                         [](const Vec3& normal) { return normal.allFinite(); });
     default:
       return true;
   }
+}
+
+bool needs_true_contact(const Measure& measure) {
+  return measure.runs == contact || measure.runs == true_normal;
 }
 
 double value_of(const Measure& measure, const Trace& trace) {

@@ -40,8 +40,9 @@ double non_finite_fraction(const Trace& trace);
 double max_force_N(const Trace& trace);
 
 // The runs in which a measure means something: all, those of a point proxy, those of them for which
-// Trace::contact was computed, those with a tool, those with guidance.
-enum class MeasuredRuns { all, proxy, contact, tool, guidance };
+// Trace::contact was computed, those with a tool, those with guidance, those for which Trace::true_normal was
+// computed and is known in some tick.
+enum class MeasuredRuns { all, proxy, contact, tool, guidance, true_normal };
 
 // A measure that needs only a trace, by name: for summaries and for sweeps.
 struct Measure {
@@ -57,6 +58,8 @@ struct Measure {
 // runners/experiment/catalog.h.
 const std::vector<Measure>& built_in_measures();
 bool applies(const Measure& measure, const Trace& trace);
+// It needs rows that no column has: Trace::contact or Trace::true_normal.
+bool needs_true_contact(const Measure& measure);
 const char* name_of(MeasuredRuns runs);  // "all runs", "runs without a tool", ...
 // NaN where the measure does not apply.
 double value_of(const Measure& measure, const Trace& trace);

@@ -131,6 +131,7 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
 #include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
   if (truth.contact) contact.push_back(*truth.contact);
+  if (truth.normal) true_normal.push_back(*truth.normal);
 }
 
 std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column) {

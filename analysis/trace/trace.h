@@ -35,6 +35,9 @@ struct Trace {
     double slave_distance_m = 0;              // and of the slave's command
     std::uint64_t frame_hash = 0;             // of the newest frame delivered; 0 if it was not computed
     std::optional<TrueContact> contact = {};  // computed only where a measure asks for it
+    // Unit normal of the true surface where the renderer touches, towards the free side; NaN where it is not
+    // known or nothing is touched. Computed only where a measure asks for it.
+    std::optional<Vec3> normal = {};
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
               const std::optional<HandState>& hand = {});
@@ -43,6 +46,7 @@ struct Trace {
   bool has_guidance() const { return !guidance_goal_m.empty(); }
   bool has_hand() const { return !intended_position_m.empty(); }
   bool has_contact() const { return !contact.empty(); }
+  bool has_true_normal() const { return !true_normal.empty(); }
   // A new frame came in with tick i.
   bool frame_update(std::size_t i) const { return i > 0 && frame_index[i] != frame_index[i - 1]; }
 
@@ -57,6 +61,7 @@ struct Trace {
 
   // Rows for measures alone: no column, because stored traces have none. Empty unless it was computed.
   std::vector<TrueContact> contact;
+  std::vector<Vec3> true_normal;  // Truth::normal
 };
 
 // Which runs have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
@@ -77,8 +82,9 @@ struct TraceColumn {
 // Every column that a trace can have, in order.
 const std::vector<TraceColumn>& trace_columns();
 
-// The trace of stored columns, asked for by name one after the other; `contact`, which no column has, is
-// empty. None where a column of its runs is missing, or one is of another kind, width or length.
+// The trace of stored columns, asked for by name one after the other; `contact` and `true_normal`, which no
+// column has, are empty. None where a column of its runs is missing, or one is of another kind, width or
+// length.
 std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column);
 
 }  // namespace remote_touch

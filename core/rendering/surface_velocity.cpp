@@ -14,6 +14,7 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
   has_frame_ = true;
   normal_ = normal;
   awaits_step_ = interval_s_ > 0;
+  set_horizon();
   return carried * normal_;
 }
 
@@ -26,8 +27,9 @@ void SurfaceVelocity::on_step(const Vec3& step) {
   velocity_m_per_s_ = std::max(0.0, moved_m / interval_s_);
 }
 
-double SurfaceVelocity::horizon_s() const {
-  return std::max(max_interval_s_, interval_s_);
+void SurfaceVelocity::set_horizon() {
+  horizon_s_ = std::max(max_interval_s_, usual_interval_.without_pause(interval_s_));
+  usual_interval_.add(interval_s_);
 }
 
 void SurfaceVelocity::on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal) {
@@ -37,6 +39,7 @@ void SurfaceVelocity::on_measured(double captured_s, double velocity_m_per_s, co
   awaits_step_ = false;
   velocity_m_per_s_ = velocity_m_per_s;
   normal_ = normal;
+  set_horizon();
 }
 
 }  // namespace remote_touch

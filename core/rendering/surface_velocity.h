@@ -3,13 +3,15 @@
 #pragma once
 
 #include "core/geometry/vector.h"
+#include "core/rendering/usual_interval.h"
 
 namespace remote_touch {
 
 class SurfaceVelocity {
  public:
   // max_interval_s bounds how far ahead (4.3) extrapolates when frames are missing.
-  explicit SurfaceVelocity(double max_interval_s) : max_interval_s_(max_interval_s) {}
+  explicit SurfaceVelocity(double max_interval_s)
+      : max_interval_s_(max_interval_s), horizon_s_(max_interval_s) {}
 
   // A new frame, with the normal estimated just before it. Returns the correction s_j of (4.3), to be added
   // to the proxy. The interval is the time between the two frames' captures: 1/f_c for a steady stream.
@@ -30,15 +32,19 @@ class SurfaceVelocity {
   double m_per_s() const { return velocity_m_per_s_; }
   // v_hat as a vector, along the normal of the last frame.
   Vec3 vector() const { return velocity_m_per_s_ * normal_; }
-  // How long after a frame v_hat may be trusted: max_interval_s, or the stream's own interval when that
-  // is longer.
-  double horizon_s() const;
+  // How long after a frame v_hat may be trusted, s: max_interval_s, or the newest interval without pauses
+  // when that is longer.
+  double horizon_s() const { return horizon_s_; }
 
  private:
+  void set_horizon();
+
   double max_interval_s_;
+  double horizon_s_;
   double velocity_m_per_s_ = 0;  // v_0 = 0
   double captured_s_ = 0;
-  double interval_s_ = 0;          // since the frame before the last step; 0 before the second frame
+  double interval_s_ = 0;  // since the frame before the last step; 0 before the second frame
+  UsualInterval usual_interval_;
   double frame_correction_m_ = 0;  // how far the proxy was moved along the normal in that time
   double growth_m_ = 0;            // of regions, in that time
   Vec3 normal_ = Vec3::Zero();

@@ -52,9 +52,10 @@ void TrackedSheetRenderer::on_frame(const Frame& frame) {
   if (update.points) {
     shown_ = std::move(update.points);
     captured_s_ = frame.captured_s, has_frame_ = true;
+    usual_interval_.add(interval_s);
     hold_until_s_ = std::numeric_limits<double>::infinity();
   } else if (std::isinf(hold_until_s_)) {  // the sheet is missing: what was shown stays for a while
-    hold_until_s_ = frame.arrives_s + max_hold_frames_ * interval_s;
+    hold_until_s_ = frame.arrives_s + max_hold_frames_ * usual_interval_.without_pause(interval_s);
   }
   proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, shown_},
                   {update.displacement_m, update.velocity_m_per_s, update.normal_W});

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/proxy/proxy_renderer.h"
+#include "core/rendering/usual_interval.h"
 #include "core/tracked_sheet/sheet_tracker.h"
 
 namespace remote_touch {
@@ -47,6 +48,7 @@ class TrackedSheetRenderer final : public Renderer {
   SheetTracker tracker_;
   std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
   double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
+  UsualInterval usual_interval_;                  // of these frames
   double hold_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the proxy is where the HIP was

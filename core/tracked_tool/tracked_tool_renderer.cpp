@@ -78,12 +78,14 @@ void TrackedToolRenderer::on_frame(const Frame& frame) {
     measured_ = std::move(measured);
     if (!update.motion.displacement.isZero(0)) pose = moved(pose, update.motion.displacement);
     shown_ = placed_ ? shown_points(pose) : measured_;
+    if (has_frame_) usual_interval_.add(frame.captured_s - captured_s_);
     captured_s_ = frame.captured_s, has_frame_ = true;
     hold_until_s_ = std::numeric_limits<double>::infinity();
   } else {  // what holds the tool is missing: what was shown stays for a while
     newest_ = std::move(measured);
     if (std::isinf(hold_until_s_))
-      hold_until_s_ = frame.arrives_s + max_hold_frames_ * (frame.captured_s - captured_s_);
+      hold_until_s_ =
+          frame.arrives_s + max_hold_frames_ * usual_interval_.without_pause(frame.captured_s - captured_s_);
   }
   tool_.on_frame(frame, shown_, update.motion);
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "core/rendering/usual_interval.h"
 #include "core/tool/motion/tool_renderer.h"
 #include "core/tracked_sheet/sheet_settings.h"
 #include "core/tracked_tool/sheet_patches.h"
@@ -58,6 +59,7 @@ class TrackedToolRenderer final : public Renderer {
   std::shared_ptr<TiledCloud> changed_[2] = {std::make_shared<TiledCloud>(), std::make_shared<TiledCloud>()};
   int present_ = 0;
   double captured_s_ = 0;                                          // of the newest frame that is shown
+  UsualInterval usual_interval_;                                   // of these frames
   double hold_until_s_ = std::numeric_limits<double>::infinity();  // while what holds the tool is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the tool is where the device was

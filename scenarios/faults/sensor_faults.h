@@ -59,6 +59,10 @@ class FaultySensor final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return scenario_->signed_distance(p_W, time_s);
   }
+  Vec3 true_normal(const Vec3& p_W, double time_s) const override {
+    return scenario_->true_normal(p_W, time_s);
+  }
+  std::optional<Vec3> plane_normal(double time_s) const override { return scenario_->plane_normal(time_s); }
   double truth_time_s(double time_s) const override { return scenario_->truth_time_s(time_s); }
   double surface_height(double x, double z, double time_s) const override {
     return scenario_->surface_height(x, z, time_s);

@@ -8,7 +8,7 @@ namespace remote_touch {
 
 // A remark on a run that the user should read: the run is valid, but it may not be what was meant.
 struct Note {
-  std::string kind;  // a few words, the same for all notes of this kind: "no contact"
+  std::string kind;  // the same for all notes of this kind, see note_kinds(): "no contact"
   std::string text;  // one line
 };
 

@@ -1,6 +1,7 @@
 #include "scenarios/interface/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace remote_touch {
 
@@ -11,6 +12,22 @@ int Scenario::newest_frame(double time_s) const {
   while (frame > 0 && captured_s(frame) > time_s + kSameTime_s) --frame;
   while (frame < last && captured_s(frame + 1) <= time_s + kSameTime_s) ++frame;
   return frame;
+}
+
+// A distance has a gradient of length 1, except where the nearest point of the surface changes: differences
+// across such a place are shorter. The limit allows curvature (1 - length is about 7e-5 at a radius of 5 mm)
+// and finds every crease whose sides meet at more than 5 degrees.
+Vec3 Scenario::true_normal(const Vec3& p_W, double time_s) const {
+  constexpr double kStep_m = 1e-4, kMaxShortening = 1e-3;
+  Vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kStep_m * Vec3::Unit(axis);
+    gradient[axis] =
+        (signed_distance(p_W + step, time_s) - signed_distance(p_W - step, time_s)) / (2 * kStep_m);
+  }
+  const double length = gradient.norm();
+  if (!(std::abs(length - 1) <= kMaxShortening)) return Vec3::Constant(std::nan(""));
+  return gradient / length;
 }
 
 }  // namespace remote_touch

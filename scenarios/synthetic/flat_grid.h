@@ -24,6 +24,7 @@ class FlatGrid final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   double signed_distance(const Vec3& p_W, double) const override { return p_W.y(); }
+  std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double) const override { return 0; }
 
  private:

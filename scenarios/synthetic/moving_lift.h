@@ -41,6 +41,7 @@ class MovingLift final : public Scenario {
   }
   // The height of the plane as it moves, also between frames.
   double surface_height(double, double, double time_s) const override { return lift_.height_m(time_s); }
+  std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
 
  private:
   double height_m(int frame) const { return lift_.height_of_frame_m(frame, settings_.frame_rate_hz); }

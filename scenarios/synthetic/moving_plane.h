@@ -34,6 +34,7 @@ class MovingPlane final : public Scenario {
   PointCloud cloud(int frame) const override;
   // Height over the plane as it is at that time, between frames too.
   double signed_distance(const Vec3& p_W, double time_s) const override { return p_W.y() - height(time_s); }
+  std::optional<Vec3> plane_normal(double) const override { return Vec3::UnitY(); }
   double surface_height(double, double, double time_s) const override { return height(time_s); }
 
  private:

@@ -121,11 +121,18 @@ PointCloud MovingShape::cloud(int frame) const {
   return cloud;
 }
 
+ShapePose MovingShape::true_pose(double time_s) const {
+  return settings_.truth == Truth::moving ? motion_.at(time_s) : motion_.of_frame(newest_frame(time_s));
+}
+
 double MovingShape::signed_distance(const Vec3& p_W, double time_s) const {
-  const int frame = newest_frame(time_s);
-  if (has_vanished(frame)) return std::numeric_limits<double>::quiet_NaN();
-  const bool moving = settings_.truth == Truth::moving;
-  return shape_.signed_distance((moving ? motion_.at(time_s) : motion_.of_frame(frame)).to_S(p_W));
+  if (has_vanished(newest_frame(time_s))) return std::numeric_limits<double>::quiet_NaN();
+  return shape_.signed_distance(true_pose(time_s).to_S(p_W));
+}
+
+std::optional<Vec3> MovingShape::plane_normal(double time_s) const {
+  if (settings_.shape.kind != Shape::Kind::flat || has_vanished(newest_frame(time_s))) return {};
+  return true_pose(time_s).turned(Vec3::UnitY());
 }
 
 double MovingShape::surface_height(double x, double z, double time_s) const {

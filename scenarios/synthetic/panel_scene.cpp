@@ -14,4 +14,10 @@ double PanelScene::signed_distance(const Vec3& p_W, double time_s) const {
   return remote_touch::signed_distance(panels(time_s), p_W);
 }
 
+std::optional<Vec3> PanelScene::plane_normal(double time_s) const {
+  const std::vector<FlatPanel> all = panels(time_s);
+  if (all.size() != 1) return {};
+  return all.front().normal;
+}
+
 }  // namespace remote_touch

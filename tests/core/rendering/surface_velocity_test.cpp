@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 
 namespace remote_touch::surface_velocity_test {
 namespace {
@@ -148,6 +149,35 @@ TEST(SurfaceVelocity, IsTrustedForAFrameIntervalOfASlowStream) {
   EXPECT_EQ(horizon_after(0), 0.1) << "the first frame has no interval";
   for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(0.25), 0.25);
   for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(kInterval), 0.1);
+}
+
+// Estimated and measured, with frames after these intervals, the first frame before them.
+double horizon_after(std::initializer_list<double> intervals_s) {
+  SurfaceVelocity estimated(0.1), measured(0.1);
+  double time_s = 3;
+  const auto add_frame = [&] {
+    estimated.on_frame(time_s, kUp), estimated.on_step(0.001 * kUp);
+    measured.on_measured(time_s, 0.2, kUp);
+  };
+  add_frame();
+  for (const double interval_s : intervals_s) time_s += interval_s, add_frame();
+  EXPECT_EQ(measured.horizon_s(), estimated.horizon_s());
+  return estimated.horizon_s();
+}
+
+// If the stream stops again right after a pause of a minute, (4.15) must not grow for another minute.
+TEST(SurfaceVelocity, APauseOfTheStreamIsNoInterval) {
+  EXPECT_EQ(horizon_after({kInterval, kInterval, 60}), 0.1);
+  EXPECT_EQ(horizon_after({0.25, 0.25, 60}), 0.75) << "three of its intervals";
+  EXPECT_EQ(horizon_after({0.25, 0.25, 60, 0.25}), 0.25);
+  EXPECT_EQ(horizon_after({0.25, 60, 0, 60}), 2.25)
+      << "frames without an interval say nothing about the rate";
+}
+
+TEST(SurfaceVelocity, LostFramesAndASlowerStreamAreIntervals) {
+  for (const double lost : {0.25, 0.5, 0.75}) EXPECT_EQ(horizon_after({0.25, lost}), lost);
+  EXPECT_EQ(horizon_after({60}), 60) << "nothing is known of a stream with two frames";
+  EXPECT_EQ(horizon_after({0.125, 2, 2, 2}), 2) << "0.375, 1.125, 2";
 }
 
 // More frames than steps: they count as one, over their whole time.

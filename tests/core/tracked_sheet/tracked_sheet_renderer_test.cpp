@@ -57,5 +57,28 @@ TEST_F(LostSheet, FurtherMissedFramesDoNotProlongIt) {
   EXPECT_EQ(step(-0.005, 4 * kInterval_s), 0);
 }
 
+// The first frame after a minute without frames does not show the sheet, and no other frame follows: the
+// sheet is held for as long as after the longest interval that is no pause, not for two minutes.
+TEST(TrackedSheetRenderer, APauseDoesNotProlongTheTimeForWhichALostSheetIsHeld) {
+  TrackedSheetParameters p;
+  p.sheet.max_missed_frames = 2;
+  TrackedSheetRenderer renderer(p, 1000, scenes::kernels());
+  renderer.reserve(20000);
+  const auto force_N = [&](double y, double time_s) {
+    return renderer.step({.position_W = Vec3(0, y, 0)}, time_s).force_N.norm();
+  };
+  const PointCloud seen = scenes::flat_grid(60);
+  renderer.on_frame(frame_at(0, seen));
+  for (double y = 0.01; y > -0.005; y -= 2e-4) force_N(y, 0.1);
+  renderer.on_frame(frame_at(1, seen));
+  ASSERT_GT(force_N(-0.005, 0.3), 1);
+  Frame late = scenes::frame({}, 2);
+  late.captured_s = late.arrives_s = 60;
+  renderer.on_frame(late);
+  const double until_s = 60 + 2 * UsualInterval::kLongest * kInterval_s;
+  EXPECT_GT(force_N(-0.005, std::nextafter(until_s, 0.0)), 1);
+  EXPECT_EQ(force_N(-0.005, until_s), 0);
+}
+
 }  // namespace
 }  // namespace remote_touch::tracked_sheet_renderer_test

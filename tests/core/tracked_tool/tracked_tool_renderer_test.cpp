@@ -259,6 +259,21 @@ TEST(TrackedTool, AMissingSurfaceHoldsForOneFrame) {
   EXPECT_EQ(held_m(11), -0.003);
 }
 
+// A minute without frames, then one without the surface, and no other: the surface is held for three frames,
+// not for another minute.
+TEST(TrackedTool, APauseDoesNotProlongTheTimeForWhichAMissingSurfaceIsHeld) {
+  TrackedToolRenderer r = renderer();
+  Panels panels(0);
+  const PointCloud floor = panels.add({0, 0, 0}, Eigen::Quaterniond::Identity()).take();
+  for (int frame = 0; frame < 6; ++frame) {
+    r.on_frame(frame_at(frame, floor));
+    ticks(r, frame, approaching(frame, Vec3::UnitY(), device({0, -0.003, 0})));
+  }
+  r.on_frame(frame_at(1800, {}));
+  EXPECT_NEAR(ticks(r, 1802, device({0, -0.003, 0})).proxy_W.y(), kHalf_m.y(), 1e-4);
+  EXPECT_EQ(ticks(r, 1804, device({0, -0.003, 0})).proxy_W.y(), -0.003);
+}
+
 TEST(TrackedTool, FramesAndTicksAllocateNothing) {
   TrackedToolRenderer r = renderer();
   Panels panels(0.4 * kUnit_m, 4);

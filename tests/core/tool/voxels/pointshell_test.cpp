@@ -3,18 +3,32 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/support/box_tool.h"
 
 namespace remote_touch::pointshell_test {
 namespace {
 
+// Number of cubes that have voxels of the shell of a box around the origin: all cubes with voxels of the box,
+// without those that have no outermost voxel, which are all but the first and the last along each axis.
+std::size_t shell_cubes(const Vec3& half_m, double voxel_m, double spacing_m) {
+  double all = 1, inner = 1;
+  for (const double half : half_m) {
+    const double cubes = 2 * (std::floor((half - 0.5 * voxel_m) / spacing_m) + 1);
+    all *= cubes, inner *= cubes - 2;
+  }
+  return static_cast<std::size_t>(all - inner);
+}
+
 TEST(Pointshell, OfABoxLiesOnItsFacesWithNormalsInto) {
   const Vec3 half_m(0.02, 0.005, 0.01);
-  const auto tool = scenes::box_tool(half_m);
+  constexpr double kVoxel_m = 5e-4;
+  const auto tool = scenes::box_tool(half_m, kVoxel_m);
   for (const double spacing_m : {0.002, 0.003}) {
     const Pointshell shell = make_pointshell(*tool, spacing_m);
-    const double faces_m2 = 8 * (half_m.x() * half_m.y() + half_m.y() * half_m.z() + half_m.z() * half_m.x());
-    EXPECT_NEAR(static_cast<double>(shell.size()) * spacing_m * spacing_m / faces_m2, 1, 0.35) << spacing_m;
+    EXPECT_EQ(shell.size(), shell_cubes(half_m, kVoxel_m, spacing_m)) << spacing_m;
     for (std::size_t i = 0; i < shell.size(); ++i) {
       EXPECT_NEAR(scenes::box_distance(half_m, shell.p_T[i]), 0, 3e-4);
       EXPECT_NEAR(shell.n_T[i].norm(), 1, 1e-12);

@@ -70,6 +70,32 @@ TEST(SafetyGate, ForceAndTorqueMustBothBeShorterThanTheirThresholds) {
   EXPECT_FALSE(begins(Vec3::Zero(), {0.008, -0.008, 0.008})) << "14 mN m";
 }
 
+// With limits whose thresholds are exact in binary: 0.25 N, and 0.25 / 4 of 0.5 N m.
+TEST(SafetyGate, AForceOrTorqueEqualToItsThresholdDoesNotBegin) {
+  SafetyLimits limits;
+  limits.engage_force_N = 0.25, limits.max_force_N = 4, limits.max_torque_Nm = 0.5;
+  const auto begins = [&](double force_N, double torque_Nm) {
+    Loop loop(limits);
+    loop.tick({force_N, 0, 0}, {0, torque_Nm, 0});
+    return loop.gate.state() == GateState::ramping;
+  };
+  const double torque_Nm = 0.03125;
+  EXPECT_FALSE(begins(0.25, 0));
+  EXPECT_FALSE(begins(0, torque_Nm));
+  EXPECT_TRUE(begins(std::nextafter(0.25, 0), std::nextafter(torque_Nm, 0)));
+}
+
+// A device that exerts torques only.
+TEST(SafetyGate, WithoutForcesACommandWithoutTorqueBegins) {
+  SafetyLimits limits;
+  limits.max_force_N = 0;
+  Loop waiting(limits), begun(limits);
+  waiting.tick(Vec3::Zero(), {0, 1e-6, 0});
+  EXPECT_EQ(waiting.gate.state(), GateState::waiting);
+  begun.tick(Vec3::Zero());
+  EXPECT_EQ(begun.gate.state(), GateState::ramping);
+}
+
 TEST(SafetyGate, ATorqueThatTheDeviceNeverGetsDoesNotKeepItWaiting) {
   SafetyLimits limits;
   limits.max_torque_Nm = 0;
