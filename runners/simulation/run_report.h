@@ -20,8 +20,14 @@ struct RunReport {
 RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace, double end_s);
 
 // A note if the points around the first contact are so far apart that a proxy of this contact radius falls
-// through between them, 4.2.1: farther than sqrt(2) contact_radius_m. None without a contact.
-std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m);
+// through between them, 4.2.1: their median distance is larger than sqrt(2) contact_radius_m. None without a
+// contact. It generates only the points within 3 contact_radius_m of that contact, because sweeps call it
+// too.
+std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m,
+                                const Kernels& kernels);
+
+// Adds a note for each phase of the scene or of the hand that begins at end_s or later.
+void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes);
 
 // "  read LINE\n" for each input and "  note: LINE\n" for each note.
 std::string text_of(const RunReport& report);

@@ -7,6 +7,7 @@
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/frame_stream.h"
+#include "runners/simulation/surface_watch.h"
 
 namespace remote_touch {
 
@@ -45,6 +46,15 @@ Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact&
           ? scenario.signed_distance(hip_W + out.force_N / contact.spring_N_per_m, time_s)
           : proxy_distance_m;
   return {distance_m - contact.rest_distance_m, hip_distance_m};
+}
+
+// Where the renderer touches: below the proxy. A tool touches with an area, so its normal is known only on a
+// plane.
+Vec3 true_normal(const Scenario& scenario, const RenderOutput& out, double time_s) {
+  const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  if (out.state == ContactState::free || out.force_N.isZero(0)) return unknown;
+  return out.tool ? scenario.plane_normal(time_s).value_or(unknown)
+                  : scenario.true_normal(out.proxy_W, time_s);
 }
 
 class StopWatch {
@@ -101,6 +111,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const RenderedContact contact = experiment.rendered_contact();
   const bool finds_contact = options.find_true_contact && !std::isnan(contact.rest_distance_m);
 
+  SurfaceWatch surface(scenario->without_faults(), *trajectory);
   Trace trace;
   trace.reserve(ticks);
   StopWatch watch;
@@ -120,16 +131,19 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (finds_contact)
       known.contact =
           true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
+    if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     trace.append(time_s, device, out, known, hand.state());
+    if (options.report) surface.add(device.position_W, time_s);
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
   }
   if (options.report) {
     const double end_s = static_cast<double>(ticks) / experiment.settings().haptic_rate_hz;
     *options.report = report_of(scenario->without_faults(), *trajectory, trace, end_s);
+    for (Note& note : surface.notes()) options.report->notes.push_back(std::move(note));
     // Regions are larger than the contact radius, and a tool touches with an area.
     if (contact.rest_distance_m > 0 && !has_fixtures && !trace.has_tool())
-      for (Note& note : spacing_notes(scenario->without_faults(), trace, contact.rest_distance_m))
+      for (Note& note : spacing_notes(scenario->without_faults(), trace, contact.rest_distance_m, kernels))
         options.report->notes.push_back(std::move(note));
   }
   return trace;

@@ -22,7 +22,7 @@ struct SimulationOptions {
   RunReport* report = nullptr;                      // receives what the run read and its notes
   bool generate_all_points =
       false;  // frames come with every point computed: durations without noise generation
-  bool find_true_contact = false;  // fill Trace::contact, for measures that need it
+  bool find_true_contact = false;  // fill Trace::contact and true_normal, for measures that need them
   bool hash_frames = false;        // compute every point of every frame for the trace's frame_hash; else 0
 };
 

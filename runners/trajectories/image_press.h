@@ -3,15 +3,20 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/parameters/parameter.h"
+#include "runners/trajectories/surface_support.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 
-// If a frame shows no gap-free surface around the pixel, the device lifts off until one does.
+// If a frame shows no gap-free surface around the pixel, the device lifts off the last one that was shown
+// until there is another. If something has come between meanwhile, so that the device would be farther behind
+// it than when it presses, it moves in front of everything that the newest frame shows around the pixel.
 class ImagePress final : public Trajectory {
  public:
   struct Settings {
@@ -23,24 +28,41 @@ class ImagePress final : public Trajectory {
     double approach_m_per_s = 0.2;
     double edge_jump_m =
         0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
+    double bridge_m = kBridge_m;
     double margin_m = 0.01;
   };
 
-  // The scenario must outlive the trajectory. Throws InputError when its frames are not organised images, or
-  // when the first frame shows nothing to touch at the pixel.
+  // The scenario must outlive the trajectory. Throws InputError when its frames are not organised images,
+  // when the first frame shows nothing to touch at the pixel, or when the device would be behind the camera.
   ImagePress(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override;
   double duration_s() const override { return 0; }
   std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
+  // The press is meant to touch from the moment at which it reaches the surface.
+  std::optional<SurfacePlan> surface_plan(double time_s) const override;
+  std::vector<Note> notes() const override;
+  int row() const { return row_; }
+  int column() const { return column_; }
 
  private:
-  double surface_depth(int frame) const;
+  // The surface at the pixel in one frame.
+  struct Seen {
+    double supported_m = 0;  // its depth; NaN: no surface without gaps
+    double shown_m = 0;      // the median depth measured within bridge_m / 2; NaN: none
+    double nearest_m = 0;    // the least depth measured within the margin; infinite: none
+  };
+  const Seen& seen(int frame) const;
+  void choose_pixel(BridgeableImage image);
+  bool has_support(const DepthImage& image, int pixel) const;
+  double travelled_m(double time_s) const;
+  double lifted_depth(double planned_m, const Seen& newest) const;
 
   const Settings settings_;
   const Scenario& scenario_;
   ImageLayout image_;
   int row_ = 0, column_ = 0;
-  mutable std::map<int, double> depths_;  // cache, by frame: many ticks use the same one
+  bool bridges_holes_ = false;
+  mutable std::map<int, Seen> seen_;  // cache, by frame: many ticks use the same one
 };
 
 Parameters parameters(ImagePress::Settings& s);

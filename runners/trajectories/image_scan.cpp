@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/trajectories/nearest_object.h"
-#include "runners/trajectories/surface_support.h"
 
 namespace remote_touch {
 
 Parameters parameters(ImageScan::Settings& s) {
   return {
-      {"row", &s.row, -1, 4095, "image row; -1: the middle of the nearest large object"},
+      {"row", &s.row, -1, 4095,
+       "image row; -1: of the nearest large object, the row nearest to its middle that can be touched"},
       {"first_column", &s.first_column, -1, 4095,
        "first image column; -1: as far left as the depth stays within span_m"},
       {"last_column", &s.last_column, -1, 4095,
@@ -20,11 +19,17 @@ Parameters parameters(ImageScan::Settings& s) {
       {"depth_m", &s.depth_m, -1, 1,
        "depth of the HIP behind the surface of the first frame, along the viewing ray"},
       {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
-      {"clearance_m", &s.clearance_m, 0, 10, "distance in front of the surface at the start and at the end"},
+      {"clearance_m", &s.clearance_m, 0, 10,
+       "distance in front of the surface at the start, at the end and over edges and holes"},
       {"span_m", &s.span_m, 1e-3, 100,
-       "the scan ends where the depth differs by more than this from that of the object"},
+       "surfaces whose depth differs by more than this from that of the object are not touched, unless "
+       "first_column and last_column are both given"},
       {"edge_jump_m", &s.edge_jump_m, 1e-4, 10,
-       "depth difference of neighbouring pixels within margin_m above which there is an edge; doubled up to twice if no pixel is left"},
+       "depth difference of neighbouring pixels within margin_m above which there is an edge; doubled up to "
+       "twice if no patch is left on the object"},
+      {"bridge_m", &s.bridge_m, 0, 1,
+       "used only if no patch is left on the object, for sparse depth: diameter of the largest hole that is taken as "
+       "closed; a closed hole has the depth of the nearest pixel at its rim"},
       {"margin_m", &s.margin_m, 1e-3, 1, "minimum distance of the HIP from holes and depth edges"},
   };
 }
@@ -34,84 +39,97 @@ std::string validate(const ImageScan::Settings& s) {
   return reversed ? "first_column = " + std::to_string(s.first_column) + ": expected below last_column" : "";
 }
 
-namespace {
-
-// The column farthest from the middle, in one direction, whose depth is within the span of the object's.
-int last_within_span(const std::vector<double>& depth, int from, int direction, double reference,
-                     double span_m) {
-  int last = from;
-  for (int u = from; u >= 0 && u < static_cast<int>(depth.size()); u += direction) {
-    const double z = depth[static_cast<std::size_t>(u)];
-    if (std::isfinite(z) && std::abs(z - reference) <= span_m) last = u;
-  }
-  return last;
-}
-
-// Runs of columns with support, at least as long as the margin.
-std::vector<ScanPatch> supported_patches(const std::vector<double>& depth, int first, int last, double focal,
-                                         double margin_m) {
-  std::vector<ScanPatch> patches;
-  for (int u = first; u <= last; ++u) {
-    if (std::isnan(depth[static_cast<std::size_t>(u)])) continue;
-    ScanPatch patch{u, u};
-    while (patch.last_column < last && std::isfinite(depth[static_cast<std::size_t>(patch.last_column + 1)]))
-      ++patch.last_column;
-    const double pixels = focal * margin_m / depth[static_cast<std::size_t>(u)];
-    if (patch.last_column - patch.first_column >= pixels) patches.push_back(patch);
-    u = patch.last_column;
-  }
-  return patches;
-}
-
-}  // namespace
-
-ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : path_(Vec3::Zero()) {
+ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s), path_(Vec3::Zero()) {
   const PointCloud cloud = scenario.cloud(0);
   if (!cloud.image)
     throw InputError("trajectory.name = image-scan",
                      "the frames are not images: expected a scenario with a camera");
   const CameraIntrinsics& camera = cloud.image->camera;
-  const DepthImage image = depth_image(cloud);
-  const NearestObject object = nearest_large_object(image, camera);
-  row_ = s.row >= 0 ? s.row : object.row;
-  if (row_ >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
+  if (s.row >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
     throw InputError(
         "trajectory.row, first_column, last_column",
         "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
+  const DepthImage image = depth_image(cloud);
+  scan_ = find_scan_row(
+      image, camera, {s.row, s.first_column, s.last_column, s.span_m, s.edge_jump_m, s.bridge_m, s.margin_m});
+  if (scan_.patches.empty())
+    throw InputError("trajectory.row = " + std::to_string(scan_.row),
+                     std::string("no surface without edges and with holes of at most ") +
+                         millimetres(s.bridge_m) + " in this row" +
+                         (s.row < 0 ? " or another of the nearest object" : "") +
+                         ": expected another row, a smaller margin_m or a larger bridge_m");
+  plan_path(image, *cloud.image);
+}
 
-  // A coarse sensor steps further from pixel to pixel than a proxy can bridge; better a rough scan than none.
-  std::vector<double> depth;
-  for (double jump = s.edge_jump_m; patches_.empty() && jump <= 4 * s.edge_jump_m; jump *= 2) {
-    depth.clear();
-    for (int u = 0; u < camera.width; ++u)
-      depth.push_back(supported_depth(image, u, row_, camera.fx, {jump, s.margin_m}));
-    const auto automatic = [&](int direction) {
-      return last_within_span(depth, object.column, direction, object.nearest_depth_m, s.span_m);
-    };
-    patches_ = supported_patches(depth, s.first_column >= 0 ? s.first_column : automatic(-1),
-                                 s.last_column >= 0 ? s.last_column : automatic(+1), camera.fx, s.margin_m);
-  }
-  if (patches_.empty())
-    throw InputError("trajectory.row = " + std::to_string(row_),
-                     "no surface without holes in this row: expected another row or a smaller margin_m");
-
+// Approaches the first patch, follows each, and flies from one to the next in front of all that is between.
+void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
+  const Settings& s = settings_;
+  const CameraIntrinsics& camera = layout.camera;
+  const auto depth_at = [&](int u) { return scan_.depth_m[static_cast<std::size_t>(u)]; };
   const auto place = [&](int u, double offset) {
-    return Vec3(cloud.image->X_WC * unproject(camera, u, row_, depth[static_cast<std::size_t>(u)] + offset));
+    const double z = depth_at(u) + offset;
+    if (!(z > 0))
+      throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
+                                                              millimetres(depth_at(u)) +
+                                                              " from the surface: expected smaller");
+    return Vec3(layout.X_WC * unproject(camera, u, scan_.row, z));
   };
-  path_ = PolylinePath(place(patches_.front().first_column, -s.clearance_m));
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const ScanPatch& patch = patches_[i];
-    for (int u = patch.first_column; u <= patch.last_column; ++u)
+  // The offset from the surface at column u of a flight between two columns, in front of both surfaces and of
+  // all pixels between them.
+  const auto flight_offset = [&](int u, int from, int to) {
+    const double other = depth_at(u == from ? to : from);
+    const double planned = std::min(other - depth_at(u), 0.0) - s.clearance_m;
+    const int half =
+        std::max(1, static_cast<int>(camera.fx * s.margin_m / std::min(depth_at(from), depth_at(to))));
+    const double nearest = nearest_depth(image, {from, to, scan_.row - half, scan_.row + half});
+    // Nearer than an edge's jump the hand could touch; farther in front it needs no detour.
+    if (nearest - (depth_at(u) + planned) >= s.edge_jump_m) return planned;
+    return in_front_of(nearest, s.clearance_m) - depth_at(u);
+  };
+
+  path_ = PolylinePath(place(scan_.patches.front().first_column, -s.clearance_m));
+  for (std::size_t i = 0; i < scan_.patches.size(); ++i) {
+    const ScanPatch& patch = scan_.patches[i];
+    for (int u = patch.first_column; u <= patch.last_column; ++u) {
       path_.go_to(place(u, s.depth_m), s.speed_m_per_s);
+      if (u == patch.first_column) touches_.push_back({path_.duration_s(), 0});
+    }
+    touches_.back().ends_s = path_.duration_s();
     path_.go_to(place(patch.last_column, -s.clearance_m), s.speed_m_per_s);
-    if (i + 1 == patches_.size()) break;
-    // Across in front of both patches: towards the camera first, where the next one is nearer.
-    const int from = patch.last_column, to = patches_[i + 1].first_column;
-    const double step = depth[static_cast<std::size_t>(to)] - depth[static_cast<std::size_t>(from)];
-    path_.go_to(place(from, std::min(step, 0.0) - s.clearance_m), s.speed_m_per_s);
-    path_.go_to(place(to, std::min(-step, 0.0) - s.clearance_m), s.speed_m_per_s);
+    if (i + 1 == scan_.patches.size()) break;
+    const int from = patch.last_column, to = scan_.patches[i + 1].first_column;
+    path_.go_to(place(from, flight_offset(from, from, to)), s.speed_m_per_s);
+    path_.go_to(place(to, flight_offset(to, from, to)), s.speed_m_per_s);
     path_.go_to(place(to, -s.clearance_m), s.speed_m_per_s);
   }
+}
+
+// The depth that is followed is the median over the margin; what one pixel shows may differ by an edge's
+// jump.
+std::optional<SurfacePlan> ImageScan::surface_plan(double time_s) const {
+  const bool touches = std::any_of(touches_.begin(), touches_.end(), [&](const Interval& touch) {
+    return touch.begins_s <= time_s && time_s <= touch.ends_s;
+  });
+  return SurfacePlan{touches, std::min(settings_.depth_m, 0.0) - scan_.edge_jump_m,
+                     std::max(settings_.depth_m, 0.0) + scan_.edge_jump_m, 0.5 * settings_.bridge_m};
+}
+
+std::vector<Note> ImageScan::notes() const {
+  std::vector<Note> notes;
+  const std::string row = "row " + std::to_string(scan_.row);
+  if (scan_.bridges_holes)
+    notes.push_back({"holes bridged", row + ": holes up to trajectory.bridge_m = " +
+                                          millimetres(settings_.bridge_m) + " wide are taken as closed"});
+  if (scan_.edge_jump_m > settings_.edge_jump_m)
+    notes.push_back({"edges bridged", row + ": depth jumps up to " + millimetres(scan_.edge_jump_m) +
+                                          " between neighbouring pixels are taken as surface, more than "
+                                          "trajectory.edge_jump_m = " +
+                                          millimetres(settings_.edge_jump_m)});
+  if (!scan_.is_on_object && settings_.row < 0)
+    notes.push_back(
+        {"object not scanned",
+         row + ": the nearest object has no surface without holes and edges; only others are touched"});
+  return notes;
 }
 
 }  // namespace remote_touch

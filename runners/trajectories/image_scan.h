@@ -1,6 +1,7 @@
 // A device that scans along an image row of the first frame, a set depth behind the surface that the camera
 // saw: the default path over any recording. It touches surfaces that the camera saw without gaps, and lifts
-// off over depth edges and holes: behind those there are no points to hold the proxy.
+// off over depth edges and holes: behind those there are no points to hold the proxy. While it is lifted, it
+// is in front of everything that the first frame shows on its way.
 #pragma once
 
 #include <string>
@@ -8,15 +9,12 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/trajectories/polyline_path.h"
+#include "runners/trajectories/scan_row.h"
+#include "runners/trajectories/surface_support.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
-
-// A part of the row without holes or edges, both ends included.
-struct ScanPatch {
-  int first_column = 0, last_column = 0;
-};
 
 class ImageScan final : public Trajectory {
  public:
@@ -30,20 +28,30 @@ class ImageScan final : public Trajectory {
     double span_m = 0.3;
     double edge_jump_m =
         0.006;  // below sqrt(2) r_c: the proxy falls through a square of points wider than that
+    double bridge_m = kBridge_m;
     double margin_m = 0.01;
   };
 
-  // Throws InputError when the scenario's frames are not organised images or the row shows no patch to touch.
+  // Throws InputError when the scenario's frames are not organised images, when the row shows no patch to
+  // touch, or when a part of the path would be behind the camera.
   ImageScan(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
   double duration_s() const override { return path_.duration_s(); }
-  int row() const { return row_; }
-  const std::vector<ScanPatch>& patches() const { return patches_; }
+  std::optional<SurfacePlan> surface_plan(double time_s) const override;
+  std::vector<Note> notes() const override;
+  int row() const { return scan_.row; }
+  const std::vector<ScanPatch>& patches() const { return scan_.patches; }
 
  private:
-  int row_ = 0;
-  std::vector<ScanPatch> patches_;
+  void plan_path(const DepthImage& image, const ImageLayout& layout);
+
+  const Settings settings_;
+  ScanRow scan_;
   PolylinePath path_;
+  struct Interval {
+    double begins_s = 0, ends_s = 0;
+  };
+  std::vector<Interval> touches_;  // one for each patch
 };
 
 Parameters parameters(ImageScan::Settings& s);

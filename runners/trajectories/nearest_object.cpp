@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/numeric/order_statistic.h"
@@ -83,7 +84,7 @@ NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
     rows.push_back(row), columns.push_back(column);
   }
   return {quantile_in_place(depth, 0.05), static_cast<int>(median_in_place(rows)),
-          static_cast<int>(median_in_place(columns))};
+          static_cast<int>(median_in_place(columns)), patch, false};
 }
 
 }  // namespace
@@ -99,17 +100,28 @@ NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsi
     const int row = i / image.width, column = i % image.width;
     open[static_cast<std::size_t>(i)] = !plane || !plane->holds(unproject(camera, column, row, z));
   }
-  if (measured.empty()) return {};
+  if (measured.empty()) return {0, 0, 0, {}, true};
 
   std::optional<NearestObject> nearest;
   for (const int seed : measured) {
     if (!open[static_cast<std::size_t>(seed)]) continue;
     const std::vector<int> patch = take_patch(image, seed, open);
     if (static_cast<double>(patch.size()) < kObjectFraction * static_cast<double>(image.z_m.size())) continue;
-    const NearestObject object = describe(image, patch);
-    if (!nearest || object.nearest_depth_m < nearest->nearest_depth_m) nearest = object;
+    NearestObject object = describe(image, patch);
+    if (!nearest || object.nearest_depth_m < nearest->nearest_depth_m) nearest = std::move(object);
   }
-  return nearest ? *nearest : describe(image, measured);
+  if (nearest) return *nearest;
+  NearestObject scene = describe(image, measured);
+  scene.is_whole_scene = true;
+  return scene;
+}
+
+NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera) {
+  NearestObject object = nearest_large_object(image.measured(), camera);
+  NearestObject closed = nearest_large_object(image.closed(), camera);
+  // Closing the holes of one and the same object moves its nearest part by less.
+  const bool is_nearer = closed.nearest_depth_m < object.nearest_depth_m - kContinuous_m;
+  return !closed.is_whole_scene && (object.is_whole_scene || is_nearer) ? closed : object;
 }
 
 }  // namespace remote_touch

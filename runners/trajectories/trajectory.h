@@ -1,12 +1,23 @@
 // The interface of every scripted device motion.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/rendering/frame.h"
 #include "scenarios/interface/note.h"
 
 namespace remote_touch {
+
+// How a motion that was planned on depth images is meant to lie to the surface that the camera sees in the
+// newest frame. Depths are along the optical axis, m, positive behind the surface.
+struct SurfacePlan {
+  bool touches =
+      false;  // the hand is meant to be between min_depth_m and max_depth_m; else in front of max_depth_m
+  double min_depth_m = 0, max_depth_m = 0;
+  double reach_m =
+      0;  // the surface at a pixel is the median of what was measured within this radius of its ray
+};
 
 // A pure function of time.
 class Trajectory {
@@ -17,6 +28,10 @@ class Trajectory {
   virtual double duration_s() const = 0;
   // The parts of the motion that begin at a set time: the press. Empty: there are none.
   virtual std::vector<Phase> phases() const { return {}; }
+  // Absent: the motion is not planned on depth images.
+  virtual std::optional<SurfacePlan> surface_plan(double /*time_s*/) const { return {}; }
+  // Notes on how the motion was planned.
+  virtual std::vector<Note> notes() const { return {}; }
   // Of a recorded live session: its loop missed the tick at that time, which is then skipped.
   virtual bool is_missed(double /*time_s*/) const { return false; }
 };

@@ -23,6 +23,12 @@ void check_image_size(const std::string& subject, const DepthImage& depth, std::
                                 std::to_string(height) + ", as its CameraInfo has");
 }
 
+// In all that makes a depth image a cloud.
+bool same_camera(const CameraInfoMessage& a, const CameraInfoMessage& b) {
+  return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
+         a.distortion == b.distortion && a.K == b.K && a.P == b.P;
+}
+
 void drop_beyond(double max_depth_m, PointCloud& cloud) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!(cloud.z[i] > max_depth_m)) continue;
@@ -42,13 +48,21 @@ BagFrames::BagFrames(const std::filesystem::path& path, const BagChoice& choice)
   MessageCursor cursor(first, wire_format(topic()), subject(topic_, frames_.front()));
   frame_id_ = read_header(cursor).frame_id;
   if (topic().type == kCloudType) {
-    if (choice.depth_unit_m != 0)
-      throw InputError(path_, topic().name + " holds clouds, in metres: expected scenario.depth_unit_m = 0");
+    refuse_image_settings(choice);
   } else {
     choose_unit(choice.depth_unit_m);
     choose_camera(choice);
   }
   if (!choice.frame_id.empty()) choose_frame_id(choice.frame_id);
+}
+
+// Clouds need no camera.
+void BagFrames::refuse_image_settings(const BagChoice& choice) const {
+  const auto refuse = [&](const std::string& problem) { throw InputError(path_, topic().name + problem); };
+  if (choice.depth_unit_m != 0) refuse(" holds clouds, in metres: expected scenario.depth_unit_m = 0");
+  if (!choice.camera_info.empty()) refuse(" holds clouds: expected scenario.camera_info = \"\"");
+  if (choice.images != BagChoice::Images::by_name)
+    refuse(" holds clouds: expected scenario.images = by_name");
 }
 
 std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) const {
@@ -71,6 +85,24 @@ void BagFrames::choose_camera(const BagChoice& choice) {
   const MessagePlace& image = frames_.front();
   check_image_size(subject(topic_, image), depth_of(image, 1), info.width, info.height);
   rays_.emplace(info, rectified, name);
+  note_changes(camera, [&](const MessageCursor& from) { return same_camera(read_camera_info(from), info); });
+}
+
+// A later message that cannot be read differs, too.
+template <class IsSame>
+void BagFrames::note_changes(std::size_t topic, IsSame&& is_same) {
+  const std::vector<MessagePlace>& places = bag_->places(topic);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const std::string name = path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(i);
+    try {
+      const std::string message = bag_->message(places[i]);
+      if (is_same({message, wire_format(bag_->topics()[topic]), name})) continue;
+    } catch (const InputError&) {
+    }
+    camera_change_ += (camera_change_.empty() ? "" : "; ") + name +
+                      ", differs from message 0, which is used for all frames";
+    return;
+  }
 }
 
 void BagFrames::choose_unit(double chosen_m) {
@@ -87,6 +119,7 @@ void BagFrames::choose_unit(double chosen_m) {
     throw InputError(name, "depth unit = " + std::to_string(unit_m) + " m: expected above 0 to 1");
   // A float of 32 bits that is meant as 0.001 should not make 1.00000005 m of 1000 units.
   units_.of_integers_m = std::round(unit_m * 1e9) / 1e9;
+  note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
 }
 
 // The places keep their messages' stamps for as long as they are sorted.

@@ -16,7 +16,8 @@
 
 namespace remote_touch {
 
-// Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth), with the first CameraInfo.
+// Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth), with the first CameraInfo (see
+// camera_change()).
 // Integers of depth images are in units of 1 mm, or of what the option Depth Units of a RealSense recording
 // says, floats are metres, unless the choice says otherwise. All messages must name the same coordinate
 // frame.
@@ -39,6 +40,8 @@ class BagFrames {
   std::string kind() const { return topic().type + " " + topic().name; }
   // Empty, or what was wrong with the bag and what was done about it, in one line.
   const std::string& remark() const { return remark_; }
+  // Empty, or which later CameraInfo or depth unit differs from the first, in one line.
+  const std::string& camera_change() const { return camera_change_; }
 
   // In the frame of the messages. What is farther than max_depth_m along z is NaN. Throws InputError about
   // the message when it cannot be used.
@@ -48,7 +51,10 @@ class BagFrames {
   const BagTopic& topic() const { return bag_->topics()[topic_]; }
   std::string subject(std::size_t topic, const MessagePlace& place) const;
   DepthImage depth_of(const MessagePlace& place, double max_depth_m) const;
+  void refuse_image_settings(const BagChoice& choice) const;
   void choose_camera(const BagChoice& choice);
+  template <class IsSame>
+  void note_changes(std::size_t topic, IsSame&& is_same);
   void choose_unit(double chosen_m);
   void choose_frame_id(const std::string& frame_id);
   void order_frames();
@@ -63,7 +69,7 @@ class BagFrames {
   DepthUnits units_;
   std::string frame_id_;  // of the first frame, and so of all
   RigidTransform X_chosen_ = RigidTransform::Identity();
-  std::string remark_;
+  std::string remark_, camera_change_;
 };
 
 }  // namespace remote_touch

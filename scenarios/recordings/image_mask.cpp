@@ -9,7 +9,8 @@ Parameters parameters(ImageMask::Settings& s) {
   Parameters list = parameters(s.values);
   list.push_back(
       {"path", &s.path, 0, 0,
-       "PNG file of the size of the frames; points at pixels that are not black are selected; up to 8 bits a channel"});
+       "PNG file of the size of the frames; points at pixels that are neither black nor transparent are "
+       "selected; up to 8 bits a channel"});
   return list;
 }
 

@@ -13,7 +13,7 @@ class ImageMask final : public FixtureRule {
     std::string path;
   };
   // Reads the mask: a PNG of any kind that read_colour_png takes, of the size of the frames; a pixel that is
-  // not black selects its point. Throws InputError when it cannot be read.
+  // neither black nor fully transparent selects its point. Throws InputError when it cannot be read.
   explicit ImageMask(const Settings& settings);
   // An image of the size of the mask.
   void require(const PointCloud& cloud) const override;

@@ -116,6 +116,8 @@ std::vector<Note> RecordedScene::input_notes() const {
   std::vector<Note> notes = statistics_.notes(settings_.max_depth_m);
   if (recording_.bag && !recording_.bag->remark().empty())
     notes.push_back({"recording incomplete", recording_.bag->remark()});
+  if (recording_.bag && !recording_.bag->camera_change().empty())
+    notes.push_back({"camera changes", recording_.bag->camera_change()});
   if (!recording_.remark.empty()) notes.push_back({"viewpoint unused", recording_.remark});
   const auto used = static_cast<std::size_t>(count_);
   if (settings_.playback == Playback::hold && statistics_.frames_read() < used)
@@ -254,6 +256,10 @@ double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
   const Patch patch = patch_around(cloud, X_CW, static_cast<int>(u), static_cast<int>(v),
                                    static_cast<int>(half), 4 * settings_.truth_radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
+}
+
+Vec3 RecordedScene::true_normal(const Vec3&, double) const {
+  return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace remote_touch

@@ -202,6 +202,8 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
        {std::pair("topic", choice.topic), {"camera_info", choice.camera_info}, {"frame_id", choice.frame_id}})
     if (!value.empty()) refuse(path, "is no bag of ROS: expected scenario." + std::string(name) + " = \"\"");
   if (choice.depth_unit_m != 0) refuse(path, "is no bag of ROS: expected scenario.depth_unit_m = 0");
+  if (choice.images != BagChoice::Images::by_name)
+    refuse(path, "is no bag of ROS: expected scenario.images = by_name");
   if (fs::is_regular_file(path) && path.extension() == ".pcd") return index_pcd({path}, {});
   if (!fs::is_directory(path)) {
     refuse(path, std::string(fs::exists(path) ? "is of another kind" : "does not exist") +

@@ -12,6 +12,7 @@
 #include <new>
 #include <string>
 
+#include "core/cloud/colour.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -45,9 +46,9 @@ class PngFile {
   int colour_type() const { return png_get_color_type(png_, info_); }
   std::string pixel_format() const;
 
-  // The rows one after the other: as stored, or as 8-bit red, green, blue.
+  // The rows one after the other: as stored, or as 8-bit red, green, blue, alpha (255 where there is none).
   const std::vector<png_byte>& decode_as_stored() { return decode(&PngFile::prepare_as_stored); }
-  const std::vector<png_byte>& decode_as_rgb() { return decode(&PngFile::prepare_as_rgb); }
+  const std::vector<png_byte>& decode_as_rgba() { return decode(&PngFile::prepare_as_rgba); }
 
  private:
   using Step = void (PngFile::*)();
@@ -63,7 +64,7 @@ class PngFile {
 
   void read_header();
   void prepare_as_stored();
-  void prepare_as_rgb();
+  void prepare_as_rgba();
   void read_pixels();
 
   std::string name_;
@@ -150,10 +151,10 @@ void PngFile::prepare_as_stored() {
   png_read_update_info(png_, info_);
 }
 
-void PngFile::prepare_as_rgb() {
-  png_set_expand(png_);  // palette and 1, 2, 4 bits to 8
+void PngFile::prepare_as_rgba() {
+  png_set_expand(png_);  // palette and 1, 2, 4 bits to 8, transparent colours to alpha
   png_set_gray_to_rgb(png_);
-  png_set_strip_alpha(png_);
+  png_set_add_alpha(png_, 0xFF, PNG_FILLER_AFTER);
   prepare_as_stored();
 }
 
@@ -234,10 +235,11 @@ std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, in
     throw InputError(file.string(), "pixels are " + png.pixel_format() + ": expected up to 8 bits a channel");
   }
   width = png.width(), height = png.height();
-  const std::vector<png_byte>& bytes = png.decode_as_rgb();
-  std::vector<std::uint32_t> colour(bytes.size() / 3);
+  const std::vector<png_byte>& bytes = png.decode_as_rgba();
+  std::vector<std::uint32_t> colour(bytes.size() / 4);
   for (std::size_t i = 0; i < colour.size(); ++i) {
-    colour[i] = static_cast<std::uint32_t>(bytes[3 * i] << 16 | bytes[3 * i + 1] << 8 | bytes[3 * i + 2]);
+    const png_byte* const rgba = &bytes[4 * i];
+    colour[i] = rgba[3] == 0 ? kNoColour : static_cast<std::uint32_t>(rgba[0] << 16 | rgba[1] << 8 | rgba[2]);
   }
   return colour;
 }

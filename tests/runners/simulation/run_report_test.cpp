@@ -4,7 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/search/neighbour_search.h"
 #include "runners/simulation/simulation.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::run_report_test {
@@ -86,6 +92,56 @@ TEST(RunReport, ReportsPointsThatAreTooFarApart) {
   EXPECT_EQ(kinds_of(report), Kinds{"wide spacing"});
   EXPECT_HAS(report.notes[0].text, "are 7.2 mm apart");
   EXPECT_HAS(report.notes[0].text, "farther apart than 7.07 mm");
+}
+
+// A scene of given points, at rest.
+class GivenPoints final : public Scenario {
+ public:
+  explicit GivenPoints(PointCloud cloud) : cloud_(std::move(cloud)) {}
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 1; }
+  std::shared_ptr<const NeighbourSearch> points(int) const override { return make_search(cloud_); }
+  PointCloud cloud(int) const override { return cloud_; }
+  double signed_distance(const Vec3&, double) const override { return 0; }
+
+ private:
+  const PointCloud cloud_;
+};
+
+// The median distance to the nearest neighbour of the points within a ball around the origin, from its
+// definition.
+double median_spacing_m(const PointCloud& cloud, double radius_m) {
+  std::vector<double> nearest_m;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (cloud.point(i).norm() > radius_m) continue;
+    double least_m = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < cloud.size(); ++j)
+      if (j != i && cloud.point(j).norm() <= radius_m)
+        least_m = std::min(least_m, (cloud.point(i) - cloud.point(j)).norm());
+    nearest_m.push_back(least_m);
+  }
+  std::sort(nearest_m.begin(), nearest_m.end());
+  return nearest_m.empty() ? std::numeric_limits<double>::infinity() : nearest_m[nearest_m.size() / 2];
+}
+
+TEST(RunReport, TheSpacingIsTheMedianDistanceToTheNearestNeighbour) {
+  constexpr double kContactRadius_m = 0.005;
+  Trace trace;
+  RenderOutput out;
+  out.contact_count = 1, out.frame_index = 0;
+  trace.append(0, {}, out, {});
+  int wide = 0;
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    // In a cube of 4 cm: 2 to 60 points, whose spacing is about that of the limit.
+    const GivenPoints scene(scenes::random_cloud(2 + static_cast<int>(seed % 59), 0.02, seed));
+    const bool is_wide =
+        median_spacing_m(scene.cloud(0), 3 * kContactRadius_m) > std::sqrt(2.0) * kContactRadius_m;
+    const auto notes = spacing_notes(scene, trace, kContactRadius_m, scenes::kernels());
+    EXPECT_EQ(!notes.empty(), is_wide) << seed;
+    wide += is_wide ? 1 : 0;
+  }
+  EXPECT_GT(wide, 50);
+  EXPECT_LT(wide, 250) << "both happen";
 }
 
 TEST(RunReport, BecomesAttributesOfTheResult) {

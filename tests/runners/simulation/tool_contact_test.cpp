@@ -109,6 +109,29 @@ TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
   }
 }
 
+// By the continuous rule a frame moves out only a tool that was held when it came. A slab at rest is held
+// from the first frame on that shows the plane in it. Where one frame shows it below the slab and the next
+// above, it is lost: in a fraction 1 - f_c h / v of all start times, although a held slab is carried at this
+// speed.
+TEST(ToolContact, ASlabAtRestIsCarriedIfAFrameShowsThePlaneInItByContinuous) {
+  constexpr double kSpeed = 0.5, kJump_m = kSpeed / 30, kStart_m = -0.03, kHalf_m = 0.005;
+  int lost = 0;
+  for (int phase = 0; phase < 5; ++phase) {
+    const double wait_s = 0.1 + phase / 150.0;
+    const Trace trace =
+        run(R"({"name": "moving-plane", "columns": 40, "rows": 40, "rise_height_m": 0.1})",
+            tool("slab-10", "continuous"), poses("[0,0,0,0,0,0,0]"),
+            {"scenario.start_height_m=" + number(kStart_m), "scenario.wait_s=" + number(wait_s),
+             "scenario.speed_m_per_s=" + number(kSpeed), "duration_s=0.5"});
+    bool is_shown_in_it = false;
+    for (int frame = 0; frame < 9; ++frame)
+      is_shown_in_it |= std::abs(kStart_m + kJump_m * (frame - 30 * wait_s)) < kHalf_m;
+    EXPECT_EQ(trace.signed_distance_m.back() > 0, is_shown_in_it) << phase;
+    lost += is_shown_in_it ? 0 : 1;
+  }
+  EXPECT_NEAR(lost / 5.0, 1 - 30 * 0.01 / kSpeed, 1e-12);
+}
+
 // (4.15) for a tool: a plane rises evenly under a held slab at 0.1 m/s, 10 cm in 1 s, 3.33 mm a frame.
 // Without the term the force jumps by k v / f_c at each frame, with it not at all, with the printed sign by
 // twice that.

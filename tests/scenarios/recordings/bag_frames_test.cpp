@@ -186,6 +186,33 @@ TEST_F(Frames, AreChosenInBagsOnly) {
                index_recording(folder_ / "x.pcd", {"/points", "", {}, ""});
              }),
              "is no bag of ROS: expected scenario.topic = \"\"");
+  BagChoice images;
+  images.images = BagChoice::Images::rectified;
+  EXPECT_HAS(refusal([&] { index_recording(folder_ / "x.pcd", images); }),
+             "is no bag of ROS: expected scenario.images = by_name");
+}
+
+TEST_F(Frames, OfCloudsHaveNoCameraToBeChosen) {
+  BagChoice images;
+  images.images = BagChoice::Images::measured;
+  EXPECT_HAS(error({cloud(0, 0)}, images), "/points holds clouds: expected scenario.images = by_name");
+  EXPECT_HAS(error({cloud(0, 0), camera("/x/camera_info")}, {"", "/x/camera_info", {}, ""}),
+             "/points holds clouds: expected scenario.camera_info = \"\"");
+}
+
+// The first one is used; a zoom that is turned later is reported.
+TEST_F(Frames, OfDepthReportACameraThatChanges) {
+  const BagMessage first = camera("/x/camera_info");
+  BagMessage later = first, other = first;
+  later.bytes = camera_message(4, 3, {-0.1, 0, 0, 0, 0});
+  other.bytes = camera_message(4, 3, {-0.2, 0, 0, 0, 0});
+  EXPECT_EQ(frames({first, depth(0, "/x/image_raw"), later}).camera_change(), "");
+  const BagFrames all = frames({first, depth(0, "/x/image_raw"), later, other, other});
+  EXPECT_HAS(all.camera_change(),
+             "x.mcap: /x/camera_info, message 2, differs from message 0, which is used for all frames");
+  EXPECT_EQ(all.cloud(0, kNoLimit).x, frames({first, depth(0, "/x/image_raw")}).cloud(0, kNoLimit).x);
+  other.bytes.resize(20);
+  EXPECT_HAS(frames({first, depth(0, "/x/image_raw"), other}).camera_change(), "message 1, differs");
 }
 
 BagMessage transforms() {
@@ -236,6 +263,7 @@ TEST_F(Frames, AreAScenario) {
                 ros1_file({{sensor + "option/Depth Units/value", "std_msgs/msg/Float32", 1, raw(0.0005f)},
                            {sensor + "Depth_0/info/camera_info", kCamera, 1, info.done()},
                            {sensor + "Depth_0/image/data", kImage, 1, ros1(2000, kStart_ns)},
+                           {sensor + "option/Depth Units/value", "std_msgs/msg/Float32", 2, raw(0.001f)},
                            {sensor + "Depth_0/image/data", kImage, 2, ros1(3000, kStart_ns + kStep_ns)}}));
   RecordedScene::Settings settings;
   settings.path = (folder_ / "x.bag").string();
@@ -244,10 +272,13 @@ TEST_F(Frames, AreAScenario) {
   EXPECT_EQ(scene.frame_rate_hz(), 32);
   EXPECT_EQ(scene.captured_s(1), 0.03125);
   EXPECT_TRUE(scene.cloud(1).point(0).isApprox(Vec3(-0.225, -0.15, 1.5)));
-  ASSERT_EQ(scene.input_notes().size(), 1u);
+  ASSERT_EQ(scene.input_notes().size(), 2u);
   EXPECT_EQ(scene.input_notes()[0].kind, "frames apart") << "a wall 1 m away, and one 1.5 m away";
+  EXPECT_EQ(scene.input_notes()[1].kind, "camera changes");
+  EXPECT_HAS(scene.input_notes()[1].text, "Depth Units/value, message 1, differs from message 0");
   EXPECT_EQ(scene.cloud(0).z[0], 1);
   EXPECT_NEAR(scene.signed_distance(Vec3(0, 0, 0.99), 0), 0.01, 1e-9);
+  EXPECT_TRUE(scene.true_normal(Vec3(0, 0, 0.99), 0).array().isNaN().all()) << "no independent truth";
 }
 
 }  // namespace

@@ -53,9 +53,10 @@ TEST_F(ImageMasks, MayHaveColours) {
 }
 
 // What can be seen through is as black, or not, as without.
-TEST_F(ImageMasks, AlphaDoesNotCount) {
-  const std::uint8_t rgba[8] = {0, 0, 0, 255, 9, 0, 0, 0};
-  EXPECT_EQ(weights(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), image(2, 1)), (Shares{0, 1}));
+TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
+  const std::uint8_t rgba[12] = {0, 0, 0, 255, 9, 0, 0, 0, 9, 0, 0, 1};
+  EXPECT_EQ(weights(folder_.write_png("rgba.png", 3, 1, PNG_FORMAT_RGBA, rgba), image(3, 1)),
+            (Shares{0, 0, 1}));
 }
 
 // The colour of the palette counts, not the index.

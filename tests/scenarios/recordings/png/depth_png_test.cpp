@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/cloud/colour.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::depth_png_test {
@@ -156,7 +157,7 @@ TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
             expected);
   EXPECT_EQ(width, 2);
   EXPECT_EQ(height, 1);
-  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
+  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x01, 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
   EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
             expected);
   const std::uint8_t grey[2] = {0x00, 0xA7};
@@ -169,6 +170,22 @@ TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
   const std::uint8_t palette[6] = {0xFF, 0xEE, 0x00, 0x10, 0x20, 0x30};
   const fs::path file = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, indices, palette, 2);
   EXPECT_EQ(read_colour_png(file, width, height), expected);
+}
+
+// In every format that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
+TEST_F(DepthPng, ATransparentPixelHasNoColour) {
+  int width = 0, height = 0;
+  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF};
+  const std::vector<std::uint32_t> expected = {kNoColour, 0xFFEE00};
+  EXPECT_EQ(read_colour_png(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), width, height),
+            expected);
+  const std::uint8_t grey[4] = {0x40, 0x00, 0xA7, 0xFF};
+  const std::vector<std::uint32_t> expected_grey = {kNoColour, 0xA7A7A7};
+  EXPECT_EQ(read_colour_png(folder_.write_png("grey.png", 2, 1, PNG_FORMAT_GA, grey), width, height),
+            expected_grey);
+  const std::uint8_t indices[2] = {0, 1};
+  const fs::path palette = folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2);
+  EXPECT_EQ(read_colour_png(palette, width, height), expected);
 }
 
 }  // namespace

@@ -1,0 +1,375 @@
+// The hand of image-scan and image-press on harsh depth images: sparse, striped, with holes, with objects
+// that move. The oracle is the analytic surface of each scene along the hand's viewing ray, never the image.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "runners/trajectories/image_press.h"
+#include "runners/trajectories/image_scan.h"
+#include "tests/support/depth_scenes.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::image_trajectories_test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEdge_m = 0.006;  // default of edge_jump_m
+
+// Depth that is seen along the ray (x, y, 1); NaN: nothing.
+using Surface = std::function<double(double x, double y)>;
+// Whether a pixel is measured.
+using Mask = std::function<bool(int u, int v)>;
+
+const CameraIntrinsics kCamera = scenes::kinect();
+
+DepthImage photographed(const Surface& surface, const Mask& is_measured) {
+  DepthImage image{kCamera.width, kCamera.height, {}};
+  for (int v = 0; v < kCamera.height; ++v)
+    for (int u = 0; u < kCamera.width; ++u) {
+      const Vec3 ray = scenes::ray(kCamera, u, v);
+      image.z_m.push_back(is_measured(u, v) ? surface(ray.x(), ray.y()) : kNaN);
+    }
+  return image;
+}
+
+class Views final : public Scenario {
+ public:
+  explicit Views(std::vector<DepthImage> frames) : frames_(std::move(frames)) {}
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return static_cast<int>(frames_.size()); }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    return make_search(cloud(frame));
+  }
+  PointCloud cloud(int frame) const override {
+    const int last = frame_count() - 1;
+    return cloud_from_depth(frames_[static_cast<std::size_t>(std::min(frame, last))], kCamera,
+                            RigidTransform::Identity());
+  }
+  double signed_distance(const Vec3&, double) const override { return kNaN; }
+
+ private:
+  const std::vector<DepthImage> frames_;
+};
+
+bool everywhere(int, int) {
+  return true;
+}
+
+// Each pixel is measured with probability p, the same pixels each time.
+Mask scattered(double p, unsigned seed) {
+  auto measured = std::make_shared<std::vector<bool>>();
+  std::mt19937 random(seed);
+  for (int i = 0; i < kCamera.width * kCamera.height; ++i) measured->push_back(random() < p * 4294967296.0);
+  return [measured](int u, int v) { return (*measured)[static_cast<std::size_t>(v * kCamera.width + u)]; };
+}
+
+double wall(double z_m) {
+  return z_m;
+}
+
+// A cylinder that stands upright in front of the camera: radius 4 cm, height 10 cm, front at 0.5 m.
+double mug(double x, double y) {
+  const double radius = 0.04, centre = 0.54, a = x * x + 1;
+  const double root = centre * centre - a * (centre * centre - radius * radius);
+  const double z = (centre - std::sqrt(root)) / a;  // x^2 z^2 + (z - c)^2 = r^2
+  return std::abs(z * y) <= 0.05 ? z : kNaN;        // NaN too where the root is of a negative number
+}
+
+double nearer(double a, double b) {
+  return std::isnan(a) || b < a ? b : a;
+}
+
+double mug_before_wall(double x, double y) {
+  return nearer(mug(x, y), wall(0.7));
+}
+
+// A plate that fills a rectangle, at one depth.
+double plate(double x, double y, double z, double x_from, double x_to, double y_half) {
+  return z * x >= x_from && z * x <= x_to && std::abs(z * y) <= y_half ? z : kNaN;
+}
+
+struct Course {
+  double deepest_m = -1e9;   // farthest behind the surface
+  double on_object_s = 0;    // 5 mm or more inside the surface that is_object() holds
+  double farthest_m = -1e9;  // largest depth of the hand
+};
+
+// Goes along the path in milliseconds.
+Course course(const Trajectory& hand, double duration_s, const std::function<Surface(double)>& surface_at,
+              const std::function<bool(double, double)>& is_object) {
+  Course course;
+  for (double t = 0; t < duration_s; t += 0.001) {
+    const Vec3 p = hand.at(t).position_W;
+    const double x = p.x() / p.z(), y = p.y() / p.z(), behind = p.z() - surface_at(t)(x, y);
+    if (behind > course.deepest_m) course.deepest_m = behind;  // not if nothing is seen
+    if (behind > 0.005 && is_object(x, y)) course.on_object_s += 0.001;
+    course.farthest_m = std::max(course.farthest_m, p.z());
+  }
+  return course;
+}
+
+Course course(const ImageScan& hand, const Surface& surface,
+              const std::function<bool(double, double)>& is_object) {
+  return course(
+      hand, hand.duration_s() + 0.1, [&](double) { return surface; }, is_object);
+}
+
+bool is_mug(double x, double y) {
+  return std::isfinite(mug(x, y));
+}
+
+std::vector<std::string> kinds(const Trajectory& hand) {
+  std::vector<std::string> kinds;
+  for (const Note& note : hand.notes()) kinds.push_back(note.kind);
+  return kinds;
+}
+using Kinds = std::vector<std::string>;
+
+// The mug is 8 cm wide; its outer parts are too steep, and 1 cm at each side is the margin.
+constexpr double kMugSeconds = 0.3;  // 3 cm at 0.1 m/s
+
+TEST(ImageScan, ScansAMugOfDenseDepth) {
+  const Views scene({photographed(mug_before_wall, everywhere)});
+  const ImageScan hand({}, scene);
+  const Course at = course(hand, mug_before_wall, is_mug);
+  EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+  EXPECT_GT(at.on_object_s, kMugSeconds);
+  EXPECT_EQ(kinds(hand), Kinds{});
+}
+
+// 30 % of the pixels, as in depth that was warped to a colour camera of more pixels. At 0.5 m a disc of 8 mm
+// has 55 pixels: it is empty with a probability of 3e-9. Steep parts differ more from pixel to measured
+// pixel, so less of the mug is a surface.
+TEST(ImageScan, ScansAMugOfSparseDepth) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Views scene({photographed(mug_before_wall, scattered(0.3, seed))});
+    const ImageScan hand({}, scene);
+    const Course at = course(hand, mug_before_wall, is_mug);
+    EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+    EXPECT_GT(at.on_object_s, kMugSeconds / 2);
+    EXPECT_EQ(kinds(hand), Kinds{"holes bridged"});
+    EXPECT_HAS(hand.notes()[0].text, "bridge_m = 8 mm");
+  }
+}
+
+// The wall is dense, the mug is not: the wall alone has no object, and a hand that follows it is behind the
+// mug.
+TEST(ImageScan, ScansASparseMugBeforeADenseWall) {
+  const Mask some = scattered(0.4, 4);
+  const Views scene({photographed(mug_before_wall, [&](int u, int v) {
+    const Vec3 ray = scenes::ray(kCamera, u, v);
+    return !is_mug(ray.x(), ray.y()) || some(u, v);
+  })});
+  const ImageScan hand({}, scene);
+  const Course at = course(hand, mug_before_wall, is_mug);
+  EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+  EXPECT_GT(at.on_object_s, kMugSeconds / 2);
+}
+
+// 5 % of the mug's pixels: it cannot be touched, but it is there. The hand may only follow the wall beside
+// it.
+TEST(ImageScan, FliesInFrontOfWhatItCannotTouch) {
+  const Mask few = scattered(0.05, 5);
+  const Views scene({photographed(mug_before_wall, [&](int u, int v) {
+    const Vec3 ray = scenes::ray(kCamera, u, v);
+    return !is_mug(ray.x(), ray.y()) || few(u, v);
+  })});
+  const ImageScan hand({}, scene);
+  const Course at = course(hand, mug_before_wall, is_mug);
+  EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+  EXPECT_EQ(at.on_object_s, 0);
+}
+
+// Columns at 0.5 m are 0.95 mm apart: gaps of 5 columns are narrower than 8 mm, gaps of 11 are wider.
+TEST(ImageScan, BridgesStripesUpToTheLimit) {
+  const auto striped = [](int every) {
+    return Views({photographed(mug, [=](int u, int) { return u % every == 0; })});
+  };
+  const Views narrow = striped(6), wide = striped(12);
+  const ImageScan hand({}, narrow);
+  const Course at = course(hand, mug, is_mug);
+  EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+  EXPECT_GT(at.on_object_s, kMugSeconds / 2);  // steep parts differ more from stripe to stripe
+  EXPECT_HAS(refusal([&] { ImageScan({}, wide); }), "holes of at most 8 mm");
+  ImageScan::Settings none;
+  none.bridge_m = 0;
+  EXPECT_HAS(refusal([&] { ImageScan(none, narrow); }), "no surface without edges");
+}
+
+// A plate with a hole of 4 cm in its middle, with nothing or a far wall behind it.
+TEST(ImageScan, FliesOverAHoleInTheMiddle) {
+  for (const double behind : {kNaN, 1.5}) {
+    const auto in_hole = [](double x, double y) { return std::hypot(0.5 * x, 0.5 * y) < 0.02; };
+    const Surface holed = [&](double x, double y) {
+      return in_hole(x, y) ? behind : nearer(plate(x, y, 0.5, -0.12, 0.12, 0.1), behind);
+    };
+    const Views scene({photographed(holed, everywhere)});
+    const ImageScan hand({}, scene);
+    const Course at = course(hand, holed, [&](double x, double y) { return !in_hole(x, y); });
+    EXPECT_LT(at.deepest_m, 0.01 + 1e-6);
+    EXPECT_LT(at.farthest_m, 0.51 + 1e-6) << "the wall is beyond span_m";
+    EXPECT_GT(at.on_object_s, 1.2);  // 2 x 8 cm at 0.1 m/s at least
+    double nearest_over_hole = 1e9, farthest_over_hole = 0;
+    for (double t = 0; t < hand.duration_s(); t += 0.001) {
+      const Vec3 p = hand.at(t).position_W;
+      if (!in_hole(p.x() / p.z(), p.y() / p.z())) continue;
+      nearest_over_hole = std::min(nearest_over_hole, p.z());
+      farthest_over_hole = std::max(farthest_over_hole, p.z());
+    }
+    EXPECT_NEAR(nearest_over_hole, 0.47, 1e-6);
+    EXPECT_NEAR(farthest_over_hole, 0.47, 1e-6);
+  }
+}
+
+// Two plates, and between them a pen that is nearer but too thin to be touched.
+TEST(ImageScan, PassesAThinObjectInFront) {
+  const auto is_pen = [](double x, double) { return std::abs(0.42 * x) < 0.003; };
+  const Surface scene_surface = [&](double x, double y) {
+    const double pen = is_pen(x, y) ? plate(x, y, 0.42, -1, 1, 0.1) : kNaN;
+    return nearer(pen, nearer(plate(x, y, 0.5, -0.12, -0.02, 0.1), plate(x, y, 0.5, 0.02, 0.12, 0.1)));
+  };
+  const Views scene({photographed(scene_surface, everywhere)});
+  ImageScan::Settings s;
+  s.row = 240;
+  const ImageScan hand(s, scene);
+  const Course at = course(hand, scene_surface, [&](double x, double y) { return !is_pen(x, y); });
+  EXPECT_LT(at.deepest_m, 0.01 + 1e-6);
+  EXPECT_GT(at.on_object_s, 1.2);
+  double before_pen = 0;  // the largest depth of the hand where it passes
+  for (double t = 0; t < hand.duration_s(); t += 0.001) {
+    const Vec3 p = hand.at(t).position_W;
+    if (is_pen(p.x() / p.z(), 0)) before_pen = std::max(before_pen, p.z());
+  }
+  EXPECT_NEAR(before_pen, 0.42 - 0.03, 1e-6) << "a clearance in front of it";
+}
+
+// A frame without an inner part: its middle row and column cross nothing at the medians of its pixels.
+TEST(ImageScan, ScansAnObjectThatIsHollow) {
+  const Surface ring = [](double x, double y) {
+    const double r = std::hypot(0.5 * x, 0.5 * y);
+    return nearer(r > 0.05 && r < 0.1 ? 0.5 : kNaN, wall(0.75));
+  };
+  const auto is_ring = [&](double x, double y) { return ring(x, y) < 0.6; };
+  const Views scene({photographed(ring, everywhere)});
+  const ImageScan scan({}, scene);
+  const Course at = course(scan, ring, is_ring);
+  EXPECT_LT(at.deepest_m, 0.01 + 1e-6);
+  EXPECT_GT(at.on_object_s, 0.4);  // 2 x 3 cm
+  const ImagePress press({}, scene);
+  const Course pressed = course(
+      press, 1, [&](double) { return ring; }, is_ring);
+  EXPECT_NEAR(pressed.deepest_m, 0.01, 1e-6);
+  EXPECT_GT(pressed.on_object_s, 0.6);
+}
+
+TEST(ImageScan, RefusesAClearanceBehindTheCamera) {
+  const Views scene({photographed(mug_before_wall, everywhere)});
+  ImageScan::Settings scan;
+  scan.clearance_m = 0.6;
+  EXPECT_HAS(refusal([&] { ImageScan(scan, scene); }), "behind the camera");
+  ImagePress::Settings press;
+  press.depth_m = -0.6;
+  EXPECT_HAS(refusal([&] { ImagePress(press, scene); }), "behind the camera");
+}
+
+TEST(ImagePress, PressesOnSparseDepth) {
+  // Other pixels are measured in each frame.
+  std::vector<DepthImage> frames;
+  for (unsigned seed = 10; seed < 20; ++seed)
+    frames.push_back(photographed(mug_before_wall, scattered(0.3, seed)));
+  const Views scene(std::move(frames));
+  const ImagePress hand({}, scene);
+  const Course at = course(
+      hand, 0.4, [](double) { return mug_before_wall; }, is_mug);
+  EXPECT_LT(at.deepest_m, 0.01 + kEdge_m);
+  EXPECT_GT(at.on_object_s, 0.05);  // 5 mm inside after 0.1 s + 35 mm / 0.2 m/s = 0.275 s
+  EXPECT_EQ(kinds(hand), Kinds{"holes bridged"});
+}
+
+// Frame 9 to 14: fingers come between, each too thin to be touched.
+TEST(ImagePress, LiftsInFrontOfWhatComesBetween) {
+  const Surface plate_only = [](double x, double y) { return plate(x, y, 0.6, -0.2, 0.2, 0.15); };
+  const Surface fingers = [&](double x, double y) {
+    const bool is_finger = std::fmod(std::abs(x) * 0.4, 0.012) < 0.006;
+    return nearer(is_finger ? plate(x, y, 0.4, -0.1, 0.1, 0.1) : kNaN, plate_only(x, y));
+  };
+  std::vector<DepthImage> frames;
+  for (int frame = 0; frame < 20; ++frame)
+    frames.push_back(photographed(frame >= 9 && frame < 15 ? fingers : plate_only, everywhere));
+  const Views scene(std::move(frames));
+  const ImagePress hand({}, scene);
+  const auto surface_at = [&](double t) {
+    const double frame = std::floor(t * 30 + 1e-4);
+    return frame >= 9 && frame < 15 ? fingers : plate_only;
+  };
+  const Course at = course(hand, 0.66, surface_at, [](double, double) { return true; });
+  EXPECT_LT(at.deepest_m, 0.01 + 1e-6);
+  EXPECT_GT(at.on_object_s, 0.1);
+  // The fingers are within the margin of the pixel; the hand is a clearance in front of them.
+  EXPECT_NEAR(hand.at(0.4).position_W.z(), 0.4 - 0.03, 1e-6);
+  EXPECT_TRUE(hand.surface_plan(0.4)->touches);
+  EXPECT_FALSE(hand.surface_plan(0.2)->touches) << "30 mm take until 0.25 s";
+}
+
+TEST(ImagePress, ChoosesATouchablePixelOnlyWhereNoneIsGiven) {
+  const Surface ring = [](double x, double y) {
+    const double r = std::hypot(0.5 * x, 0.5 * y);
+    return r > 0.05 && r < 0.1 ? 0.5 : kNaN;
+  };
+  const Views scene({photographed(ring, everywhere)});
+  ImagePress::Settings s;
+  s.row = 240, s.column = 320;
+  EXPECT_HAS(refusal([&] { ImagePress(s, scene); }), "trajectory.row = 240, column = 320: no surface");
+  s.column = -1;
+  const ImagePress hand(s, scene);
+  EXPECT_EQ(hand.row(), 240);
+  // The margin of 1 cm is 10 pixels; the ring begins 52.5 pixels from the middle.
+  EXPECT_NEAR(std::abs(hand.column() - 319.5), 52.5 + 10 + 1.5, 2.5);
+}
+
+// bridged() against a plain search of all measured pixels for each hole.
+TEST(Bridging, ClosesHolesUpToTheLimit) {
+  std::mt19937 random(7);
+  for (const double p : {0.02, 0.3, 0.9}) {
+    DepthImage image{50, 40, {}};
+    for (int i = 0; i < 50 * 40; ++i)
+      image.z_m.push_back(random() < p * 4294967296.0 ? 0.3 + 0.1 * (random() % 4) : kNaN);
+    const double focal = 510, hole = 0.008;  // reaches 6.8, 5.1, 4.08 and 3.4 pixels: no distance is equal
+    const DepthImage closed = bridged(image, focal, hole);
+    int filled = 0;
+    for (int v = 0; v < 40; ++v)
+      for (int u = 0; u < 50; ++u) {
+        const auto at = [&](const DepthImage& i, int x, int y) {
+          return i.z_m[static_cast<std::size_t>(y * 50 + x)];
+        };
+        const double got = at(closed, u, v);
+        if (std::isfinite(at(image, u, v))) {
+          ASSERT_EQ(got, at(image, u, v));
+          continue;
+        }
+        double best = kNaN, least = 1e9;
+        for (int y = 0; y < 40; ++y)
+          for (int x = 0; x < 50; ++x) {
+            const double z = at(image, x, y), d = std::hypot(x - u, y - v);
+            bool is_rim = false;
+            for (int b = std::max(0, y - 1); b <= std::min(39, y + 1); ++b)
+              for (int a = std::max(0, x - 1); a <= std::min(49, x + 1); ++a)
+                is_rim = is_rim || std::isnan(at(image, a, b));
+            if (!is_rim || !(d * z / focal <= hole / 2)) continue;
+            if (d < least || (d == least && z < best)) least = d, best = z;
+          }
+        ASSERT_TRUE(got == best || (std::isnan(got) && std::isnan(best))) << u << " " << v << ": " << got;
+        filled += std::isfinite(best);
+      }
+    EXPECT_GT(filled, 100);
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::image_trajectories_test
