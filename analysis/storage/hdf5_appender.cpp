@@ -1,5 +1,7 @@
 #include "analysis/storage/hdf5_appender.h"
 
+#include <zlib.h>
+
 #include <new>
 #include <utility>
 
@@ -54,6 +56,7 @@ void Hdf5Appender::guarded(const Call& call) {
 Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     : target_(target), temporary_(temporary_of(target)) {
   require_writable(target);
+  require_no_device();
   remove_leftovers(target);
   try {
     guarded([&] { begin(); });
@@ -61,6 +64,13 @@ Hdf5Appender::Hdf5Appender(const std::filesystem::path& target)
     remove_temporary();
     throw;
   }
+}
+
+// A file that was renamed over a device would replace it.
+void Hdf5Appender::require_no_device() const {
+  std::error_code absent;
+  if (std::filesystem::exists(target_, absent) && !std::filesystem::is_regular_file(target_, absent))
+    throw InputError(target_.string(), "is a device: expected a file");
 }
 
 void Hdf5Appender::begin() {
@@ -132,6 +142,19 @@ void Hdf5Appender::append(const std::string& path, const void* rows, std::size_t
   });
 }
 
+// The bytes of a chunk as they are in the file: the library does not compress them again.
+void Hdf5Appender::append_deflated(const std::string& path, const std::string& row) {
+  guarded([&] {
+    Open& data = open_.at(path);
+    std::vector<hsize_t> start{data.rows}, end{data.rows + 1};
+    for (const auto extent : data.made.row) start.push_back(0), end.push_back(extent);
+    check(H5Dset_extent(data.id, end.data()));
+    constexpr std::uint32_t kEveryFilter = 0;  // none was skipped
+    check(H5Dwrite_chunk(data.id, H5P_DEFAULT, kEveryFilter, start.data(), row.size(), row.data()));
+    ++data.rows;
+  });
+}
+
 void Hdf5Appender::attributes(const std::string& object, const TextAttributes& list) {
   guarded([&] {
     for (const auto& [name, value] : list) write_text(file_, object, name, value);
@@ -146,6 +169,34 @@ void Hdf5Appender::finish() {
   guarded([&] { write_file_digest(temporary_); });
   move_into_place(temporary_, target_);
   finished_ = true;
+}
+
+std::string deflated_row(const void* values, std::size_t count, std::size_t value_size) {
+  const char* const bytes = static_cast<const char*>(values);
+  const std::size_t size = count * value_size;
+  std::string shuffled(size, '\0');
+  for (std::size_t byte = 0; byte < value_size; ++byte)
+    for (std::size_t i = 0; i < count; ++i) shuffled[byte * count + i] = bytes[i * value_size + byte];
+  uLongf used = ::compressBound(static_cast<uLong>(size));
+  std::string row(used, '\0');
+  const int result = ::compress2(reinterpret_cast<Bytef*>(row.data()), &used,
+                                 reinterpret_cast<const Bytef*>(shuffled.data()), static_cast<uLong>(size),
+                                 static_cast<int>(kDeflate));
+  if (result != Z_OK) throw std::bad_alloc();  // the buffer is large enough, and the level is one
+  row.resize(used);
+  return row;
+}
+
+bool is_deflated_row(const std::string& row, std::size_t size) {
+  constexpr std::size_t kMaxRatio = 1032;  // of this method
+  if (row.size() < size / kMaxRatio) return false;
+  std::string shuffled(size, '\0');
+  uLongf used = static_cast<uLongf>(size);
+  uLong read = static_cast<uLong>(row.size());
+  const int result = ::uncompress2(reinterpret_cast<Bytef*>(shuffled.data()), &used,
+                                   reinterpret_cast<const Bytef*>(row.data()), &read);
+  if (result == Z_MEM_ERROR) throw std::bad_alloc();
+  return result == Z_OK && used == size && read == row.size();
 }
 
 }  // namespace remote_touch

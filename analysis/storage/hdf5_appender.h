@@ -14,7 +14,7 @@ namespace remote_touch {
 // Written under a temporary name beside the target; finish() seals it and renames it to the target. Without
 // finish() nothing is left; what a killed program leaves, the next appender of the same target removes. Not
 // for use from several threads at once, nor while another thread uses HDF5. Every member throws InputError
-// naming the target when it cannot be written.
+// naming the target when it cannot be written; a device, /dev/null included, cannot.
 class Hdf5Appender {
  public:
   enum class Number { f64, f32, i32, u64, u32, u16 };
@@ -35,6 +35,8 @@ class Hdf5Appender {
   void dataset(const Dataset& made);
   // rows: count rows in the type of the dataset and the machine's byte order.
   void append(const std::string& path, const void* rows, std::size_t count);
+  // One row that deflated_row() made. pre: the dataset has one row in each chunk.
+  void append_deflated(const std::string& path, const std::string& row);
   void attributes(const std::string& object, const TextAttributes& list);
   void finish();
 
@@ -46,6 +48,7 @@ class Hdf5Appender {
   };
   template <class Call>
   void guarded(const Call& call);
+  void require_no_device() const;
   void begin();
   bool close();
   void remove_temporary();
@@ -56,5 +59,12 @@ class Hdf5Appender {
   bool finished_ = false;
   std::map<std::string, Open> open_;
 };
+
+// The bytes of a row of values of this size, as the file stores them: shuffled (the first bytes of all
+// values, then the second ones, ...) and deflated. Does not use the HDF5 library, so that another thread may.
+std::string deflated_row(const void* values, std::size_t count, std::size_t value_size);
+
+// True if the bytes are what deflated_row() makes of so many bytes.
+bool is_deflated_row(const std::string& row, std::size_t size);
 
 }  // namespace remote_touch

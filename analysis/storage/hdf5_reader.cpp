@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
@@ -52,6 +53,7 @@ bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) 
 
 // Throws InputError unless the file exists and is one that can be opened without waiting.
 void require_regular(const std::filesystem::path& file) {
+  require_no_journal(file);
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) refuse(file, "no such file");
   if (std::filesystem::is_directory(file, unreachable)) refuse(file, "a folder");

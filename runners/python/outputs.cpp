@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/python/long_work.h"
@@ -18,6 +19,8 @@ OutputFile::OutputFile(const std::string& file, bool force, const std::string& s
   std::error_code absent;
   const bool holds_something =
       std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
+  if (is_journal(file))
+    throw InputError(file, "is an unfinished recording, which nothing overwrites: expected another file");
   if (holds_something && !force && !has_result_header(file))
     throw InputError(file, "is there already and is no result: expected another file, or force=True");
   require_writable(file);

@@ -37,14 +37,50 @@ std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
 
 }  // namespace
 
-SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorView& view,
-                             const RigidTransform& registered, const TextAttributes& provenance,
-                             const std::vector<std::string>& live_parameters)
-    : file_(target), view_(view) {
+SessionLayout layout_of(const SensorView& view) {
+  SessionLayout layout;
+  layout.has_colour = view.has_colour;
+  if (view.cloud) {
+    layout.numbers_per_point = static_cast<std::uint32_t>(view.cloud->numbers_per_point());
+  } else {
+    layout.width = static_cast<std::uint32_t>(view.camera.width);
+    layout.height = static_cast<std::uint32_t>(view.camera.height);
+  }
+  return layout;
+}
+
+StoredFrame stored_frame(const SessionLayout& layout, const SensorFrame& frame, double captured_s,
+                         std::uint64_t fixtures_off) {
+  StoredFrame stored{frame.number, captured_s, fixtures_off, 0, {}, {}};
+  const auto bytes = [](const auto& values) {
+    return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  };
+  if (layout.has_clouds()) {
+    stored.point_count = static_cast<std::uint32_t>(frame.points.size() / layout.numbers_per_point);
+    stored.depth = bytes(frame.points);
+    if (layout.has_colour) stored.colour = bytes(frame.colour);
+    return stored;
+  }
+  stored.depth = deflated_row(frame.depth.data(), layout.pixels(), sizeof frame.depth[0]);
+  if (layout.has_colour)
+    stored.colour = deflated_row(frame.colour.data(), layout.pixels(), sizeof frame.colour[0]);
+  return stored;
+}
+
+TextAttributes session_attributes(const SensorView& view, const RigidTransform& registered,
+                                  const TextAttributes& provenance,
+                                  const std::vector<std::string>& live_parameters) {
+  TextAttributes all{{"schema", schema_name("session")}, {"view", view_text(view, registered)}};
+  all.insert(all.end(), provenance.begin(), provenance.end());
+  all.emplace_back("live_parameters", nlohmann::json(live_parameters).dump());
+  return all;
+}
+
+SessionWriter::SessionWriter(const std::filesystem::path& target, const SessionLayout& layout,
+                             const TextAttributes& attributes)
+    : file_(target), layout_(layout) {
   using Number = Hdf5Appender::Number;
-  file_.attributes("/", {{"schema", schema_name("session")}, {"view", view_text(view, registered)}});
-  file_.attributes("/", provenance);
-  file_.attributes("/", {{"live_parameters", nlohmann::json(live_parameters).dump()}});
+  file_.attributes("/", attributes);
   file_.group("/ticks"), file_.group("/frames"), file_.group("/changes");
   file_.dataset({"/ticks/number", "1", "number of the tick: its time times the haptic rate", Number::u64});
   file_.dataset({"/ticks/position", "m", "of the device, world frame", Number::f64, {3}});
@@ -60,14 +96,13 @@ SessionWriter::SessionWriter(const std::filesystem::path& target, const SensorVi
   file_.dataset({"/changes/tick", "1", "number of the first tick with the new value", Number::u64});
   file_.dataset({"/changes/parameter", "1", "its place in live_parameters, from 0", Number::i32});
   file_.dataset({"/changes/value", "1", "in the parameter's own unit; of a switch 0 or 1", Number::f64});
-  if (view.cloud) {
+  if (layout.has_clouds()) {
     add_cloud_datasets();
     return;
   }
-  const auto height = static_cast<unsigned long long>(view.camera.height),
-             width = static_cast<unsigned long long>(view.camera.width);
+  const unsigned long long height = layout.height, width = layout.width;
   file_.dataset({"/frames/depth", "1", "units of metres_per_unit, 0: none", Number::u16, {height, width}, 1});
-  if (view.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
+  if (layout.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB", Number::u32, {height, width}, 1});
 }
 
 // The points of all frames, one after the other.
@@ -78,8 +113,8 @@ void SessionWriter::add_cloud_datasets() {
                  "m",
                  "x y z, and the normal if there are normals, camera frame",
                  Number::f32,
-                 {view_.cloud->numbers_per_point()}});
-  if (view_.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB of each point", Number::u32});
+                 {layout_.numbers_per_point}});
+  if (layout_.has_colour) file_.dataset({"/frames/colour", "1", "0xRRGGBB of each point", Number::u32});
 }
 
 void SessionWriter::append(const SessionChange& change) {
@@ -117,24 +152,23 @@ void SessionWriter::flush_ticks() {
   ticks_ = {};
 }
 
-void SessionWriter::append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
-  const std::int32_t number = frame.number;
-  file_.append("/frames/number", &number, 1);
-  file_.append("/frames/captured", &captured_s, 1);
-  file_.append("/frames/fixtures_off", &fixtures_off, 1);
-  if (!view_.cloud) {
-    file_.append("/frames/depth", frame.depth.data(), 1);
-    if (view_.has_colour) file_.append("/frames/colour", frame.colour.data(), 1);
+void SessionWriter::append(const StoredFrame& frame) {
+  file_.append("/frames/number", &frame.number, 1);
+  file_.append("/frames/captured", &frame.captured_s, 1);
+  file_.append("/frames/fixtures_off", &frame.fixtures_off, 1);
+  if (!layout_.has_clouds()) {
+    file_.append_deflated("/frames/depth", frame.depth);
+    if (layout_.has_colour) file_.append_deflated("/frames/colour", frame.colour);
     return;
   }
-  const auto points = static_cast<std::uint32_t>(frame.points.size() / view_.cloud->numbers_per_point());
-  file_.append("/frames/point_count", &points, 1);
-  file_.append("/frames/points", frame.points.data(), points);
-  if (view_.has_colour) file_.append("/frames/colour", frame.colour.data(), points);
+  file_.append("/frames/point_count", &frame.point_count, 1);
+  file_.append("/frames/points", frame.depth.data(), frame.point_count);
+  if (layout_.has_colour) file_.append("/frames/colour", frame.colour.data(), frame.point_count);
 }
 
-void SessionWriter::finish() {
+void SessionWriter::finish(const TextAttributes& attributes) {
   flush_ticks();
+  file_.attributes("/", attributes);
   file_.finish();
 }
 
@@ -230,6 +264,10 @@ void SessionReader::read_view() try {
 
 std::string SessionReader::config() const {
   return attribute(file_.attributes(), "config");
+}
+
+std::string SessionReader::ended() const {
+  return attribute(file_.attributes(), "ended");
 }
 
 DeviceState SessionReader::device(std::size_t i) const {

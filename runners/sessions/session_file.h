@@ -24,6 +24,9 @@ struct SessionTick {
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
+// The attribute `ended` of a recording that was recovered.
+inline constexpr const char* kInterruptedRecording = "interrupted";
+
 // A live parameter that was changed. tick: number of the first tick with the new value; of a scenario's
 // parameter, of the tick at which it was asked for (frames with the new noise come later).
 struct SessionChange {
@@ -32,28 +35,65 @@ struct SessionChange {
   double value = 0;
 };
 
+// The shape of the frames of a session.
+struct SessionLayout {
+  std::uint32_t width = 0, height = 0;  // of the images; 0: clouds
+  std::uint32_t numbers_per_point = 0;  // of the clouds: 3, or 6 with normals; 0: images
+  bool has_colour = false;
+
+  bool has_clouds() const { return numbers_per_point > 0; }
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
+};
+SessionLayout layout_of(const SensorView& view);
+
+// A frame as a session stores it. Images are rows of deflated_row(); points and their colours are not
+// compressed.
+struct StoredFrame {
+  std::int32_t number = 0;
+  double captured_s = 0;
+  std::uint64_t fixtures_off = 0;
+  std::uint32_t point_count = 0;
+  std::string depth, colour;  // the bytes; depth: of a cloud its points, float
+};
+// pre: is_complete(frame, view) of the view that has this layout.
+StoredFrame stored_frame(const SessionLayout& layout, const SensorFrame& frame, double captured_s,
+                         std::uint64_t fixtures_off);
+
+// The attributes of a session: schema, view, provenance, and live_parameters (their names). registered: X_WC
+// of the camera, including its registration.
+TextAttributes session_attributes(const SensorView& view, const RigidTransform& registered,
+                                  const TextAttributes& provenance,
+                                  const std::vector<std::string>& live_parameters);
+
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
 // written to the device, gate. /frames: number, captured, fixtures_off, depth, colour; of clouds point_count,
-// points, colour. /changes: tick, parameter, value. The root's attributes: config, view, haptic rate,
-// live_parameters (their names) and the provenance.
+// points, colour. /changes: tick, parameter, value. The root's attributes: those of session_attributes(), and
+// those of finish().
 class SessionWriter {
  public:
-  // registered: X_WC of the camera, including its registration.
+  SessionWriter(const std::filesystem::path& target, const SessionLayout& layout,
+                const TextAttributes& attributes);
   SessionWriter(const std::filesystem::path& target, const SensorView& view, const RigidTransform& registered,
-                const TextAttributes& provenance, const std::vector<std::string>& live_parameters = {});
+                const TextAttributes& provenance, const std::vector<std::string>& live_parameters = {})
+      : SessionWriter(target, layout_of(view),
+                      session_attributes(view, registered, provenance, live_parameters)) {}
 
   void append(const SessionChange& change);
   void append(const SessionTick& tick);  // written to the disk a thousand at a time
+  void append(const StoredFrame& frame);
   // pre: is_complete(frame, view).
-  void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  void finish();
+  void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
+    append(stored_frame(layout_, frame, captured_s, fixtures_off));
+  }
+  // attributes: more of them, known at the end only.
+  void finish(const TextAttributes& attributes = {});
 
  private:
   void add_cloud_datasets();
   void flush_ticks();
 
   Hdf5Appender file_;
-  const SensorView view_;
+  const SessionLayout layout_;
   struct {
     std::vector<std::uint64_t> number;
     std::vector<double> position, orientation, force, torque;
@@ -69,6 +109,9 @@ class SessionReader {
   explicit SessionReader(Hdf5Reader file);
 
   std::string config() const;  // the experiment that was run, as JSON
+  // Why the recording ended: kInterruptedRecording where its program did not end it; empty in older
+  // recordings.
+  std::string ended() const;
   double haptic_rate_hz() const { return haptic_rate_hz_; }
   const SensorView& view() const { return view_; }
   std::size_t frame_count() const { return captured_s_.size(); }

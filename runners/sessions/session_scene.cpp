@@ -43,8 +43,10 @@ RecordingPart input_files(const SessionHand::Settings& s) {
 }
 
 SessionScene::SessionScene(const Settings& settings, const NoiseKey&, const Kernels&)
-    : session_(find_recording(settings.path)),
-      arrives_s_(session_.frame_count(), std::numeric_limits<double>::infinity()) {
+    : path_(settings.path),
+      session_(find_recording(settings.path)),
+      arrives_s_(session_.frame_count(), std::numeric_limits<double>::infinity()),
+      is_read_(session_.frame_count(), false) {
   for (std::size_t i = 0; i < session_.tick_count(); ++i)
     if (session_.taken(i) >= 0)
       arrives_s_[static_cast<std::size_t>(session_.taken(i))] =
@@ -52,8 +54,37 @@ SessionScene::SessionScene(const Settings& settings, const NoiseKey&, const Kern
   if (arrives_s_.empty()) throw InputError(settings.path, "has no frames: expected a session with some");
 }
 
+SensorFrame SessionScene::read(std::size_t frame) const {
+  SensorFrame sensed = session_.frame(frame);
+  if (!is_read_[frame]) sensed_.add(sensed, session_.view());
+  is_read_[frame] = true;
+  return sensed;
+}
+
 PointCloud SessionScene::cloud(int frame) const {
-  return cloud_of(session_.frame(static_cast<std::size_t>(frame)), session_.view(), session_.view().X_WC);
+  return cloud_of(read(static_cast<std::size_t>(frame)), session_.view(), session_.view().X_WC);
+}
+
+std::string SessionScene::input() const {
+  return path_ + ": " + std::to_string(session_.frame_count()) + " frame(s) of a live session, " +
+         layout_text(session_.view()) + "; " + std::to_string(sensed_.frames()) + " read: " + sensed_.text();
+}
+
+std::vector<Note> SessionScene::input_notes() const {
+  std::size_t arrived = 0, unused = 0;
+  for (std::size_t frame = 0; frame < arrives_s_.size(); ++frame) {
+    if (!std::isfinite(arrives_s_[frame])) continue;
+    ++arrived;
+    unused += is_read_[frame] ? 0 : 1;
+  }
+  std::vector<Note> notes;
+  if (session_.ended() == kInterruptedRecording)
+    notes.push_back({"recording incomplete", path_ + ": the recording was interrupted"});
+  if (unused > 0)
+    notes.push_back({"frames unused", path_ + ": " + std::to_string(unused) + " of " +
+                                          std::to_string(arrived) +
+                                          " frames were not used: the run ends before"});
+  return notes;
 }
 
 std::shared_ptr<const NeighbourSearch> SessionScene::points(int frame) const {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
+#include "runners/sessions/sensed_points.h"
 #include "runners/sessions/session_file.h"
 #include "runners/trajectories/trajectory.h"
 #include "scenarios/interface/scenario.h"
@@ -35,10 +36,18 @@ class SessionScene final : public Scenario {
   std::optional<std::uint64_t> fixtures_off(int frame) const override {
     return session_.fixtures_off(static_cast<std::size_t>(frame));
   }
+  std::string input() const override;
+  // Frames that the live renderer got and this run did not reach; a recording that was interrupted.
+  std::vector<Note> input_notes() const override;
 
  private:
+  SensorFrame read(std::size_t frame) const;
+
+  const std::string path_;
   const SessionReader session_;
   std::vector<double> arrives_s_;  // infinite where the renderer never got it
+  mutable SensedPoints sensed_;    // of the frames that were read, each once
+  mutable std::vector<bool> is_read_;
 };
 
 Parameters parameters(SessionScene::Settings& s);

@@ -38,6 +38,9 @@ SweepResult result_of(const Content& content) {
     result.state.push_back(static_cast<RunState>(state));
   result.error = values_of<std::string>(content, "/sweep/error");
   result.round = values_of<std::int32_t>(content, "/sweep/round");
+  if (!content.datasets.contains("/sweep/notes")) return result;
+  std::istringstream kinds(attribute(content.attributes, "note_kinds"));
+  for (std::string kind; std::getline(kinds, kind, ',');) result.note_kinds.push_back(kind);
   return result;
 }
 
@@ -45,7 +48,7 @@ Content with_right_digests(Content content) {
   TextAttributes plan;
   for (const auto& [name, value] : content.attributes)
     if (name != "schema" && name != "digest" && name != "plan_digest" && name != "default" &&
-        name != "axes" && name != "measures")
+        name != "axes" && name != "measures" && name != "note_kinds")
       plan.emplace_back(name, value);
   const SweepResult result = result_of(content);
   for (auto& [name, value] : content.attributes) {

@@ -64,6 +64,43 @@ TEST(Hdf5Appender, WhatGrewIsReadAgainAndSealed) {
   EXPECT_EQ(numbers_of<double>(in, "/a/word")[99], 0xffffffffu - 99.0);
 }
 
+// Rows that were compressed before, between rows that the library compresses.
+TEST(Hdf5Appender, TakesDeflatedRows) {
+  const TestFolder folder("hdf5_appender");
+  std::vector<std::uint16_t> depth;
+  std::vector<std::uint32_t> colour;
+  {
+    Hdf5Appender out(folder / "x.h5");
+    out.dataset({"/depth", "1", "pixels", Number::u16, {5, 7}, 1});
+    out.dataset({"/colour", "1", "pixels", Number::u32, {5, 7}, 1});
+    for (std::uint32_t row = 0; row < 6; ++row) {
+      std::vector<std::uint16_t> a(35);
+      std::vector<std::uint32_t> b(35);
+      for (std::uint32_t i = 0; i < 35; ++i)
+        a[i] = static_cast<std::uint16_t>(i * i * 7919 + row), b[i] = ~(i << row);
+      depth.insert(depth.end(), a.begin(), a.end()), colour.insert(colour.end(), b.begin(), b.end());
+      if (row % 2 == 0) {
+        out.append("/depth", a.data(), 1), out.append("/colour", b.data(), 1);
+        continue;
+      }
+      const std::string deflated = deflated_row(a.data(), 35, 2);
+      EXPECT_TRUE(is_deflated_row(deflated, 70));
+      EXPECT_FALSE(is_deflated_row(deflated, 69));
+      EXPECT_FALSE(is_deflated_row(deflated, 71));
+      EXPECT_FALSE(is_deflated_row(deflated + "x", 70));
+      out.append_deflated("/depth", deflated), out.append_deflated("/colour", deflated_row(b.data(), 35, 4));
+    }
+    out.finish();
+  }
+  const Hdf5Reader in(folder / "x.h5");
+  EXPECT_EQ(numbers_of<std::int32_t>(in, "/depth"), std::vector<std::int32_t>(depth.begin(), depth.end()));
+  EXPECT_EQ(numbers_of<double>(in, "/colour"), std::vector<double>(colour.begin(), colour.end()));
+}
+
+TEST(Hdf5Appender, RefusesADeviceThatItWouldReplace) {
+  EXPECT_HAS(refusal([] { Hdf5Appender("/dev/null"); }), "/dev/null: is a device: expected a file");
+}
+
 TEST(Hdf5Appender, WithoutFinishNothingIsLeft) {
   const TestFolder folder("hdf5_appender");
   { Hdf5Appender out(folder / "left.h5"); }

@@ -67,6 +67,22 @@ TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
   EXPECT_TRUE(std::isnan(scene.signed_distance(Vec3::Zero(), 0))) << "there is no truth";
 }
 
+// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer got the first and the last.
+TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
+  const SessionScene scene = this->scene();
+  scene.cloud(0), scene.points(0);
+  EXPECT_EQ(scene.input(), file_.string() +
+                               ": 3 frame(s) of a live session, 3 x 2 pixels; 1 read: "
+                               "100 % of 6 points measured, depth 0.25 to 0.253 m, without colours");
+  ASSERT_EQ(scene.input_notes().size(), 1u);
+  EXPECT_EQ(scene.input_notes()[0].kind, "frames unused");
+  EXPECT_EQ(scene.input_notes()[0].text,
+            file_.string() + ": 1 of 2 frames were not used: the run ends before");
+  scene.points(2);
+  EXPECT_TRUE(scene.input_notes().empty()) << "the frame that was overtaken belongs to no run";
+  EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
+}
+
 TEST_F(SessionSceneTest, WithoutFramesItIsRefused) {
   session_.frames.clear(), session_.ticks.clear();
   EXPECT_EQ(refusal([this] { scene(); }), file_.string() + ": has no frames: expected a session with some");

@@ -154,6 +154,39 @@ def prepare_record(tools, folder):
     tools.must(folder, record_arguments())
 
 
+UNFINISHED = "out.h5.unfinished"
+
+
+def is_kept(tools, folder):
+    """What is wrong with the unfinished recording in the folder; empty: nothing, or there is none. The next recording is
+    refused and leaves it, it becomes a recording that runs, and then it is removed."""
+    path = os.path.join(folder, UNFINISHED)
+    if not os.path.exists(path):
+        return ""
+    kept = read(path)
+    refused = tools.call(folder, record_arguments())
+    if refused is None or refused.returncode != 2 or UNFINISHED.encode() not in refused.stderr or read(path) != kept:
+        return f"the next recording: {refused and (refused.returncode, refused.stderr[:300])}"
+    told = tools.call(folder, ["inspect", UNFINISHED])
+    counts = re.search(rb"unfinished, (\d+) ticks and (\d+) frames", told.stdout if told else b"")
+    if not counts:
+        return f"inspect: {told and (told.returncode, told.stderr[:300])}"
+    ticks, frames = (int(count) for count in counts.groups())
+    if ticks + frames > 0:
+        recovered, again = (os.path.join("tmp", name) for name in ("recovered.h5", "again.h5"))
+        for arguments in (["recover", UNFINISHED, "-o", recovered], ["run", recovered, "-o", again]):
+            done = tools.call(folder, arguments)
+            if done is None or done.returncode != 0 and not EMPTY.search(done.stderr):
+                return f"{arguments[0]}: {done and (done.returncode, done.stderr[:300])}"
+        for name in (recovered, again):
+            if os.path.exists(os.path.join(folder, name)):
+                os.remove(os.path.join(folder, name))
+    if read(path) != kept:
+        return f"{UNFINISHED} was changed"
+    os.remove(path)
+    return ""
+
+
 def prepare_export(tools, folder):
     """Over an earlier export of another run."""
     prepare_run(tools, folder)

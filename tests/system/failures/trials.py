@@ -8,7 +8,7 @@ import struct
 import subprocess
 import tempfile
 
-from commands import EMPTY, KINDS, done_runs, read, restore, state_of
+from commands import EMPTY, KINDS, UNFINISHED, done_runs, is_kept, read, restore, state_of
 
 # What only a library or the language would say.
 FOREIGN = re.compile(r"std::|bad_alloc|basic_|json\.exception|HDF5-DIAG|library refused|libgomp|terminate|what\(\)|"
@@ -173,6 +173,8 @@ class Trials:
     def litter(self, failure, state, message=""):
         extra = set(state) - set(self.scene.before) - set(self.scene.after)
         extra = {name for name in extra if not name.endswith(".lock")}  # that nobody holds: the next command takes it
+        if UNFINISHED in message or ENDED_AT_ONCE.search(message):  # what was recorded is kept, and named
+            extra -= {UNFINISHED}
         if ENDED_AT_ONCE.search(message):  # nothing could be removed; the next command does
             extra = {name for name in extra if not name.startswith(self.scratch) and ".partial-" not in name}
         return "" if failure.kind == "remove" or not extra else f"left {sorted(extra)}"
@@ -198,7 +200,9 @@ class Trials:
         return "" if good else f"{self.command.result} cannot be run"
 
     def again(self, state):
-        """The same command, undisturbed, on what is there now."""
+        """The same command, undisturbed, on what is there now. A recording that is kept comes first."""
+        if problem := is_kept(self.tools, self.folder):
+            return problem
         done = self.tools.call(self.folder, self.command.arguments)
         if done is None or done.returncode != 0 or done.stderr:
             return f"the same command again: {done and (done.returncode, done.stderr[:300])}"

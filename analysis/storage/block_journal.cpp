@@ -1,0 +1,240 @@
+#include "analysis/storage/block_journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/file_digest.h"
+#include "core/parameters/input_error.h"
+
+namespace remote_touch {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr const char* kEnding = ".unfinished";
+
+struct BlockHeader {
+  char mark[4] = {'R', 'T', 'b', '1'};
+  std::uint32_t kind = 0;
+  std::uint64_t number = 0, size = 0;
+  std::uint32_t content_crc = 0, header_crc = 0;
+};
+static_assert(sizeof(BlockHeader) == 32);
+
+std::uint32_t crc_of(const void* bytes, std::size_t size) {
+  return static_cast<std::uint32_t>(::crc32_z(0, static_cast<const Bytef*>(bytes), size));
+}
+
+std::uint32_t crc_of(const BlockHeader& header) {
+  return crc_of(&header, offsetof(BlockHeader, header_crc));
+}
+
+std::string bytes_of(const JournalBlock& block, std::uint64_t number) {
+  BlockHeader header;
+  header.kind = block.kind, header.number = number, header.size = block.content.size();
+  header.content_crc = crc_of(block.content.data(), block.content.size());
+  header.header_crc = crc_of(header);
+  std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+  return bytes += block.content;
+}
+
+bool is_header(const BlockHeader& header, std::uint64_t number, std::uint64_t room) {
+  return std::memcmp(header.mark, BlockHeader{}.mark, sizeof header.mark) == 0 &&
+         header.header_crc == crc_of(header) && header.number == number && header.size <= room;
+}
+
+std::string way_to_recover(const std::filesystem::path& journal) {
+  return "`remote-touch recover " + journal.string() + " -o FILE`";
+}
+
+// File systems without hard links, such as FAT.
+bool has_no_links(int error) {
+  return error == EPERM || error == EOPNOTSUPP || error == ENOSYS || error == EMLINK;
+}
+
+}  // namespace
+
+std::filesystem::path journal_of(const std::filesystem::path& target) {
+  return resolved(target).string() + kEnding;
+}
+
+bool is_journal(const std::filesystem::path& file) {
+  std::error_code unreachable;  // a pipe would wait
+  return std::filesystem::is_regular_file(file, unreachable) &&
+         opening_of(file, kJournalOpening.size()) == kJournalOpening;
+}
+
+void require_no_journal(const std::filesystem::path& file) {
+  if (is_journal(file))
+    throw InputError(file.string(), "is an unfinished recording: expected a file that " +
+                                        way_to_recover(file) + " makes of it");
+  std::error_code unreachable;
+  const std::filesystem::path journal = file.string() + kEnding;
+  if (!std::filesystem::exists(file, unreachable) && is_journal(journal))
+    throw InputError(file.string(),
+                     "no such file, but its unfinished recording is there: expected a file that " +
+                         way_to_recover(journal) + " makes of it");
+}
+
+void require_no_journal_beside(const std::filesystem::path& target) {
+  const std::filesystem::path journal = journal_of(target);
+  std::error_code unreachable;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(journal, unreachable))) return;
+  throw InputError(journal.string(),
+                   "is there already, an earlier recording that did not end: expected another "
+                   "name for the new one, or that you remove it after " +
+                       way_to_recover(journal));
+}
+
+JournalWriter::JournalWriter(const std::filesystem::path& target, const JournalBlock& first)
+    : target_(target), file_(journal_of(target)) {
+  require_writable(target);
+  std::error_code absent;
+  if (std::filesystem::exists(target, absent) && !std::filesystem::is_regular_file(target, absent))
+    throw InputError(target.string(), "is a device: expected a file");
+  require_no_journal_beside(target);
+  try {
+    create(first);
+  } catch (...) {  // the destructor does not run for a constructor that throws
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw;
+  }
+}
+
+JournalWriter::~JournalWriter() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+// The file has its name only once its first block is whole: a journal without one would help nobody.
+void JournalWriter::create(const JournalBlock& first) {
+  const std::filesystem::path temporary = temporary_of(target_);
+  descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) refuse(errno);
+  try {
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks has none
+    write(std::string(kJournalOpening) + bytes_of(first, next_number_++));
+    sync();
+    give_name(temporary);
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  flush_folder(file_);
+}
+
+// Over nothing that is there.
+void JournalWriter::give_name(const std::filesystem::path& temporary) const {
+  if (::link(temporary.c_str(), file_.c_str()) == 0) {
+    ::unlink(temporary.c_str());
+    return;
+  }
+  const int error = errno;
+  require_no_journal_beside(target_);
+  if (!has_no_links(error)) refuse(error);
+  if (::rename(temporary.c_str(), file_.c_str()) != 0) refuse(errno);
+}
+
+void JournalWriter::refuse(int error) const {
+  throw InputError(target_.string(), std::string("cannot be written (") + std::strerror(error) +
+                                         "): expected a writable place with room");
+}
+
+// What was written of a block that finds no room is cut off again; where that fails, readers leave it out.
+void JournalWriter::write(const std::string& bytes) {
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int error = written < 0 ? errno : ENOSPC;
+      if (::ftruncate(descriptor_, static_cast<off_t>(size_)) == 0)
+        ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET);
+      refuse(error);
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  size_ += bytes.size();
+}
+
+void JournalWriter::append(const JournalBlock& block) {
+  write(bytes_of(block, next_number_));
+  ++next_number_;
+}
+
+void JournalWriter::sync() const {
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) refuse(errno);
+}
+
+void JournalWriter::remove() noexcept {
+  if (descriptor_ < 0) return;
+  ::unlink(file_.c_str());
+  ::close(std::exchange(descriptor_, -1));
+}
+
+JournalReader::JournalReader(const std::filesystem::path& file) : file_(file) {
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable))
+    throw InputError(file.string(), "no such file: expected a recording");
+  if (!is_journal(file)) {
+    const bool has_one = is_journal(file.string() + kEnding);
+    throw InputError(file.string(), "is no unfinished recording: expected " +
+                                        (has_one ? file.string() : std::string("FILE")) + kEnding +
+                                        ", which remote-touch live --record leaves when it is interrupted");
+  }
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat there = {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &there) != 0) {
+    const int error = errno;
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw InputError(file.string(),
+                     std::string("cannot be read (") + std::strerror(error) + "): expected a readable file");
+  }
+  is_growing_ = ::flock(descriptor_, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  size_ = static_cast<std::uint64_t>(there.st_size);
+  at_ = last_ = kJournalOpening.size();
+}
+
+JournalReader::~JournalReader() {
+  ::close(descriptor_);
+}
+
+// False where the file ends before.
+bool JournalReader::read(std::uint64_t from, void* bytes, std::size_t size) const {
+  char* const to = static_cast<char*>(bytes);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t part = ::pread(descriptor_, to + done, size - done, static_cast<off_t>(from + done));
+    if (part < 0 && errno == EINTR) continue;
+    if (part < 0)
+      throw InputError(file_.string(), std::string("cannot be read (") + std::strerror(errno) +
+                                           "): expected a readable file");
+    if (part == 0) return false;
+    done += static_cast<std::size_t>(part);
+  }
+  return true;
+}
+
+std::optional<JournalBlock> JournalReader::next() {
+  BlockHeader header;
+  const std::uint64_t room = left();
+  if (room < sizeof header || !read(at_, &header, sizeof header)) return {};
+  if (!is_header(header, number_, room - sizeof header)) return {};
+  JournalBlock block{header.kind, std::string(static_cast<std::size_t>(header.size), '\0')};
+  if (!read(at_ + sizeof header, block.content.data(), block.content.size())) return {};
+  if (header.content_crc != crc_of(block.content.data(), block.content.size())) return {};
+  last_ = at_;
+  at_ += sizeof header + header.size;
+  ++number_;
+  return block;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,33 @@
+// Statistics of the points in a sensor's frames, for the line on what a session has read.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "runners/sessions/sensor_frame.h"
+
+namespace remote_touch {
+
+class SensedPoints {
+ public:
+  // Counts a complete frame, see is_complete(). Allocates nothing.
+  void add(const SensorFrame& frame, const SensorView& view);
+
+  std::int64_t frames() const { return frames_; }
+  // "68.3 % of 3686400 points measured, depth 0.41 to 2.98 m, with colours". The depth is along the optical
+  // axis.
+  std::string text() const;
+
+ private:
+  std::int64_t frames_ = 0;
+  std::uint64_t points_ = 0, measured_ = 0;
+  double nearest_m_ = std::numeric_limits<double>::infinity();
+  double farthest_m_ = -std::numeric_limits<double>::infinity();
+  bool has_colours_ = false;
+};
+
+// "640 x 480 pixels", or "clouds of points".
+std::string layout_text(const SensorView& view);
+
+}  // namespace remote_touch

@@ -1,0 +1,224 @@
+// Blocks are read up to the first one that is not whole, whatever became of the file; nothing overwrites it.
+#include "analysis/storage/block_journal.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <vector>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::block_journal_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Contents with the bytes of a header, of the opening, zeros, and none.
+const std::vector<std::string> kContents{
+    "first", std::string("RTb1\0\1\2\3", 8), "", std::string(300, '\0'), std::string(kJournalOpening),
+    "last"};
+
+// The journal of FOLDER/x with these blocks; the sizes of the file after each of them.
+std::vector<std::uintmax_t> write(const TestFolder& folder) {
+  std::vector<std::uintmax_t> sizes;
+  JournalWriter writer(folder / "x", {0, kContents[0]});
+  sizes.push_back(fs::file_size(writer.file()));
+  for (std::size_t i = 1; i < kContents.size(); ++i) {
+    writer.append({static_cast<std::uint32_t>(10 + i), kContents[i]});
+    sizes.push_back(fs::file_size(writer.file()));
+  }
+  return sizes;
+}
+
+// The number of blocks that are read; each must be the one that was written.
+std::size_t whole_blocks(const fs::path& file) {
+  JournalReader reader(file);
+  std::size_t count = 0;
+  while (const std::optional<JournalBlock> block = reader.next()) {
+    if (count >= kContents.size()) return kContents.size() + 1;
+    EXPECT_EQ(block->content, kContents[count]);
+    EXPECT_EQ(block->kind, count == 0 ? 0 : 10 + count);
+    ++count;
+  }
+  return count;
+}
+
+TEST(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
+  const TestFolder folder("block_journal");
+  const auto sizes = write(folder);
+  EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"x.unfinished"});
+  EXPECT_TRUE(is_journal(folder / "x.unfinished"));
+  EXPECT_EQ(whole_blocks(folder / "x.unfinished"), kContents.size());
+  JournalReader reader(folder / "x.unfinished");
+  EXPECT_FALSE(reader.is_growing());
+  reader.next();
+  EXPECT_EQ(reader.left(), sizes.back() - sizes.front());
+  const std::uint64_t before = reader.left();
+  reader.next(), reader.reject();
+  EXPECT_EQ(reader.left(), before);
+}
+
+// As a kill or a power cut leaves it: the blocks that lie before the cut, at every byte.
+TEST(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
+  const TestFolder folder("block_journal");
+  const auto sizes = write(folder);
+  const std::string whole = bytes_of(folder / "x.unfinished");
+  for (std::size_t size = kJournalOpening.size(); size <= whole.size(); ++size) {
+    const fs::path cut = folder.write("cut", whole.substr(0, size));
+    std::size_t expected = 0;
+    while (expected < sizes.size() && sizes[expected] <= size) ++expected;
+    ASSERT_EQ(whole_blocks(cut), expected) << size;
+    // A power cut may leave zeros, or what was on the disk before, in place of the last blocks.
+    for (const char byte : {'\0', '\xff'}) {
+      std::string replaced = whole;
+      for (std::size_t i = size; i < replaced.size(); ++i) replaced[i] = byte;
+      ASSERT_LE(whole_blocks(folder.write("replaced", replaced)), sizes.size());
+      if (size < whole.size()) {
+        ASSERT_LE(whole_blocks(folder / "replaced"), expected + 1) << size;
+      }
+    }
+  }
+}
+
+TEST(BlockJournal, AChangedByteEndsTheBlocksBeforeIt) {
+  const TestFolder folder("block_journal");
+  const auto sizes = write(folder);
+  const std::string whole = bytes_of(folder / "x.unfinished");
+  for (std::size_t at = kJournalOpening.size(); at < whole.size(); ++at) {
+    std::string changed = whole;
+    changed[at] ^= 0x10;
+    std::size_t expected = 0;
+    while (sizes[expected] <= at) ++expected;
+    ASSERT_EQ(whole_blocks(folder.write("changed", changed)), expected) << at;
+  }
+}
+
+TEST(BlockJournal, BlocksThatAreMissingOrComeTwiceEndIt) {
+  const TestFolder folder("block_journal");
+  const auto sizes = write(folder);
+  const std::string whole = bytes_of(folder / "x.unfinished");
+  const auto part = [&](std::size_t block) {
+    return whole.substr(sizes[block - 1], sizes[block] - sizes[block - 1]);
+  };
+  const std::string start = whole.substr(0, sizes[0]);
+  EXPECT_EQ(whole_blocks(folder.write("a", start + part(2) + part(1))), 1u);
+  EXPECT_EQ(whole_blocks(folder.write("b", start + part(1) + part(1) + part(2))), 2u);
+  EXPECT_EQ(whole_blocks(folder.write("c", whole + whole)), kContents.size());
+  EXPECT_EQ(whole_blocks(folder.write("d", start + part(1) + "garbage" + part(2))), 2u);
+}
+
+TEST(BlockJournal, GrowsWhileItsWriterLives) {
+  const TestFolder folder("block_journal");
+  JournalWriter writer(folder / "x", {0, "first"});
+  writer.append({1, "second"});
+  writer.sync();
+  JournalReader reader(folder / "x.unfinished");
+  EXPECT_TRUE(reader.is_growing());
+  EXPECT_EQ(reader.next()->content, "first");
+  EXPECT_EQ(reader.next()->content, "second");
+  EXPECT_FALSE(reader.next());
+  writer.remove();
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(BlockJournal, NothingOverwritesIt) {
+  const TestFolder folder("block_journal");
+  write(folder);
+  const std::string bytes = bytes_of(folder / "x.unfinished");
+  const std::string why = refusal([&] { JournalWriter(folder / "x", {0, "first"}); });
+  EXPECT_HAS(why, "x.unfinished: is there already");
+  EXPECT_HAS(why, "remote-touch recover");
+  EXPECT_HAS(refusal([&] { require_no_journal_beside(folder / "x"); }), "x.unfinished: is there already");
+  EXPECT_EQ(bytes_of(folder / "x.unfinished"), bytes);
+  EXPECT_EQ(files_in(folder.path()).size(), 1u);
+  // Also a file that is no journal.
+  folder.write("y.unfinished", "mine");
+  EXPECT_HAS(refusal([&] { JournalWriter(folder / "y", {0, "first"}); }), "y.unfinished: is there already");
+  EXPECT_EQ(bytes_of(folder / "y.unfinished"), "mine");
+}
+
+TEST(BlockJournal, IsBesideTheFileThatALinkLeadsTo) {
+  const TestFolder folder("block_journal");
+  fs::create_directory(folder / "deep");
+  fs::create_symlink("deep/x", folder / "link");
+  const JournalWriter writer(folder / "link", {0, "first"});
+  EXPECT_TRUE(fs::equivalent(writer.file(), folder / "deep/x.unfinished"));
+}
+
+TEST(BlockJournal, RefusesWhatCannotBeWritten) {
+  const TestFolder folder("block_journal");
+  EXPECT_HAS(refusal([&] { JournalWriter(folder / "nowhere/x", {0, "first"}); }), "cannot be written");
+  EXPECT_HAS(refusal([&] { JournalWriter(folder.path(), {0, "first"}); }), "cannot be written");
+  EXPECT_HAS(refusal([&] { JournalWriter("/dev/null", {0, "first"}); }), "/dev/null: is a device");
+}
+
+// While it lives, a file of this process may not grow beyond so many bytes, as on a full disk.
+class NoRoom {
+ public:
+  explicit NoRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit less{bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &less);
+  }
+  ~NoRoom() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  NoRoom(const NoRoom&) = delete;
+  NoRoom& operator=(const NoRoom&) = delete;
+
+ private:
+  rlimit old_{};
+  void (*handler_)(int);
+};
+
+TEST(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
+  const TestFolder folder("block_journal");
+  JournalWriter writer(folder / "x", {0, "first"});
+  const std::uintmax_t size = fs::file_size(writer.file());
+  {
+    const NoRoom limit(size + 50);
+    EXPECT_HAS(refusal([&] {
+                 writer.append({1, std::string(100, 'x')});
+               }),
+               "x: cannot be written (File too large)");
+    EXPECT_EQ(fs::file_size(writer.file()), size) << "what was written of it is cut off";
+  }
+  writer.append({2, "later"});
+  JournalReader reader(writer.file());
+  EXPECT_EQ(reader.next()->content, "first");
+  EXPECT_EQ(reader.next()->content, "later");
+}
+
+TEST(BlockJournal, WithoutRoomForTheFirstBlockNothingIsLeft) {
+  const TestFolder folder("block_journal");
+  const NoRoom limit(50);
+  EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, std::string(100, 'x')}); }), "File too large");
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
+TEST(BlockJournal, RefusesToReadOtherFiles) {
+  const TestFolder folder("block_journal");
+  const auto why = [](const fs::path& file) { return refusal([&] { JournalReader{file}; }); };
+  EXPECT_HAS(why(folder / "none"), "none: no such file");
+  EXPECT_HAS(why(folder.write("empty", "")), "empty: is no unfinished recording");
+  EXPECT_HAS(why(folder.write("text", "Remote Touch result")), "text: is no unfinished recording");
+  EXPECT_HAS(why(folder.path()), "is no unfinished recording");
+  write(folder);
+  EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
+}
+
+TEST(BlockJournal, IsNamedToWhoeverWantsTheFile) {
+  const TestFolder folder("block_journal");
+  write(folder);
+  EXPECT_HAS(refusal([&] { require_no_journal(folder / "x"); }),
+             "x: no such file, but its unfinished recording");
+  EXPECT_HAS(refusal([&] { require_no_journal(folder / "x.unfinished"); }), "is an unfinished recording");
+  EXPECT_EQ(refusal([&] { require_no_journal(folder / "other"); }), "no InputError");
+  folder.write("x", "a result");
+  EXPECT_EQ(refusal([&] { require_no_journal(folder / "x"); }), "no InputError");
+}
+
+}  // namespace
+}  // namespace remote_touch::block_journal_test
