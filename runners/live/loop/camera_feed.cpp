@@ -100,6 +100,7 @@ void CameraFeed::handle(SensorFrame& sensed) {
   renderer_.prepare(frame);
   send(std::move(frame), sensed.captured_s);
   counts_.processing_s += clock_.now_s() - begin_s;
+  sensed_points_.add(sensed, source_->view());  // after the frame was sent, so that it is not later
 }
 
 void CameraFeed::send(Frame frame, double sensed_s) {
@@ -114,6 +115,7 @@ void CameraFeed::send(Frame frame, double sensed_s) {
   out_.back() = {std::move(frame), sensed_s, ready_s, hash};
   if (!out_.publish()) ++counts_.overtaken;
   newest_s_.store(ready_s, std::memory_order_relaxed);
+  has_sent_.store(true, std::memory_order_release);
 }
 
 }  // namespace remote_touch

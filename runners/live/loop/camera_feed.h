@@ -11,6 +11,7 @@
 #include "runners/experiment/frame_stream.h"
 #include "runners/live/loop/servo.h"
 #include "runners/live/sensors/depth_source.h"
+#include "runners/sessions/sensed_points.h"
 
 namespace remote_touch {
 
@@ -46,7 +47,9 @@ class CameraFeed {
   CameraCounts counts() const;  // so far
   std::string ended() const;    // why there will be no more frames; empty while there may be
   double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the clock
+  bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }    // a frame to the servo
   const SensorView& view() const { return source_->view(); }
+  const SensedPoints& sensed() const { return sensed_points_; }  // pre: step() is no longer called
 
  private:
   void handle(SensorFrame& sensed);
@@ -65,6 +68,7 @@ class CameraFeed {
   const std::function<void(const Frame&)> on_frame_;  // a viewer's; may be empty
   SensorFrame sensed_;
   CameraCounts counts_;
+  SensedPoints sensed_points_;  // of the frames that were sent
   mutable std::mutex reported_mutex_;
   CameraCounts reported_;  // after the newest frame
   int index_ = 0, last_number_ = -1;
@@ -72,7 +76,7 @@ class CameraFeed {
   std::deque<Frame> held_;
   std::atomic<double> newest_s_;
   std::string why_;
-  std::atomic<bool> ended_ = false;
+  std::atomic<bool> ended_ = false, has_sent_ = false;
 };
 
 }  // namespace remote_touch

@@ -29,6 +29,7 @@ struct LiveLog {
   std::int64_t missed_ticks = 0;  // tick numbers that were skipped
   std::int64_t exhausted_ticks = 0;   // that ended before the tool came to rest
   std::int64_t zero_force_ticks = 0;  // in which the gate was waiting or latched
+  std::int64_t contact_ticks = 0;     // in which a point was touched or the renderer's force was not zero
   std::int64_t stale_ticks = 0;       // with no new frame for kStaleFrame_s
   std::int64_t reversed_frames = 0;   // taken although older than the frame before; should be 0
   double max_force_N = 0;             // written to the device
@@ -36,6 +37,7 @@ struct LiveLog {
   static constexpr double kStaleFrame_s = 0.2;
 
   void append(const LiveTick& tick, double haptic_rate_hz);
+  std::int64_t end_tick() const { return last_number_ + 1; }  // the number after that of the last tick
 
  private:
   void add_row(const LiveTick& tick, double time_s);

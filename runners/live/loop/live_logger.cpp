@@ -4,9 +4,11 @@
 #include <new>
 #include <utility>
 
+#include "core/parameters/input_error.h"
+
 namespace remote_touch {
 
-LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionWriter> recorder,
+LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionRecorder> recorder,
                        std::function<void(const LiveTick&)> on_tick)
     : rows_(rows),
       haptic_rate_hz_(haptic_rate_hz),
@@ -21,15 +23,44 @@ bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64
   return true;
 }
 
+// If the recording fails, the log goes on, and the other way round: each is worth having without the other.
+template <class Write>
+void LiveLogger::record(const Write& write) {
+  if (!recorder_ || recording_failed_) return;
+  try {
+    if (sync_failed_.load(std::memory_order_acquire)) throw InputError(why_no_sync_);
+    write(*recorder_);
+  } catch (const std::exception& error) {
+    recording_failed_ = true;
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    const std::string kept = recorder_->keep();
+    fail(std::string("the recording failed: ") + (no_memory ? "out of memory" : error.what()) +
+         (kept.empty() ? "" : "; ") + kept);
+  }
+}
+
+void LiveLogger::append_to_log(const LiveTick& row) {
+  if (log_failed_) return;
+  try {
+    log_.append(row, haptic_rate_hz_);
+  } catch (const std::exception&) {
+    log_failed_ = true;
+    log_ = LiveLog();  // its columns may differ in length: half a row would be worse than none
+    fail("the log failed: no memory for more ticks");
+  }
+}
+
 void LiveLogger::take_rows() {
   while (const LiveTick* row = rows_.oldest()) {
     if (on_tick_) on_tick_(*row);
-    if (recorder_ && !failed_) record(*row);
-    if (!log_is_full_) {
-      log_is_full_ = true;  // unless this succeeds: half a row would be worse than none
-      log_.append(*row, haptic_rate_hz_);
-      log_is_full_ = false;
-    }
+    record([&](SessionRecorder& recorder) {
+      for (const ParameterChange& change : row->changed.all())
+        recorder.append(
+            SessionChange{static_cast<std::uint64_t>(row->number), change.parameter, change.value});
+      recorder.append(
+          SessionTick{row->number, row->device, row->taken, row->written, static_cast<int>(row->gate)});
+    });
+    append_to_log(*row);
     rows_.pop();
   }
 }
@@ -41,23 +72,16 @@ void LiveLogger::take_frames() {
     const Recorded oldest = std::move(frames_.front());
     frames_.pop_front();
     lock.unlock();
-    if (!failed_) recorder_->append(oldest.frame, oldest.captured_s, oldest.fixtures_off);
+    record([&](SessionRecorder& recorder) {
+      recorder.append(oldest.frame, oldest.captured_s, oldest.fixtures_off);
+    });
     take_rows();  // a frame takes a while to be written
   }
 }
 
-void LiveLogger::record(const LiveTick& row) {
-  recorder_->append(SessionTick{row.number, row.device, row.taken, row.written, static_cast<int>(row.gate)});
-  for (const ParameterChange& change : row.changed.all())
-    recorder_->append(SessionChange{static_cast<std::uint64_t>(row.number), change.parameter, change.value});
-}
-
-// Where the disk is full it goes on without it, so that the log is whole.
-void LiveLogger::take_all() noexcept try {
+void LiveLogger::take_all() {
   take_rows();
   take_frames();
-} catch (const std::exception& error) {
-  fail(error);
 }
 
 void LiveLogger::step() noexcept {
@@ -69,24 +93,35 @@ void LiveLogger::step() noexcept {
   }
 }
 
-// The log is worth having even where the disk is full.
-void LiveLogger::finish() try {
+void LiveLogger::sync() noexcept {
+  if (!recorder_ || failed_.load(std::memory_order_acquire) || sync_failed_) return;
+  try {
+    recorder_->sync();
+  } catch (const std::exception& error) {
+    why_no_sync_ = error.what();
+    sync_failed_.store(true, std::memory_order_release);
+  }
+}
+
+void LiveLogger::finish(const std::function<TextAttributes(const LiveLog&)>& closing) {
   take_all();
-  if (recorder_ && !failed_) recorder_->finish();
-} catch (const std::exception& error) {
-  fail(error);
+  const TextAttributes attributes = closing && !log_failed_ ? closing(log_) : TextAttributes();
+  record([&](SessionRecorder& recorder) { recorder.finish(attributes); });
+  if (!why_too_.empty()) why_ += "; " + why_too_;
+}
+
+std::string LiveLogger::keep() {
+  take_all();
+  return recorder_ ? recorder_->keep() : std::string();
 }
 
 // Told once: others may be reading it.
-void LiveLogger::fail(const std::exception& error) {
-  if (failed_) return;
-  if (log_is_full_) {
-    log_ = LiveLog();  // its columns may differ in length
-    why_ = "the log failed: no memory for more ticks";
-  } else {
-    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
-    why_ = std::string("the recording failed: ") + (no_memory ? "out of memory" : error.what());
+void LiveLogger::fail(const std::string& why) {
+  if (failed_) {
+    why_too_ = why;
+    return;
   }
+  why_ = why;
   failed_.store(true, std::memory_order_release);
 }
 

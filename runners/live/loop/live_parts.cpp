@@ -9,7 +9,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kRows = 1 << 14;  // 16 s at 1 kHz until rows are lost
+constexpr const char* kLoopEnded = "the device's loop ended by itself";
+constexpr std::int64_t kHang_ns = 200'000'000;  // shorter hangs are only counted
+constexpr std::size_t kRows = 1 << 14;          // 16 s at 1 kHz until rows are lost
 
 std::size_t padded(int side_px) {
   return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
@@ -35,7 +37,8 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       switches_(std::make_shared<FixtureSwitches>()),
       renderer_(experiment.build_renderer(*options.kernels, switches_)),
       device_(std::move(device)),
-      rows_(kRows) {
+      rows_(kRows),
+      phases_(simulated_phases(experiment, options.device, options.depth, *options.kernels)) {
   require_rate();
   const SensorView& view = source->view();
   experiment.check_needs(view);
@@ -67,15 +70,15 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   if (force_scale_ < 1) report_force_scale();
 }
 
-std::unique_ptr<SessionWriter> LiveParts::recorder(const Experiment& experiment, const SensorView& view,
-                                                   const RigidTransform& registered) const {
+std::unique_ptr<SessionRecorder> LiveParts::recorder(const Experiment& experiment, const SensorView& view,
+                                                     const RigidTransform& registered) const {
   if (options_.record.empty()) return nullptr;
   std::vector<std::string> names;
   if (options_.controls)
     for (const LiveParameter& parameter : options_.controls->parameters()) names.push_back(parameter.name);
   TextAttributes provenance = options_.provenance;
   experiment.add_depth_device(provenance);
-  return std::make_unique<SessionWriter>(options_.record, view, registered, provenance, names);
+  return std::make_unique<SessionRecorder>(options_.record, view, registered, provenance, names);
 }
 
 // Ticks are numbered in steps of the experiment's rate: of a faster loop time would run ahead.
@@ -93,17 +96,24 @@ void LiveParts::run_loop() noexcept {
     loop_failed_ = true;
   }
   device_->release();
+  loop_ended_ = true;
 }
 
 LiveResult LiveParts::finish() {
-  logger_->finish();
-  report_told();
   LiveResult result;
+  is_over();  // a loop that has ended by itself may be ahead of the last look
+  logger_->finish([&](const LiveLog& log) {
+    result.report = report(log);
+    TextAttributes attributes{{"ended", ended_.empty() ? "an error ended the program" : ended_}};
+    add_report(attributes, result.report);
+    return attributes;
+  });
+  report_told();
   result.device = device_->traits().name;
   result.force_scale = force_scale_;
-  is_over();  // a loop that has ended by itself may be ahead of the last look
   result.ended = logger_->failure().empty() ? ended_ : logger_->failure();
-  result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() || loop_failed_;
+  result.failed = servo_->has_failed() || servo_->is_latched() || !camera_failure().empty() || loop_failed_ ||
+                  ended_ == kLoopEnded;
   result.lost = why_lost();
   result.log = logger_->take();
   result.counts = counts();
@@ -118,6 +128,11 @@ std::string LiveParts::why_lost() const {
 
 LiveCounts LiveParts::counts() const {
   return {camera_->counts(), servo_->heartbeat().stalls(), servo_->rows_lost()};
+}
+
+RunReport LiveParts::report(const LiveLog& log) const {
+  return report_of(
+      {options_.depth, camera_->view(), camera_->sensed(), camera_->counts(), log, rate_hz_, phases_});
 }
 
 std::string LiveParts::camera_failure() const {
@@ -136,6 +151,8 @@ std::string LiveParts::why_over() const {
   if (loop_failed_) return "the device's loop failed";
   if (const std::string why = logger_->failure(); !why.empty()) return why;
   if (clock_.now_ns() >= ends_ns_) return "its duration is over";
+  // The adapter has left its loop although no tick told it to.
+  if (loop_ended_) return kLoopEnded;
   return {};
 }
 
@@ -160,21 +177,37 @@ void LiveParts::report_force_scale() const {
   report_line(line);
 }
 
+std::string LiveParts::camera_trouble() const {
+  const char* const held = camera_->has_sent() ? "the last cloud stays" : "there is nothing to touch";
+  if (const std::string why = camera_->ended(); !why.empty()) return "no more frames (" + why + "): " + held;
+  if (clock_.now_s() - camera_->newest_s() <= LiveLog::kStaleFrame_s) return {};
+  return std::string(camera_->has_sent() ? "no frame for 0.2 s: " : "no frame has come yet: ") + held;
+}
+
+std::string LiveParts::force_trouble() const {
+  if (hangs_since_ns_ >= 0 && clock_.now_ns() - hangs_since_ns_ > kHang_ns)
+    return "the haptic loop hangs, and the device was released";
+  if (!servo_->is_latched()) return {};
+  return servo_->trouble() + std::string(servo_->has_failed() ? "" : "; SIGUSR2 re-arms");
+}
+
+LiveTrouble LiveParts::trouble() const {
+  return {camera_trouble(), force_trouble()};
+}
+
 void LiveParts::report_changes() {
   report_told();
-  if (!reported_camera_ && !camera_->ended().empty()) {
-    reported_camera_ = true;
-    report_line("no more frames (" + camera_->ended() + "): the last cloud stays");
-  }
-  const bool stale = clock_.now_s() - camera_->newest_s() > LiveLog::kStaleFrame_s;
-  if (stale != reported_stale_ && !reported_camera_) {
-    reported_stale_ = stale;
-    report_line(stale ? "no frame for 0.2 s: the last cloud stays" : "frames come again");
-  }
-  if (servo_->is_latched() != reported_latch_) {
-    reported_latch_ = !reported_latch_;
-    report_line(reported_latch_ ? std::string("force is off: ") + servo_->trouble() + "; SIGUSR2 re-arms"
-                                : std::string("armed again"));
+  if (!heartbeat().is_released())
+    hangs_since_ns_ = -1;
+  else if (hangs_since_ns_ < 0)
+    hangs_since_ns_ = clock_.now_ns();
+  if (const LiveTrouble now = trouble(); now != reported_) {
+    if (now.camera != reported_.camera) report_line(now.camera.empty() ? "frames come" : now.camera);
+    if (now.force != reported_.force)
+      report_line(now.force.empty() ? "armed again: the force begins when the hand is free"
+                                    : "force is off: " + now.force);
+    reported_ = now;
+    if (options_.on_trouble) options_.on_trouble(now);
   }
   if (options_.rearm && options_.rearm->exchange(false)) servo_->rearm();
   if (options_.report && options_.report->exchange(false) && options_.on_report)

@@ -27,8 +27,8 @@ class LiveParts {
 
   // The haptic loop, until the run ends; it then releases the device.
   void run_loop() noexcept;
-  // To be called beside the loop: camera().step(), heartbeat().check(), logger().step(), and for the user
-  // is_over() and report_changes() every kReportPeriod_s.
+  // To be called beside the loop: camera().step(), heartbeat().check(), logger().step() and logger().sync(),
+  // and for the user is_over() and report_changes() every kReportPeriod_s.
   CameraFeed& camera() { return *camera_; }
   Heartbeat& heartbeat() { return servo_->heartbeat(); }
   LiveLogger& logger() { return *logger_; }
@@ -45,23 +45,27 @@ class LiveParts {
   LiveResult finish();
 
  private:
-  std::unique_ptr<SessionWriter> recorder(const Experiment& experiment, const SensorView& view,
-                                          const RigidTransform& registered) const;
+  std::unique_ptr<SessionRecorder> recorder(const Experiment& experiment, const SensorView& view,
+                                            const RigidTransform& registered) const;
   void require_rate() const;
   LiveCounts counts() const;
+  RunReport report(const LiveLog& log) const;
   std::string camera_failure() const;
   std::string why_over() const;
   std::string why_lost() const;
   void report_line(const std::string& line) const;
   void report_told();
   void report_force_scale() const;
+  LiveTrouble trouble() const;
+  std::string camera_trouble() const;
+  std::string force_trouble() const;
 
   const LiveOptions& options_;
   const Clock& clock_;
   const double rate_hz_;
   std::int64_t ends_ns_ = 0;
   double force_scale_ = 1;
-  std::atomic<bool> stop_ = false, loop_failed_ = false;
+  std::atomic<bool> stop_ = false, loop_failed_ = false, loop_ended_ = false;
   const std::shared_ptr<FixtureSwitches> switches_;
   const std::unique_ptr<Renderer> renderer_;
   const std::unique_ptr<HapticDevice> device_;
@@ -72,8 +76,11 @@ class LiveParts {
   std::unique_ptr<LiveLogger> logger_;
   std::unique_ptr<CameraFeed> camera_;
   std::unique_ptr<Servo> servo_;
-  std::string ended_;  // why
-  bool reported_camera_ = false, reported_stale_ = false, reported_latch_ = false;
+  const std::vector<Phase> phases_;  // see simulated_phases()
+  std::string ended_;                // why
+  LiveTrouble reported_;
+  // When report_changes() first found the device released by the heartbeat; -1: it is not released.
+  std::int64_t hangs_since_ns_ = -1;
 };
 
 }  // namespace remote_touch

@@ -3,8 +3,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <functional>
 #include <future>
+#include <new>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -20,6 +23,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kPatience_s = 0.05;  // of the camera's thread: it notices an end in that time
+constexpr double kLook_s = 0.02;      // of the thread that writes through to the disk, likewise
 constexpr auto kMaxStop = std::chrono::seconds(2);
 
 // Ends it, and waits for that, when it is destroyed.
@@ -39,6 +43,11 @@ class LiveThreads {
         parts_.heartbeat().check(clock_.now_ns());
     });
     logger_ = repeat(clock, LiveLogger::kPeriod_s, [this] { parts_.logger().step(); });
+    sync_ = repeat(clock, kLook_s, [this, next_s = clock.now_s() + LiveLogger::kSyncPeriod_s]() mutable {
+      if (clock_.now_s() < next_s) return;
+      parts_.logger().sync();
+      next_s = clock_.now_s() + LiveLogger::kSyncPeriod_s;
+    });
     camera_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested() && parts_.camera().step(kPatience_s)) continue;
     });
@@ -62,7 +71,7 @@ class LiveThreads {
     parts_.stop();
     if (is_done_.wait_for(kMaxStop) != std::future_status::ready) give_up();
     loop_.join();
-    end(camera_), end(logger_), end(watch_);
+    end(camera_), end(logger_), end(sync_), end(watch_);
     return std::move(real_time_);
   }
 
@@ -74,9 +83,13 @@ class LiveThreads {
   // The vendor's call does not come back, and neither would a join.
   [[noreturn]] void give_up() {
     parts_.release();
-    end(camera_), end(logger_);
-    parts_.logger().finish();  // what was recorded until then is whole
-    std::fputs("remote-touch: the loop of the device does not end; the device was released\n", stderr);
+    end(camera_), end(logger_), end(sync_);
+    parts_.logger().finish([](const LiveLog&) {
+      return TextAttributes{{"ended", "the loop of the device does not end"}};
+    });
+    const std::string failure = parts_.logger().failure();
+    std::fprintf(stderr, "remote-touch: the loop of the device does not end; the device was released%s%s\n",
+                 failure.empty() ? "" : "; ", failure.c_str());
     std::_Exit(1);
   }
 
@@ -85,9 +98,22 @@ class LiveThreads {
   std::string real_time_;
   std::promise<void> done_;
   std::future<void> is_done_;
-  std::jthread watch_, logger_, camera_;  // these end after the loop
+  std::jthread watch_, logger_, sync_, camera_;  // these end after the loop
   std::thread loop_;
 };
+
+LiveResult run_parts(LiveParts& parts, const LiveOptions& options, Clock& clock) {
+  if (options.on_start) options.on_start();
+  std::string real_time;
+  {
+    LiveThreads threads(parts, clock);
+    for (; !parts.is_over(); clock.sleep_s(LiveParts::kReportPeriod_s)) parts.report_changes();
+    real_time = threads.finish();
+  }
+  LiveResult result = parts.finish();
+  result.real_time = std::move(real_time);
+  return result;
+}
 
 }  // namespace
 
@@ -97,13 +123,14 @@ LiveResult run_live(const Experiment& experiment, const LiveOptions& options) {
   auto source = open_sensor(options.depth, {experiment, *options.kernels, clock,
                                             options.controls ? options.controls->scenario() : nullptr});
   LiveParts parts(experiment, options, clock, std::move(device), std::move(source));
-  if (options.on_start) options.on_start();
-  LiveThreads threads(parts, clock);
-  for (; !parts.is_over(); clock.sleep_s(LiveParts::kReportPeriod_s)) parts.report_changes();
-  std::string real_time = threads.finish();
-  LiveResult result = parts.finish();
-  result.real_time = std::move(real_time);
-  return result;
+  try {
+    return run_parts(parts, options, clock);
+  } catch (const std::exception& error) {
+    const std::string kept = parts.logger().keep();
+    if (kept.empty()) throw;
+    const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+    throw std::runtime_error((no_memory ? "out of memory" : error.what()) + ("; " + kept));
+  }
 }
 
 }  // namespace remote_touch

@@ -53,6 +53,12 @@ class ReplaceableScenario final : public Scenario {
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return shown_->now()->signed_distance(p_W, time_s);
   }
+  Vec3 true_normal(const Vec3& p_W, double time_s) const override {
+    return shown_->now()->true_normal(p_W, time_s);
+  }
+  std::optional<Vec3> plane_normal(double time_s) const override {
+    return shown_->now()->plane_normal(time_s);
+  }
   double truth_time_s(double time_s) const override { return shown_->now()->truth_time_s(time_s); }
   double surface_height(double x, double z, double time_s) const override {
     return shown_->now()->surface_height(x, z, time_s);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "runners/live/view/page_message.h"
-#include "runners/live/view/view_messages.h"
 
 namespace remote_touch {
 
@@ -34,17 +33,22 @@ void LiveChannel::take(const Frame& frame) noexcept {
   frame_is_new_ = true;
 }
 
-void LiveChannel::open() {
+void LiveChannel::open(PageRole role, const std::string& trouble) {
   const std::lock_guard lock(mutex_);
   rows_ = {};
   frame_is_new_ = points_ != nullptr;
   sent_columns_ = was_frame_ = false;
   sent_ = acknowledged_ = 0;
-  answer_ = controls_->has_changed() ? parameters_message(*controls_, {}) : std::string();
+  hand_ = {};
+  role_ = role;
+  texts_ = {role_message(role)};
+  if (!trouble.empty()) texts_.push_back(trouble);
+  if (controls_->has_changed()) texts_.push_back(parameters_message(*controls_, {}));
+  is_ended_ = false;
   is_open_ = true;
 }
 
-// Nobody is there to let a button go.
+// Nobody is there to release a button.
 void LiveChannel::close() {
   is_open_ = false;
   if (hand_.buttons == 0) return;
@@ -53,19 +57,45 @@ void LiveChannel::close() {
   poses_->publish();
 }
 
+void LiveChannel::give_hand() {
+  role_ = PageRole::hand;
+  tell(role_message(role_));
+}
+
+void LiveChannel::tell_parameters() {
+  tell(parameters_message(*controls_, {}));
+}
+
+void LiveChannel::tell(std::string text) {
+  const std::lock_guard lock(mutex_);
+  texts_.push_back(std::move(text));
+}
+
+void LiveChannel::end(std::string last) {
+  const std::lock_guard lock(mutex_);
+  if (is_ended_) return;
+  is_ended_ = true;
+  last_ = std::move(last);
+}
+
+bool LiveChannel::is_over() {
+  const std::lock_guard lock(mutex_);
+  return is_ended_ && last_.empty();
+}
+
 bool LiveChannel::receive(std::string_view bytes) {
   const auto message = page_message(bytes);
   const auto* acknowledged = message ? std::get_if<PageAcknowledgement>(&*message) : nullptr;
-  const bool is_known =
-      message && (!acknowledged || acknowledged->number - acknowledged_ <= sent_ - acknowledged_);
-  if (!is_known) {
+  const bool is_allowed =
+      message && (acknowledged ? acknowledged->number - acknowledged_ <= sent_ - acknowledged_ : has_hand());
+  if (!is_allowed) {
     ++refused_;
     return false;
   }
   if (acknowledged) {
     acknowledged_ = acknowledged->number;
   } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {
-    answer_ = parameters_message(*controls_, controls_->change(*changes));
+    tell(parameters_message(*controls_, controls_->change(*changes)));
   } else {
     hand_ = std::get<HandPose>(*message);
     poses_->back() = hand_;
@@ -74,11 +104,20 @@ bool LiveChannel::receive(std::string_view bytes) {
   return true;
 }
 
-bool LiveChannel::next(Message& message) {
-  if (sent_columns_ && !answer_.empty()) {
-    message = {std::exchange(answer_, {}), true};
+bool LiveChannel::next_text(Message& message) {
+  const std::lock_guard lock(mutex_);
+  if (is_ended_ && !last_.empty()) {
+    message = {std::exchange(last_, {}), true};
     return true;
   }
+  if (!sent_columns_ || texts_.empty()) return false;
+  message = {std::move(texts_.front()), true};
+  texts_.erase(texts_.begin());
+  return true;
+}
+
+bool LiveChannel::next(Message& message) {
+  if (next_text(message)) return true;
   if (sent_ - acknowledged_ >= kMaxInFlight) return false;
   std::shared_ptr<const NeighbourSearch> points;
   std::int32_t index = 0;

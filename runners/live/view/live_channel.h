@@ -1,5 +1,6 @@
-// Between a live run and the page that shows it: what is to be sent, and what came. The run never waits for
-// the page: of frames the page gets the newest only, of ticks those of the last seconds.
+// Between a live run and one page that shows it: what is to be sent, and what came. The run never waits for
+// the page: of frames the page gets the newest only, of ticks those of the last seconds. LivePages has the
+// channels of all pages of a run.
 #pragma once
 
 #include <atomic>
@@ -8,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/kernels/kernels.h"
 #include "core/rendering/frame.h"
@@ -15,6 +17,7 @@
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/servo.h"
 #include "runners/live/view/live_rows.h"
+#include "runners/live/view/view_messages.h"
 
 namespace remote_touch {
 
@@ -32,12 +35,25 @@ class LiveChannel {
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
 
-  // From the server's thread. A page has come, or gone: it gets everything from now on.
-  void open();
+  // From the server's thread. A page has come, or is closed: it gets everything from now on. `trouble`: the
+  // newest trouble_message(); empty: there was none yet.
+  void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
+  // The page that watched has the hand from now on.
+  void give_hand();
+  // The parameters were changed by another page.
+  void tell_parameters();
+  bool is_open() const { return is_open_; }
+  bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
+  // From any thread. A text for the page, as in view_messages.h; and the last one, after which the server
+  // closes the connection (empty: it closes at once).
+  void tell(std::string text);
+  void end(std::string last);
+  bool is_over();
   // False: not a message of a page; ignored and counted.
   bool receive(std::string_view bytes);
-  // The next message, or none now. Text: the first one, and an answer to changes of parameters.
+  // The next message, or none now. Texts: JSON, see view_messages.h. The columns come before all other texts,
+  // except that the last text comes at once.
   struct Message {
     std::string bytes;
     bool is_text = false;
@@ -46,6 +62,7 @@ class LiveChannel {
   std::uint64_t refused() const { return refused_; }
 
  private:
+  bool next_text(Message& message);
   Message tick_message();
   Message frame_message_of(const NeighbourSearch& points, std::int32_t index);
 
@@ -60,10 +77,13 @@ class LiveChannel {
   std::shared_ptr<const NeighbourSearch> points_;  // of the newest frame
   std::int32_t index_ = 0;
   bool frame_is_new_ = false;
+  std::vector<std::string> texts_;  // to be sent
+  std::string last_;                // to be sent when is_ended_
+  bool is_ended_ = false;
   // Of the server's thread.
+  PageRole role_ = PageRole::hand;
   bool sent_columns_ = false, was_frame_ = false;  // the last message
   HandPose hand_;                                  // the newest
-  std::string answer_;                             // to be sent; empty: none
   std::uint32_t sent_ = 0, acknowledged_ = 0;
   std::uint64_t refused_ = 0;
 };

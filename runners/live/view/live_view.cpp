@@ -53,6 +53,7 @@ std::string page_of(const Experiment& experiment, const LiveViewSource& source, 
            {"device", source.device},
            {"depth", source.depth},
            {"version", version()},
+           {"protocol", kViewProtocol},
            {"digest", ""},
            {"note", ""},
            {"configuration", configuration},
@@ -73,15 +74,16 @@ LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, c
     : controls_(std::make_shared<LiveControls>(
           experiment, kernels,
           source.depth == "sim:" ? LiveControls::Camera::simulated : LiveControls::Camera::other)),
-      channel_(experiment.settings().haptic_rate_hz, DevicePlacement(experiment.live()), kernels, poses_,
-               controls_),
-      server_(serve_view(page_of(experiment, source, *controls_, kernels), channel_, port)) {}
+      pages_(experiment.settings().haptic_rate_hz, DevicePlacement(experiment.live()), kernels, poses_,
+             controls_),
+      server_(serve_view(page_of(experiment, source, *controls_, kernels), pages_, port)) {}
 
 void LiveView::connect(LiveOptions& options) {
   options.poses = poses_;
   options.controls = controls_;
-  options.on_tick = [this](const LiveTick& tick) { channel_.take(tick); };
-  options.on_frame = [this](const Frame& frame) { channel_.take(frame); };
+  options.on_tick = [this](const LiveTick& tick) { pages_.take(tick); };
+  options.on_frame = [this](const Frame& frame) { pages_.take(frame); };
+  options.on_trouble = [this](const LiveTrouble& trouble) { pages_.tell(trouble); };
 }
 
 }  // namespace remote_touch

@@ -6,7 +6,7 @@
 
 #include "runners/experiment/experiment.h"
 #include "runners/live/loop/live_run.h"
-#include "runners/live/view/live_channel.h"
+#include "runners/live/view/live_pages.h"
 #include "runners/live/view/view_server.h"
 
 namespace remote_touch {
@@ -27,13 +27,16 @@ class LiveView {
   // Lets the run tell this view its ticks and frames, and gives it the page's hand. This view must outlive
   // it.
   void connect(LiveOptions& options);
-  // What came and was no message of a page.
-  std::uint64_t refused() const { return channel_.refused(); }
+  // The run has ended: tells all pages why, and waits at most a second for them to close. Only the first call
+  // counts; the destructor calls it, too.
+  void end(const std::string& why) { server_->end(why); }
+  // Number of messages that came and were refused.
+  std::uint64_t refused() const { return pages_.refused(); }
 
  private:
   const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
   const std::shared_ptr<LiveControls> controls_;
-  LiveChannel channel_;
+  LivePages pages_;
   const std::unique_ptr<ViewServer> server_;
 };
 

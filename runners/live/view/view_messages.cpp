@@ -18,6 +18,11 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+// A text of a device or a sensor may not be UTF-8.
+std::string message_text(const nlohmann::ordered_json& message) {
+  return message.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 void pad(std::string& bytes) {
   bytes.resize((bytes.size() + 7) / 8 * 8);
 }
@@ -65,6 +70,26 @@ std::string columns_message(const std::vector<Column>& columns) {
 
 std::string parameters_message(const LiveControls& controls, const std::string& refused) {
   return nlohmann::ordered_json{{"values", controls.values()}, {"refused", refused}}.dump();
+}
+
+std::string role_message(PageRole role) {
+  return message_text({{"hand", role == PageRole::hand}});
+}
+
+std::string trouble_message(const LiveTrouble& trouble) {
+  return message_text({{"trouble", {{"camera", trouble.camera}, {"force", trouble.force}}}});
+}
+
+std::string ended_message(const std::string& why) {
+  return message_text({{"ended", why}});
+}
+
+std::string alive_message() {
+  return message_text({{"alive", true}});
+}
+
+std::string state_message(const std::string& ended, bool is_full) {
+  return message_text({{"protocol", kViewProtocol}, {"ended", ended}, {"full", is_full}});
 }
 
 std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number) {

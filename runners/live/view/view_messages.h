@@ -8,8 +8,12 @@
 #include "analysis/columns/column.h"
 #include "core/cloud/point_cloud.h"
 #include "runners/live/loop/live_controls.h"
+#include "runners/live/loop/live_trouble.h"
 
 namespace remote_touch {
+
+// One page has the hand and the sliders; all others watch, and what they send for either is refused.
+enum class PageRole { hand, watches };
 
 // JSON: {"columns": [{"name", "unit", "meaning", "width", "names"}, ...]}; hashes are left out.
 std::string columns_message(const std::vector<Column>& columns);
@@ -17,6 +21,25 @@ std::string columns_message(const std::vector<Column>& columns);
 // JSON: {"values": [...], "refused": TEXT}, the present values of the live parameters, and why the newest
 // changes were not made; empty: they were.
 std::string parameters_message(const LiveControls& controls, const std::string& refused);
+
+// JSON: {"hand": true} for the page that moves the hand and has the sliders, {"hand": false} for one that
+// watches.
+std::string role_message(PageRole role);
+
+// JSON: {"trouble": {"camera": TEXT, "force": TEXT}}: what does not work now; empty texts: nothing.
+std::string trouble_message(const LiveTrouble& trouble);
+
+// JSON: {"ended": TEXT}: why the run has ended.
+std::string ended_message(const std::string& why);
+
+// JSON: {"alive": true}, sent when nothing else was sent for a second.
+std::string alive_message();
+
+// JSON, the answer to a request for `state`: {"protocol": NUMBER, "ended": TEXT, "full": BOOL}. protocol:
+// kViewProtocol, by which a page recognises a server of another version; ended: why the run has ended, or
+// empty; full: as many pages are connected as can be.
+std::string state_message(const std::string& ended, bool is_full);
+inline constexpr int kViewProtocol = 2;
 
 // 1 (u32), number of the message (u32), rows (u32), 0 (u32); then of each column all rows (f64).
 std::string ticks_message(const std::vector<Column>& columns, std::uint32_t number);

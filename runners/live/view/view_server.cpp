@@ -12,6 +12,7 @@
 #endif
 #include <fcntl.h>
 
+#include <atomic>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -40,7 +41,7 @@ bool view_server_is_compiled_in() {
   return false;
 }
 
-std::unique_ptr<ViewServer> serve_view(std::string, LiveChannel&, int) {
+std::unique_ptr<ViewServer> serve_view(std::string, LivePages&, int) {
   throw InputError("--view", "not compiled in; install libboost-dev and build again");
 }
 
@@ -60,6 +61,8 @@ using Socket = websocket::stream<beast::tcp_stream>;
 constexpr auto kPatience = std::chrono::seconds(5);       // for a request
 constexpr auto kPicture = std::chrono::milliseconds(16);  // between looks for something to send
 constexpr auto kIdle = std::chrono::seconds(20);          // without an answer of the browser
+constexpr auto kAlive = std::chrono::seconds(1);          // between messages, at most
+constexpr auto kFarewell = std::chrono::seconds(1);  // until all pages have closed, when the run has ended
 constexpr int kMaxConnections = 16;
 constexpr std::uint32_t kMaxHeader = 8192;
 
@@ -86,18 +89,27 @@ void keep_from_children(Handle& handle) {
 
 class BeastServer final : public ViewServer {
  public:
-  BeastServer(std::string page, LiveChannel& channel, int port)
-      : page_(std::move(page)), channel_(channel), acceptor_(context_) {
+  BeastServer(std::string page, LivePages& pages, int port)
+      : page_(std::move(page)), pages_(pages), acceptor_(context_) {
     open(port);
     host_ = "127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port());
     asio::co_spawn(context_, accept_all(), asio::detached);
     thread_ = std::thread([this] { context_.run(); });
   }
   ~BeastServer() override {
+    try {
+      end("it failed, as the terminal says");
+    } catch (const std::exception&) {  // no memory: the pages find out by themselves
+    }
     context_.stop();
     thread_.join();
   }
   std::string address() const override { return "http://" + host_ + path_; }
+  void end(const std::string& why) override {
+    pages_.end(why);
+    const auto until = std::chrono::steady_clock::now() + kFarewell;
+    while (talks_ > 0 && std::chrono::steady_clock::now() < until) std::this_thread::sleep_for(kPicture);
+  }
 
  private:
   void open(int port) {
@@ -153,15 +165,25 @@ class BeastServer final : public ViewServer {
   }
 
   http::status judged(const Request& request) const {
-    const bool is_channel = same(request.target(), path_ + "channel");
-    if (!is_channel && !same(request.target(), path_)) return http::status::not_found;
+    const beast::string_view target = request.target();
+    const bool is_channel = same(target.substr(0, target.find('?')), path_ + "channel");
+    if (!is_channel && !same(target, path_ + "state") && !same(target, path_)) return http::status::not_found;
     if (!is_ours(request[http::field::host])) return http::status::forbidden;
     if (request.method() != http::verb::get) return http::status::method_not_allowed;
     if (!is_channel) return http::status::ok;
     const beast::string_view origin = request[http::field::origin];
     if (!origin.starts_with("http://") || !is_ours(origin.substr(7))) return http::status::forbidden;
-    if (!websocket::is_upgrade(request)) return http::status::bad_request;
-    return has_page_ ? http::status::conflict : http::status::switching_protocols;
+    if (!websocket::is_upgrade(request) || !is_name(name_in(request))) return http::status::bad_request;
+    return pages_.is_full() ? http::status::conflict : http::status::switching_protocols;
+  }
+  static std::string name_in(const Request& request) {
+    const beast::string_view target = request.target();
+    const std::size_t mark = target.find('?');
+    return mark == beast::string_view::npos ? std::string() : std::string(target.substr(mark + 1));
+  }
+  static bool is_name(const std::string& name) {
+    return !name.empty() && name.size() <= LivePages::kMaxName &&
+           name.find_first_not_of("0123456789abcdef") == std::string::npos;
   }
   bool is_ours(beast::string_view host) const {
     return host == host_ || host == "localhost" + host_.substr(host_.find(':'));
@@ -173,7 +195,10 @@ class BeastServer final : public ViewServer {
     response.set(http::field::x_frame_options, "DENY");
     response.set("Referrer-Policy", "no-referrer");
     response.set("X-Content-Type-Options", "nosniff");
-    if (status == http::status::ok) {
+    if (status == http::status::ok && same(request.target(), path_ + "state")) {
+      response.set(http::field::content_type, "application/json");
+      response.body() = state_message(pages_.ended(), pages_.is_full());
+    } else if (status == http::status::ok) {
       response.set(http::field::content_type, "text/html; charset=utf-8");
       response.set(
           "Content-Security-Policy",
@@ -193,7 +218,8 @@ class BeastServer final : public ViewServer {
   }
 
   asio::awaitable<void> talk(beast::tcp_stream stream, const Request& request) {
-    has_page_ = true;
+    ++talks_;
+    LiveChannel* channel = nullptr;
     try {
       const auto socket = std::make_shared<Socket>(std::move(stream));
       beast::get_lowest_layer(*socket).expires_never();
@@ -201,22 +227,32 @@ class BeastServer final : public ViewServer {
       socket->read_message_max(kMaxPageMessage);
       socket->auto_fragment(false);  // thousands of writes for a frame otherwise
       co_await socket->async_accept(request, use_awaitable);
-      channel_.open();
-      asio::co_spawn(context_, send_all(socket), asio::detached);
-      co_await receive_all(*socket);
+      channel = pages_.open(name_in(request));
+      if (channel != nullptr) {
+        bool is_sending = true;
+        asio::co_spawn(context_, send_all(socket, *channel, is_sending), asio::detached);
+        co_await receive_all(*socket, *channel);
+        channel->end({});
+        // The channel may be another page's as soon as it is closed.
+        asio::steady_timer timer(context_);
+        while (is_sending) {
+          timer.expires_after(kPicture);
+          co_await timer.async_wait(use_awaitable);
+        }
+      }
     } catch (const std::exception&) {
     }
-    channel_.close();
-    has_page_ = false;
+    if (channel != nullptr) pages_.close(*channel);
+    --talks_;
   }
 
-  asio::awaitable<void> receive_all(Socket& socket) {
+  asio::awaitable<void> receive_all(Socket& socket, LiveChannel& channel) {
     try {
       beast::flat_buffer buffer;
       for (;;) {
         co_await socket.async_read(buffer, use_awaitable);
         const auto bytes = buffer.data();
-        channel_.receive({static_cast<const char*>(bytes.data()), bytes.size()});
+        pages_.receive(channel, {static_cast<const char*>(bytes.data()), bytes.size()});
         buffer.clear();
       }
     } catch (const std::exception&) {
@@ -224,32 +260,43 @@ class BeastServer final : public ViewServer {
     beast::get_lowest_layer(socket).close();
   }
 
-  // Ends with the connection, and ends it where it cannot go on.
-  asio::awaitable<void> send_all(std::shared_ptr<Socket> socket) {
-    asio::steady_timer timer(context_);
-    LiveChannel::Message message;
+  // Ends with the connection, and ends the connection when it cannot go on or the channel is over.
+  asio::awaitable<void> send_all(std::shared_ptr<Socket> socket, LiveChannel& channel, bool& is_sending) {
     try {
-      while (socket->is_open()) {
-        if (channel_.next(message)) {
-          socket->text(message.is_text);
-          co_await socket->async_write(asio::buffer(message.bytes), use_awaitable);
-          continue;
-        }
-        timer.expires_after(kPicture);
-        co_await timer.async_wait(use_awaitable);
-      }
+      co_await send_until_over(*socket, channel);
+      // The page answers, and receive_all() ends with that. A page that does not answer is cut off.
+      if (socket->is_open()) co_await socket->async_close(websocket::close_code::normal, use_awaitable);
     } catch (const std::exception&) {
     }
     beast::get_lowest_layer(*socket).close();
+    is_sending = false;
+  }
+  asio::awaitable<void> send_until_over(Socket& socket, LiveChannel& channel) {
+    asio::steady_timer timer(context_);
+    LiveChannel::Message message;
+    auto sent = std::chrono::steady_clock::now();
+    while (socket.is_open()) {
+      const bool is_silent = std::chrono::steady_clock::now() - sent > kAlive;
+      if (is_silent) message = {alive_message(), true};
+      if (channel.next(message) || is_silent) {
+        socket.text(message.is_text);
+        co_await socket.async_write(asio::buffer(message.bytes), use_awaitable);
+        sent = std::chrono::steady_clock::now();
+        continue;
+      }
+      if (channel.is_over()) co_return;
+      timer.expires_after(kPicture);
+      co_await timer.async_wait(use_awaitable);
+    }
   }
 
   const std::string page_, path_ = "/" + random_secret() + "/";
-  LiveChannel& channel_;
+  LivePages& pages_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
   std::string host_;
   int connections_ = 0;
-  bool has_page_ = false;
+  std::atomic<int> talks_ = 0;  // pages that are connected
   std::thread thread_;
 };
 
@@ -259,8 +306,8 @@ bool view_server_is_compiled_in() {
   return true;
 }
 
-std::unique_ptr<ViewServer> serve_view(std::string page, LiveChannel& channel, int port) {
-  return std::make_unique<BeastServer>(std::move(page), channel, port);
+std::unique_ptr<ViewServer> serve_view(std::string page, LivePages& pages, int port) {
+  return std::make_unique<BeastServer>(std::move(page), pages, port);
 }
 
 #endif

@@ -1,14 +1,16 @@
-// Serves the page of a live run, and its channel, to a browser on this machine. Compiled in if Boost's
+// Serves the page of a live run, and its channels, to browsers on this machine. Compiled in if Boost's
 // headers are installed.
 //
 // Bound to 127.0.0.1. The address has a secret of 128 bits; a request without it, with the name of another
-// host (DNS rebinding), or from a page of another origin is refused. One page at a time has the channel.
+// host (DNS rebinding), or from a page of another origin is refused. Below the address are `channel?NAME`, a
+// WebSocket of the page that calls itself NAME (lower-case hexadecimal digits, at most LivePages::kMaxName),
+// and `state`, which says why there is no channel, see state_message().
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include "runners/live/view/live_channel.h"
+#include "runners/live/view/live_pages.h"
 
 namespace remote_touch {
 
@@ -16,11 +18,14 @@ bool view_server_is_compiled_in();
 
 class ViewServer {
  public:
-  virtual ~ViewServer() = default;          // ends its thread
+  virtual ~ViewServer() = default;          // calls end(), and ends its thread
   virtual std::string address() const = 0;  // http://127.0.0.1:PORT/SECRET/
+  // Tells the pages that the run has ended, see LivePages::end(). Returns when they have closed, or after a
+  // second.
+  virtual void end(const std::string& why) = 0;
 };
 
 // page: HTML. port: 0 is any that is free. Throws InputError when the port cannot be had.
-std::unique_ptr<ViewServer> serve_view(std::string page, LiveChannel& channel, int port);
+std::unique_ptr<ViewServer> serve_view(std::string page, LivePages& pages, int port);
 
 }  // namespace remote_touch

@@ -34,7 +34,7 @@ async function startLive(...args) {
     child.kill("SIGINT");
     return ended;
   };
-  return { address, stop };
+  return { address, stop, signal: (name) => child.kill(name), ended };
 }
 
 async function openLive(address) {
@@ -142,8 +142,8 @@ for (const name of ["fig4.16", ...(all ? ["fig5.8-recorded", "fig6.4-organ"] : [
     const { code, out } = await stop();
     assert.equal(code, 0, out);
     assert.deepEqual(complaints, []);
-    await page.waitForSelector("body[data-ended]", { state: "attached" });
-    assert.match(await page.evaluate(() => document.body.dataset.ended), /has ended/);
+    await page.waitForSelector("body[data-state=ended]", { state: "attached" });
+    assert.equal(await page.textContent("footer .status"), "The run has ended: stopped by a signal. The picture is its last one.");
     assert.ok(await page.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nothing is left to set");
     assert.equal(digestOffline(`${name}.session.h5`), /digest of the trace: ([0-9a-f]{64})/.exec(out)[1]);
     await page.close();
@@ -213,16 +213,16 @@ test("who is refused, and the run goes on", limit, async () => {
   const port = new URL(address).port, wrong = address.replace(/[0-9a-f]{32}/, "0".repeat(32));
   assert.equal((await fetch(wrong)).status, 404, "a wrong secret");
   assert.equal((await fetch(`http://127.0.0.1:${port}/`)).status, 404, "no secret");
-  const second = await browser.newPage();
-  await second.goto(address);
-  await second.waitForSelector("body[data-ended]");
-  assert.match(await second.textContent("body"), /another page has the hand/);
-  await second.goto("data:text/html,x");
-  const opened = await second.evaluate((place) => new Promise((done) => {
+  assert.equal((await fetch(`${wrong}state`)).status, 404, "the state with a wrong secret");
+  assert.deepEqual(await (await fetch(`${address}state`)).json(), { protocol: 2, ended: "", full: false });
+  const stranger = await browser.newPage();
+  pages.push(stranger);
+  await stranger.goto("data:text/html,x");
+  const opened = await stranger.evaluate((place) => new Promise((done) => {
     const socket = new WebSocket(place);
     socket.onopen = () => done(true);
     socket.onerror = () => done(false);
-  }), `${address.replace("http", "ws")}channel`);
+  }), `${address.replace("http", "ws")}channel?1`);
   assert.equal(opened, false, "a page of another origin");
   const before = await newest(page);
   await until(page, (now) => now.time > before.time + 0.2, async () => {});
@@ -242,13 +242,63 @@ test("who is refused, and the run goes on", limit, async () => {
   const later = await until(page, (now) => now.time > after.time + 0.5, async () => {});
   assert.ok(later.time > after.time + 0.5, "the run goes on");
   assert.deepEqual(later.hip, hip, "nobody moved the hand");
-  // A message that is too long ends the connection, not the run; the next page gets the hand.
+  assert.equal((await stop()).code, 0);
+});
+
+// The texts of the page about its connection, each once, as they change.
+async function recordStates(page) {
+  await page.evaluate(() => {
+    window.states = [{ state: "open", text: "" }];
+    new MutationObserver(() => {
+      const { state } = document.body.dataset;
+      if (window.states.at(-1).state !== state) window.states.push({ state, text: document.querySelector("footer .status").textContent });
+    }).observe(document.body, { attributes: true, attributeFilter: ["data-state"] });
+  });
+}
+const says = (page, part, text) => page.waitForFunction(([selector, pattern]) => new RegExp(pattern).test(document.querySelector(selector).textContent),
+  [`footer ${part}`, text.source]);
+
+test("each page says who has the hand, and what is with the run and the connection", limit, async () => {
+  const { address, signal, ended } = await startLive("fig4.16");
+  const { page } = await openLive(address), { page: watching } = await openLive(address);
+  await says(watching, "span", /^Another page has the hand\. This page watches/);
+  const before = await newest(watching), [x, y] = await middle(watching);
+  await watching.mouse.move(x, y);
+  await watching.mouse.down();
+  await watching.mouse.move(x + 60, y, { steps: 5 });
+  await watching.mouse.up();
+  const after = await until(watching, (now) => now.time > before.time + 0.2, async () => {});
+  assert.deepEqual(after.hip, before.hip, "a page that watches moves nothing");
+  assert.ok(await watching.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nor sets anything");
+
+  // A message that is too long ends the connection. The page connects again by itself; the other one has got the hand.
+  await recordStates(page);
   await page.evaluate(() => window.remoteTouch.connection.socket.send(new Uint8Array(100000)));
-  await page.waitForSelector("body[data-ended]");
+  await page.waitForFunction(() => window.states.length > 1 && window.states.at(-1).state === "open" && window.remoteTouch.run.ticks > 0);
+  const states = await page.evaluate(() => window.states);
+  assert.deepEqual(states.map(({ state }) => state), ["open", "lost", "open"]);
+  await says(page, "span", /^Another page has the hand/);
   await page.close();
-  await second.close();
-  const next = await openLive(address);
-  await dragMovesTheHand(next.page);
-  const { code, out } = await stop();
-  assert.equal(code, 0, out);
+  await says(watching, "span", /^Drag to move the hand/);
+  await dragMovesTheHand(watching);
+
+  signal("SIGSTOP"); // as when the machine sleeps
+  await says(watching, ".status", /^No tick has come for \d+ s: the picture is the last one\. $/);
+  signal("SIGCONT");
+  await says(watching, ".status", /^$/);
+  await watching.evaluate(() => window.remoteTouch.page.showTrouble({ camera: "no frame for 0.2 s: the last cloud stays", force: "the hand is too fast" }));
+  await says(watching, ".status", /^No frame for 0\.2 s: the last cloud stays\. Force is off: the hand is too fast\. $/);
+
+  signal("SIGKILL");
+  await ended;
+  await says(watching, ".status", /^Nothing answers at 127\.0\.0\.1:\d+: the program was ended or killed.* Trying again.* \(attempt 2\)\.$/);
+  assert.ok(await watching.evaluate(() => document.querySelector("fieldset.sliders").disabled), "nothing is left to set");
+  await watching.route("**/state", (route) => route.fulfill({ status: 404 }));
+  await says(watching, ".status", /^Another run or program is at 127\.0\.0\.1:\d+ now/);
+  assert.equal(await watching.evaluate(() => document.body.dataset.state), "other");
+  assert.deepEqual(await watching.evaluate(() => {
+    const { stateOf } = window.remoteTouch;
+    return ["late", { status: 200, protocol: 2 }, { status: 200, protocol: 2, ended: "its duration is over" }, { status: 200, protocol: 2, full: true },
+      { status: 200, protocol: 1 }, { status: 200 }].map((answer) => stateOf(answer, 2).kind);
+  }), ["lost", "lost", "ended", "full", "version", "version"]);
 });

@@ -28,7 +28,7 @@ export interface StoredRun {
 export interface LiveParameter { name: string; meaning: string; value: number; low: number; high: number; is_switch: boolean }
 // Of a run that is going on; what comes later is not in it.
 export type StoredLive = StoredRun & {
-  touch_radius_m: number; start_m: Vector; device: string; depth: string; parameters: LiveParameter[];
+  touch_radius_m: number; start_m: Vector; device: string; depth: string; parameters: LiveParameter[]; protocol: number;
 };
 
 const kinds = {
@@ -175,6 +175,7 @@ export function differenceOf(runs: Run[], name: string): Column | null {
 
 interface StoredSweep {
   file: string; title: string; replicates: number; judged: string; threshold: number; runs: number[];
+  notes: string[]; // how many runs have each kind of note
   axes: { name: string; unit: string; values: (number | string)[] }[];
   measures: { name: string; unit: string; meaning: string; numbers: Packed }[];
 }

@@ -4,7 +4,8 @@ import { colours } from "./colours";
 import { Connection } from "./connection";
 import type { StoredLive } from "./data";
 import { ForceSound } from "./force_sound";
-import { type ColumnInfo, LiveRun, whyLimited } from "./live_run";
+import { type LinkState, stateOf } from "./link_state";
+import { type ColumnInfo, LiveRun, type Trouble, whyLimited } from "./live_run";
 import { MouseHand } from "./mouse_hand";
 import { Pace } from "./pace";
 import { aboutDialog, keysDialog, legend, licence, Values } from "./panel";
@@ -38,9 +39,16 @@ class LivePage {
   private readonly sound = new ForceSound();
   private readonly hint = document.createElement("span");
   private readonly limited = document.createElement("span"); // why the device gets another force than is commanded
+  private readonly status = document.createElement("span"); // of connection, camera, haptic loop and safety gate
   private readonly startMs = performance.now();
+  private mouse: MouseHand | null = null;
   private begun = false;
-  private ended = "";
+  private hasHand: boolean | null = null; // null: the run has not said so yet
+  private follows = false; // the mouse's hand is where the run has it
+  private link: LinkState = { kind: "open", text: "" };
+  private trouble: Trouble = { camera: "", force: "" };
+  private tickMs = performance.now(); // when ticks came, or the page woke up
+  private pictureMs = performance.now();
 
   constructor(stored: StoredLive, buffer: ArrayBuffer, infos: ColumnInfo[], private readonly connection: Connection) {
     this.run = new LiveRun(stored, buffer, infos);
@@ -70,10 +78,60 @@ class LivePage {
     if (r1M > 0 && r2M > 0) this.run.setRadii(r1M, r2M);
     this.sliders.show(values, refused);
   }
-  end(why: string): void {
-    this.ended = why;
-    this.hint.textContent = "";
-    this.sliders.end();
+  // A new connection to the same run.
+  restart(): void {
+    this.run.restart();
+    this.follows = false;
+    this.tickMs = performance.now();
+  }
+  takeTicks(view: DataView): void {
+    this.run.takeTicks(view);
+    this.tickMs = performance.now();
+    if (this.follows || !this.begun) return;
+    this.mouse?.start(this.run.vector("hip_position", this.run.ticks - 1), this.orientation(this.run.ticks - 1));
+    this.follows = true;
+    this.showState();
+  }
+  showHand(has: boolean): void {
+    this.hasHand = has;
+    this.follows = false;
+    this.showState();
+  }
+  showTrouble(trouble: Trouble): void {
+    this.trouble = trouble;
+    this.showState();
+  }
+  showLink(link: LinkState): void {
+    if (link.kind === this.link.kind && link.text === this.link.text) return;
+    this.link = link;
+    if (link.kind !== "open") this.follows = false;
+    this.showState();
+  }
+  private get isLive(): boolean {
+    return this.link.kind === "open";
+  }
+  private showState(): void {
+    const mayAct = this.isLive && this.hasHand === true;
+    if (this.mouse) this.mouse.isActive = mayAct && this.follows;
+    this.sliders.enable(mayAct);
+    this.hint.textContent = this.isLive ? this.whoseHand() : "";
+    this.showStatus();
+  }
+  private whoseHand(): string {
+    if (this.hasHand === null) return "";
+    if (this.isHand && !this.hasHand) return "Another page has the hand. This page watches, and gets the hand when that page is closed. ";
+    if (this.isHand) return this.begun ? "Drag to move the hand, turn the wheel to push it. " : "";
+    const sliders = this.hasHand || this.run.stored.parameters.length === 0 ? "" : "Another page has the sliders. This page gets them when that page is closed. ";
+    return `The hand is ${this.run.stored.device}. ${sliders}`;
+  }
+  private showStatus(): void {
+    const sentence = (text: string) => text && `${text[0].toUpperCase()}${text.slice(1)}. `;
+    const silentS = (performance.now() - this.tickMs) / 1000;
+    const ticks = silentS > 1 ? `No tick has come for ${silentS.toFixed(0)} s: the picture is the last one. ` : "";
+    const last = this.link.kind === "ended" ? " The picture is its last one." : "";
+    this.status.textContent = this.isLive
+      ? ticks + sentence(this.trouble.camera) + sentence(this.trouble.force && `force is off: ${this.trouble.force}`) : this.link.text + last;
+    this.status.hidden = this.status.textContent === "";
   }
 
   private layOut(canvas: HTMLCanvasElement): void {
@@ -94,9 +152,10 @@ class LivePage {
     side.append(legend([this.run], this.scene.mmPerN, this.scene.longestMm), ...this.plots.map((plot) => plot.element));
     if (this.run.stored.parameters.length > 0) side.append(this.sliders.element);
     side.append(details);
-    this.hint.textContent = this.isHand ? "Drag to move the hand, turn the wheel to push it. " : `The hand is ${this.run.stored.device}. `;
     this.limited.className = "warning limited";
-    foot.append(this.hint, this.limited, this.clock);
+    this.status.className = "warning status";
+    foot.append(this.hint, this.status, this.limited, this.clock);
+    this.showState();
     document.body.append(head, side, foot, about, help);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     document.addEventListener("keydown", (event) => {
@@ -109,52 +168,76 @@ class LivePage {
     requestAnimationFrame(this.picture);
     if (this.pace.picture(nowMs)) for (const cloud of this.scene.clouds) cloud.setShare(this.pace.share);
     this.connection.acknowledge();
+    if (nowMs - this.pictureMs > 1000) this.tickMs = performance.now(); // the page was hidden or asleep
+    this.pictureMs = nowMs;
     const tick = this.run.ticks - 1;
-    if (tick < 0) return;
+    if (tick < 0) {
+      this.showStatus();
+      return;
+    }
     if (!this.begun && this.run.frameCount > 0) this.begin(tick);
     this.scene.show(tick);
     ++this.pictures;
-    this.sound.show(this.run.column(this.run.forceName).magnitude(tick));
+    this.sound.show(this.isLive ? this.run.column(this.run.forceName).magnitude(tick) : 0);
     if (this.pictures % 4 === 0) this.showTexts(tick);
   };
   private begin(tick: number): void {
     const hip = this.run.vector("hip_position", tick);
-    const turned = this.run.columns.has("hip_orientation") ? this.run.rotation("hip_orientation", tick) : [1, 0, 0, 0];
-    if (this.isHand) new MouseHand(this.scene, this.canvas, hip, turned, (pose) => this.connection.move(pose));
-    this.begun = true;
+    if (this.isHand) this.mouse = new MouseHand(this.scene, this.canvas, hip, this.orientation(tick), (pose) => this.connection.move(pose));
+    this.begun = this.follows = true;
+    this.showState();
     document.body.dataset.ready = "yes";
+  }
+  private orientation(tick: number): number[] {
+    return this.run.columns.has("hip_orientation") ? this.run.rotation("hip_orientation", tick) : [1, 0, 0, 0];
   }
   private showTexts(tick: number): void {
     const shown = Math.round(plottedS * this.run.stored.haptic_rate_hz);
     for (const plot of this.plots) plot.showWindow(Math.max(0, tick + 1 - shown), shown, tick);
     if (this.details.open) this.values.show(tick);
-    this.limited.textContent = this.ended ? "" : whyLimited(this.run, tick);
+    this.showStatus();
+    this.limited.textContent = this.isLive ? whyLimited(this.run, tick, this.trouble) : "";
     this.limited.hidden = this.limited.textContent === "";
-    const seconds = (performance.now() - this.startMs) / 1000;
-    this.clock.textContent = this.ended || `${this.run.column("time").value(tick).toFixed(1)} s, ${(this.pictures / seconds).toFixed(0)} pictures/s${this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn` : ""}`;
+    const seconds = (performance.now() - this.startMs) / 1000, time = `${this.run.column("time").value(tick).toFixed(1)} s`;
+    const thinned = this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn` : "";
+    this.clock.textContent = this.isLive ? `${time}, ${(this.pictures / seconds).toFixed(0)} pictures/s${thinned}` : `last tick: ${time}`;
   }
+}
+
+// Before the first tick there is only a text.
+function showText(text: string): void {
+  document.body.classList.add("text");
+  document.body.textContent = text;
 }
 
 export function showLive(stored: StoredLive, buffer: ArrayBuffer): void {
   let page: LivePage | null = null;
   const connection: Connection = new Connection({
     columns: (infos) => {
-      try {
-        page = new LivePage(stored, buffer, infos, connection);
-      } catch (error) { // no WebGL 2
-        document.body.textContent = `No 3-D here, which a live run needs: ${(error as Error).message}`;
-        connection.close();
+      if (page) {
+        page.restart();
         return;
       }
-      Object.assign(window, { remoteTouch: { page, run: page.run, scene: page.scene, connection } });
+      try {
+        document.body.textContent = "";
+        document.body.classList.remove("text");
+        page = new LivePage(stored, buffer, infos, connection);
+      } catch (error) { // no WebGL 2
+        connection.close();
+        showText(`No 3-D here, which a live run needs: ${(error as Error).message}`);
+        return;
+      }
+      Object.assign(window, { remoteTouch: { page, run: page.run, scene: page.scene, connection, stateOf } });
     },
     parameters: (values, refused) => page?.showParameters(values, refused),
-    ticks: (view) => page?.run.takeTicks(view),
+    ticks: (view) => page?.takeTicks(view),
     frame: (view) => page?.run.takeFrame(view),
-    ended: (why) => {
-      document.body.dataset.ended = why;
-      if (page) page.end(why);
-      else if (!document.body.textContent?.startsWith("No 3-D")) document.body.textContent = why;
+    hand: (has) => page?.showHand(has),
+    trouble: (trouble) => page?.showTrouble(trouble),
+    state: (state) => {
+      document.body.dataset.state = state.kind;
+      if (page) page.showLink(state);
+      else showText(state.text || "Connected. The run has made no tick yet.");
     },
-  });
+  }, stored.protocol);
 }

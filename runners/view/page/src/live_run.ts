@@ -5,15 +5,19 @@ const keptS = 20;
 
 export interface ColumnInfo { name: string; unit: string; meaning: string; width: number; names: string[] }
 
-// Why the device gets another force than the renderer commands; empty: it gets that.
-export function whyLimited(run: Run, tick: number): string {
+// Texts about camera and force that do not work while the run goes on; empty: they work. The server sends both at every change.
+export interface Trouble { camera: string; force: string }
+
+// Why the device gets another force than the renderer commands; empty: it gets that, or the trouble says why.
+export function whyLimited(run: Run, tick: number, trouble: Trouble): string {
+  if (trouble.force) return "";
   const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
   const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);
   if (!(apart > 0.01 * size(commanded) + 0.01)) return "";
   const newtons = (v: Vector) => `${digits(Number(size(v).toPrecision(3)))} N`, gate = run.column("gate").text(tick);
   const why = ({
     waiting: "the force begins when the hand is free", ramping: "the force begins slowly", engaged: "limited for safety, or to what the device can do",
-    latched: "the safety gate has switched the force off, as the terminal says",
+    latched: "the safety gate has switched the force off",
   } as Record<string, string>)[gate];
   return `The device gets ${newtons(sent)} of ${newtons(commanded)}: ${why}. `;
 }
@@ -45,6 +49,11 @@ export class LiveRun extends Run {
     this.touchRadiusM = stored.touch_radius_m;
   }
 
+  // The ticks that come from now on do not follow those that came.
+  restart(): void {
+    this.count = 0;
+    for (const [, numbers] of this.rows) numbers.fill(Number.NaN);
+  }
   // r1 and r2 of the proxy were changed.
   setRadii(r1M: number, r2M: number): void {
     this.contactRadiusM = (r1M + r2M) / 2;

@@ -10,15 +10,15 @@ const turns: Record<string, [number, number, number]> = { // about axes of the c
 };
 
 export class MouseHand {
+  isActive = true; // else the mouse moves nothing
   private readonly place: THREE.Vector3; // mm
   private readonly turned = new THREE.Quaternion();
   private buttons = 0;
 
   constructor(private readonly scene: SceneView, canvas: HTMLCanvasElement, start: Vector, orientation: number[],
     private readonly send: (pose: HandPose) => void) {
-    this.place = new THREE.Vector3(...start).multiplyScalar(1000);
-    const [w, x, y, z] = orientation;
-    if (orientation.every(Number.isFinite)) this.turned.set(x, y, z, w);
+    this.place = new THREE.Vector3();
+    this.start(start, orientation);
     let before: PointerEvent | null = null;
     canvas.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || event.shiftKey || !event.isPrimary) return;
@@ -41,6 +41,13 @@ export class MouseHand {
     document.addEventListener("keyup", (event) => this.key(event, false));
   }
 
+  // From here on.
+  start(position: Vector, orientation: number[]): void {
+    const [w, x, y, z] = orientation;
+    this.place.set(...position).multiplyScalar(1000);
+    if (orientation.every(Number.isFinite)) this.turned.set(x, y, z, w);
+    this.buttons = 0;
+  }
   private letGo(): void {
     if (this.buttons === 0) return;
     this.buttons = 0;
@@ -75,6 +82,7 @@ export class MouseHand {
     this.tell();
   }
   private tell(): void {
+    if (!this.isActive) return;
     const { x, y, z } = this.place, q = this.turned;
     this.send({ position: [x / 1000, y / 1000, z / 1000], orientation: [q.w, q.x, q.y, q.z], buttons: this.buttons });
   }

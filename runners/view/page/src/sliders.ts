@@ -59,8 +59,12 @@ export class Sliders {
     this.ask(waiting[1]);
   }
 
-  end(): void {
-    this.element.disabled = true;
+  // An answer that was awaited may never come after a lost connection.
+  enable(on: boolean): void {
+    this.element.disabled = !on;
+    if (on) return;
+    this.asked = false;
+    this.next.clear();
   }
 
   // One at a time: each is checked with the whole experiment.

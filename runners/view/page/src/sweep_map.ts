@@ -50,7 +50,13 @@ export class SweepMap {
     this.canvas.addEventListener("pointermove", (event) => this.describe(this.cellUnder(event)));
     this.canvas.addEventListener("pointerleave", () => this.describe(sweep.cellOf(shown)));
     figure.append(this.scale, this.canvas, this.caption);
-    this.element.append(this.choice, ...this.fixed, figure, this.runs);
+    const notes = stored.notes.map((text) => {
+      const note = document.createElement("p");
+      note.className = "warning";
+      note.textContent = text;
+      return note;
+    });
+    this.element.append(this.choice, ...this.fixed, figure, this.runs, ...notes);
     this.setMeasure();
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }

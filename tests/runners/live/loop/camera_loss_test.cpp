@@ -34,7 +34,7 @@ class CameraThatStops final : public DepthSource {
 class CameraLoss : public testing::Test {
  protected:
   // Thirty frames, the last of them at 967 ms; lifted at 1.6 s, pressed to another depth at 1.7 s.
-  LiveResult run_with_loss(SensorState then) {
+  LiveResult run_with_loss(SensorState then, int frames = 30) {
     hold(kAbove_m);
     clock_.at(kPressed_s, [&] { hold(kBelow_m); });
     clock_.at(1.6, [&] { hold(kAbove_m); });
@@ -42,11 +42,12 @@ class CameraLoss : public testing::Test {
     SimulatedRun run(
         clock_, press_experiment(),
         [](const Experiment&, Clock& clock) { return kForceDimension.open("", clock); },
-        [then](const Experiment& experiment, Clock& clock) {
-          return std::make_unique<CameraThatStops>(SimulatedRun::scenario_camera(experiment, clock), 30,
+        [=](const Experiment& experiment, Clock& clock) {
+          return std::make_unique<CameraThatStops>(SimulatedRun::scenario_camera(experiment, clock), frames,
                                                    then);
         });
     run.options.duration_s = 2;
+    run.options.on_trouble = [this](const LiveTrouble& trouble) { troubles_.push_back(trouble); };
     LiveResult result = run.run();
     told_ = run.told();
     return result;
@@ -71,6 +72,7 @@ class CameraLoss : public testing::Test {
   DoubleInstalled double_{kForceDimension, &clock_};
   const double height_m_ = table_height_m();
   std::vector<SimulatedRun::Told> told_;
+  std::vector<LiveTrouble> troubles_;
 };
 
 // The frame of 29 / 30 s is there at 967 ms. It is older than 0.2 s from 1167 ms on, and the next look is at
@@ -84,6 +86,22 @@ TEST_F(CameraLoss, ThatSendsNothingMoreLeavesItsLastCloud) {
   EXPECT_FALSE(result.failed) << result.ended;
   EXPECT_EQ(result.counts.camera.received, 30);
   EXPECT_EQ(result.log.stale_ticks, 2000 - 1168);
+  ASSERT_EQ(troubles_.size(), 1u) << "a page is told what the terminal is told";
+  EXPECT_EQ(troubles_[0].camera, told_[0].line);
+  EXPECT_EQ(troubles_[0].force, "");
+}
+
+// There is no last cloud that could stay.
+TEST_F(CameraLoss, ThatSendsNothingAtAllLeavesNothingToTouch) {
+  run_with_loss(SensorState::waiting, 0);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].line, "no frame has come yet: there is nothing to touch");
+}
+
+TEST_F(CameraLoss, ThatFailsBeforeItsFirstFrameLeavesNothingToTouch) {
+  run_with_loss(SensorState::failed, 0);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].line, "no more frames (it was pulled out): there is nothing to touch");
 }
 
 TEST_F(CameraLoss, ThatIsUnpluggedLeavesItsLastCloudAndAFailure) {

@@ -121,6 +121,18 @@ TEST_P(PressedDevice, AHangingLoopIsLetGoAndComesBackGently) {
   EXPECT_FALSE(result.failed);
 }
 
+// The watch releases the device by 317 ms, the user's part sees it at 320 and reports it when it has lasted
+// for more than 0.2 s.
+TEST_P(PressedDevice, ALongHangIsReportedWhileItLasts) {
+  at(kTrouble_s, [](DeviceDouble& device) { device.hang_next(DeviceDouble::reports_force); });
+  at(0.7, [](DeviceDouble& device) { device.release(); });
+  run(0.8);
+  ASSERT_EQ(run_.told().size(), 2u);
+  EXPECT_EQ(run_.told()[0].line, "force is off: the haptic loop hangs, and the device was released");
+  EXPECT_EQ(run_.told()[0].at_ns, ms(530));
+  EXPECT_EQ(run_.told()[1].line, "armed again: the force begins when the hand is free");
+}
+
 TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
   for (int i = 0; i < 40; ++i)
     clock_.at(kTrouble_s + 0.01 * i, [this, i] { hold(i % 2 == 0 ? -0.2 : kAbove_m); });
@@ -173,6 +185,34 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
 
 INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),
                          [](const auto& device) { return device.param->name; });
+
+// An adapter, or its vendor's library, that calls no more ticks.
+class DeviceThatLeaves final : public HapticDevice {
+ public:
+  using HapticDevice::HapticDevice;
+  const DeviceTraits& traits() const override { return traits_; }
+  void run(DeviceCycle& cycle) override {
+    for (int tick = 0; tick < 50 && cycle.tick(); ++tick) clock().sleep_s(1e-3);
+  }
+  DeviceFault read(DeviceReading&) noexcept override { return {}; }
+  DeviceFault write(const Wrench&) noexcept override { return {}; }
+  void release() noexcept override {}
+
+ private:
+  DeviceTraits traits_{.name = "a device that leaves"};
+};
+
+TEST(DeviceLoop, ThatEndsByItselfEndsTheRun) {
+  SimulatedClock clock;
+  SimulatedRun run(clock, press_experiment(), [](const Experiment&, Clock& of_device) {
+    return std::make_unique<DeviceThatLeaves>(of_device);
+  });
+  run.options.duration_s = 1;
+  const LiveResult result = run.run();
+  EXPECT_EQ(result.ended, "the device's loop ended by itself");
+  EXPECT_TRUE(result.failed);
+  EXPECT_EQ(clock.now_ns(), ms(50));
+}
 
 }  // namespace
 }  // namespace remote_touch::live_failure_test

@@ -19,8 +19,8 @@ TEST(LiveLogger, TakesNoMoreFramesThanCanWait) {
   view.camera = {2, 2, 2, 2, 1, 1};
   Ring<LiveTick> rows(4);
   LiveLogger logger(rows, 1000,
-                    std::make_unique<SessionWriter>(folder / "session.h5", view, RigidTransform::Identity(),
-                                                    TextAttributes{{"config", "{}"}}));
+                    std::make_unique<SessionRecorder>(folder / "session.h5", view, RigidTransform::Identity(),
+                                                      TextAttributes{{"config", "{}"}}));
   SensorFrame frame;
   frame.depth = {1000, 1000, 1000, 1000};
   int taken = 0;

@@ -1,0 +1,104 @@
+#include "runners/live/view/live_pages.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace remote_touch {
+
+LivePages::LivePages(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
+                     const std::shared_ptr<HandPoses>& poses, std::shared_ptr<LiveControls> controls)
+    : controls_(std::move(controls)) {
+  for (Page& page : pages_)
+    page.channel = std::make_unique<LiveChannel>(haptic_rate_hz, placement, kernels, poses, controls_);
+}
+
+void LivePages::take(const LiveTick& tick) noexcept {
+  for (Page& page : pages_) page.channel->take(tick);
+}
+
+void LivePages::take(const Frame& frame) noexcept {
+  for (Page& page : pages_) page.channel->take(frame);
+}
+
+// A page that opens meanwhile may get it twice.
+void LivePages::tell(const LiveTrouble& trouble) {
+  const std::lock_guard lock(mutex_);
+  trouble_ = trouble_message(trouble);
+  for (Page& page : pages_)
+    if (page.channel->is_open()) page.channel->tell(trouble_);
+}
+
+void LivePages::end(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (!ended_.empty()) return;
+  ended_ = why;
+  for (Page& page : pages_)
+    if (page.channel->is_open()) page.channel->end(ended_message(why));
+}
+
+std::string LivePages::ended() const {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
+std::uint64_t LivePages::refused() const {
+  std::uint64_t sum = 0;
+  for (const Page& page : pages_) sum += page.channel->refused();
+  return sum;
+}
+
+LivePages::Page* LivePages::free_page() {
+  const auto found =
+      std::find_if(pages_.begin(), pages_.end(), [](const Page& page) { return !page.is_taken; });
+  return found == pages_.end() ? nullptr : &*found;
+}
+
+LivePages::Page* LivePages::with_hand() {
+  const auto found =
+      std::find_if(pages_.begin(), pages_.end(), [](const Page& page) { return page.channel->has_hand(); });
+  return found == pages_.end() ? nullptr : &*found;
+}
+
+bool LivePages::is_full() const {
+  return std::all_of(pages_.begin(), pages_.end(), [](const Page& page) { return page.is_taken; });
+}
+
+LiveChannel* LivePages::open(std::string_view name) {
+  // The older connection of the same page: its page does not hear it any more, even if the network has not
+  // reported that yet.
+  for (Page& page : pages_)
+    if (page.channel->is_open() && page.name == name) {
+      page.channel->close();
+      page.channel->end({});
+    }
+  Page* const page = free_page();
+  if (page == nullptr) return nullptr;
+  page->name = name, page->came = ++came_;
+  const PageRole role = with_hand() ? PageRole::watches : PageRole::hand;
+  const std::lock_guard lock(mutex_);
+  page->channel->open(role, trouble_);
+  page->is_taken = true;
+  if (!ended_.empty()) page->channel->end(ended_message(ended_));
+  return page->channel.get();
+}
+
+void LivePages::close(LiveChannel& channel) {
+  channel.close();
+  Page* next = nullptr;
+  for (Page& page : pages_) {
+    if (page.channel.get() == &channel) page.is_taken = false;
+    if (page.channel->is_open() && (next == nullptr || page.came < next->came)) next = &page;
+  }
+  if (next != nullptr && with_hand() == nullptr) next->channel->give_hand();
+}
+
+bool LivePages::receive(LiveChannel& channel, std::string_view bytes) {
+  const std::vector<double> before = controls_->values();
+  const bool is_message = channel.receive(bytes);
+  if (controls_->values() != before)
+    for (Page& page : pages_)
+      if (page.channel->is_open() && page.channel.get() != &channel) page.channel->tell_parameters();
+  return is_message;
+}
+
+}  // namespace remote_touch

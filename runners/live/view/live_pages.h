@@ -1,0 +1,63 @@
+// The pages that show one live run: which of them has the hand, and what all of them are told.
+//
+// The first page has the hand; those that come later watch. When the page with the hand closes, the page that
+// has watched longest gets it. A page that connects again, because its connection was lost, takes the place
+// of its own older connection.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "runners/live/loop/live_trouble.h"
+#include "runners/live/view/live_channel.h"
+
+namespace remote_touch {
+
+class LivePages {
+ public:
+  static constexpr std::size_t kMax = 4;  // pages at the same time
+
+  // As for LiveChannel.
+  LivePages(double haptic_rate_hz, const DevicePlacement& placement, const Kernels& kernels,
+            const std::shared_ptr<HandPoses>& poses, std::shared_ptr<LiveControls> controls);
+
+  // From the threads of the run.
+  void take(const LiveTick& tick) noexcept;
+  void take(const Frame& frame) noexcept;
+  void tell(const LiveTrouble& trouble);
+  // The run has ended: every page is told why, now or when it asks. Only the first call counts.
+  void end(const std::string& why);
+  std::string ended() const;  // why; empty: it goes on
+  std::uint64_t refused() const;
+
+  // From the server's thread. page: the name that the page gave itself, at most kMaxName bytes. Null: kMax
+  // pages are connected. The channel belongs to this page until close().
+  static constexpr std::size_t kMaxName = 32;
+  LiveChannel* open(std::string_view page);
+  void close(LiveChannel& channel);
+  bool is_full() const;
+  // See LiveChannel::receive(); other pages are told of parameters that have changed.
+  bool receive(LiveChannel& channel, std::string_view bytes);
+
+ private:
+  struct Page {
+    std::unique_ptr<LiveChannel> channel;
+    std::string name;
+    bool is_taken = false;
+    std::uint64_t came = 0;  // the order in which the pages came
+  };
+  Page* free_page();
+  Page* with_hand();
+
+  const std::shared_ptr<LiveControls> controls_;
+  std::array<Page, kMax> pages_;
+  std::uint64_t came_ = 0;
+  mutable std::mutex mutex_;  // of the following
+  std::string trouble_;       // the newest message; empty: none
+  std::string ended_;
+};
+
+}  // namespace remote_touch

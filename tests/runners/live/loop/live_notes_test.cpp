@@ -1,0 +1,110 @@
+// What a live session reports at its end and stores in its files, on a simulated clock.
+#include "runners/live/loop/live_notes.h"
+
+#include <gtest/gtest.h>
+
+#include "analysis/storage/hdf5_reader.h"
+#include "runners/live/devices/device_table.h"
+#include "tests/runners/live/loop/simulated_run.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::live_notes_test {
+namespace {
+
+using Kinds = std::vector<std::string>;
+
+Kinds kinds_of(const RunReport& report) {
+  Kinds kinds;
+  for (const Note& note : report.notes) kinds.push_back(note.kind);
+  return kinds;
+}
+
+// A hand that presses 1 cm into a table from 0.2 s on; 40 x 30 pixels at 30 Hz.
+std::string press(const std::string& trajectory) {
+  return R"({"scenario": {"name": "camera-scene", "width": 40, "height": 30}, "renderer": {"name": "proxy"},
+             "trajectory": )" +
+         trajectory + "}";
+}
+const char* const kPress = R"({"name": "press", "press_at_s": 0.2, "depth_m": 0.01})";
+const char* const kAbove = R"({"name": "waypoints", "waypoints": [[0, 0.3, 0, 0], [0, 0.2, 0, 0.5]]})";
+
+struct Session {
+  LiveResult result;
+  TextAttributes stored;  // in the recording
+};
+
+Session run(const std::string& experiment, double duration_s) {
+  const TestFolder folder("live_notes");
+  SimulatedClock clock;
+  SimulatedRun run(clock, Experiment::from_json(experiment, "test"), [](const Experiment& of, Clock& with) {
+    return open_device("sim:", {of, scenes::kernels(), with});
+  });
+  run.options.duration_s = duration_s;
+  run.options.record = folder / "session.h5";
+  run.options.provenance = {{"config", experiment}};
+  Session session{run.run(), {}};
+  session.stored = Hdf5Reader(folder / "session.h5").attributes();
+  return session;
+}
+
+TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
+  const Session session = run(press(kPress), 0.5);
+  ASSERT_EQ(session.result.report.inputs.size(), 1u);
+  const std::string& line = session.result.report.inputs[0];
+  const int frames = session.result.counts.camera.received;
+  ASSERT_GT(frames, 10);
+  EXPECT_HAS(line, std::to_string(frames) + " frame(s) from sim:, 40 x 30 pixels at 30 Hz; " +
+                       std::to_string(frames) + " processed: ");
+  EXPECT_HAS(line, " of " + std::to_string(1200 * frames) + " points measured, depth ");
+  EXPECT_EQ(kinds_of(session.result.report), Kinds{});
+  EXPECT_EQ(attribute(session.stored, "frames_read"), line);
+  EXPECT_EQ(attribute(session.stored, "notes"), "");
+}
+
+TEST(LiveNotes, ASessionWithoutContactSaysSo) {
+  const Session session = run(press(kAbove), 0.5);
+  EXPECT_EQ(kinds_of(session.result.report), Kinds{"no contact"});
+  EXPECT_EQ(attribute(session.stored, "notes"), "no contact: no point was touched, and no force was felt");
+}
+
+TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
+  const Session session = run(press(kPress), 0.1);
+  EXPECT_EQ(kinds_of(session.result.report), Kinds{"phase not reached"});
+  EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
+}
+
+// The device of another program moves as it likes: the experiment's hand and scene are not used.
+TEST(LiveNotes, PhasesBelongToSimulatedPartsOnly) {
+  const Experiment experiment = Experiment::from_json(press(kPress), "test");
+  EXPECT_EQ(simulated_phases(experiment, "sim:", "pcd:x", scenes::kernels()).size(), 1u);
+  EXPECT_TRUE(simulated_phases(experiment, "browser:", "sim:", scenes::kernels()).empty())
+      << "a scene at rest";
+  EXPECT_TRUE(simulated_phases(experiment, "fd:", "k4a:", scenes::kernels()).empty());
+}
+
+RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_ticks = 1, int taken = 1) {
+  LiveLog log;
+  log.contact_ticks = contact_ticks;
+  for (int i = 0; i < taken; ++i) log.latency_s.push_back(0.01);
+  return report_of({"k4a:", SensorView{}, SensedPoints{}, camera, log, 1000, {}});
+}
+
+TEST(LiveNotes, ReportFramesThatWereNotUsed) {
+  CameraCounts camera;
+  camera.received = 95, camera.passed_over = 5, camera.overtaken = 3, camera.incomplete = 2;
+  EXPECT_EQ(kinds_of(report_of_counts(camera)), Kinds{}) << "10 of 100: single frames";
+  camera.received = 94, camera.passed_over = 6;
+  const RunReport report = report_of_counts(camera);
+  ASSERT_EQ(kinds_of(report), Kinds{"frames unused"});
+  EXPECT_EQ(
+      report.notes[0].text,
+      "11 of 100 frames were not used: 6 not sent, or replaced too soon, 2 without all pixels or colours, "
+      "3 overtaken before they were taken");
+}
+
+TEST(LiveNotes, ASessionWithoutFramesSaysSo) {
+  EXPECT_EQ(kinds_of(report_of_counts({}, 0, 0)), Kinds{"no frame"});
+}
+
+}  // namespace
+}  // namespace remote_touch::live_notes_test

@@ -1,0 +1,157 @@
+// Which page of a live run has the hand, and what all pages are told about the run.
+#include "runners/live/view/live_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runners/live/view/page_message.h"
+#include "tests/support/scenes.h"
+
+namespace remote_touch::live_pages_test {
+namespace {
+
+std::string hand_at(double x_m, std::uint32_t buttons = 0) {
+  std::string bytes("\1\0\0\0", 4);
+  bytes.append(reinterpret_cast<const char*>(&buttons), 4);
+  const double pose[] = {x_m, 0, 0, 1, 0, 0, 0};
+  return bytes.append(reinterpret_cast<const char*>(pose), sizeof pose);
+}
+
+// Of parameter 3, the stiffness.
+std::string change_to(double value) {
+  std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
+  return bytes.append(reinterpret_cast<const char*>(&value), 8);
+}
+
+class LivePagesTest : public testing::Test {
+ protected:
+  // The texts that wait for a page, without the columns, which come first.
+  static std::vector<nlohmann::json> texts(LiveChannel& channel) {
+    std::vector<nlohmann::json> list;
+    for (LiveChannel::Message message; channel.next(message);)
+      if (message.is_text && !message.bytes.starts_with("{\"columns\""))
+        list.push_back(nlohmann::json::parse(message.bytes));
+    return list;
+  }
+  LiveChannel& open(const std::string& name) {
+    LiveChannel* const channel = pages_.open(name);
+    EXPECT_NE(channel, nullptr) << name;
+    pages_.take(LiveTick());
+    return *channel;
+  }
+
+  const std::shared_ptr<HandPoses> poses_ = std::make_shared<HandPoses>();
+  const std::shared_ptr<LiveControls> controls_ = std::make_shared<LiveControls>(
+      Experiment::load("fig4.12"), scenes::kernels(), LiveControls::Camera::other);
+  LivePages pages_{1000, DevicePlacement(LiveSettings()), scenes::kernels(), poses_, controls_};
+};
+
+const nlohmann::json kHand = {{"hand", true}}, kWatches = {{"hand", false}};
+
+TEST_F(LivePagesTest, TheFirstPageHasTheHandAndTheOthersWatch) {
+  LiveChannel &first = open("a"), &second = open("b");
+  EXPECT_EQ(texts(first), std::vector{kHand});
+  EXPECT_EQ(texts(second), std::vector{kWatches});
+  EXPECT_FALSE(pages_.receive(second, hand_at(0.2)));
+  EXPECT_FALSE(pages_.receive(second, change_to(450)));
+  EXPECT_EQ(pages_.refused(), 2u);
+  EXPECT_FALSE(poses_->take()) << "the hand is the other page's";
+  EXPECT_FALSE(controls_->has_changed());
+  EXPECT_TRUE(pages_.receive(first, hand_at(0.1)));
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().position_W.x(), 0.1);
+}
+
+TEST_F(LivePagesTest, ThePageThatWatchedLongestGetsTheHand) {
+  LiveChannel &first = open("a"), &second = open("b"), &third = open("c");
+  texts(second), texts(third);
+  EXPECT_TRUE(pages_.receive(first, hand_at(0.1, 1)));
+  ASSERT_TRUE(poses_->take());
+  pages_.close(first);
+  ASSERT_TRUE(poses_->take());
+  EXPECT_EQ(poses_->front().buttons, 0u) << "nobody holds the button";
+  EXPECT_EQ(texts(second), std::vector{kHand});
+  EXPECT_TRUE(texts(third).empty());
+  EXPECT_TRUE(pages_.receive(second, hand_at(0.3)));
+  pages_.close(third);
+  EXPECT_TRUE(texts(second).empty()) << "it has the hand already";
+}
+
+// The network has not reported yet that the older connection is lost.
+TEST_F(LivePagesTest, APageThatConnectsAgainKeepsTheHand) {
+  LiveChannel &first = open("a"), &watching = open("b");
+  texts(watching);
+  LiveChannel& again = open("a");
+  EXPECT_NE(&again, &first);
+  EXPECT_EQ(texts(again), std::vector{kHand});
+  EXPECT_TRUE(first.is_over()) << "the server closes the older connection";
+  EXPECT_FALSE(pages_.receive(first, hand_at(0.5)));
+  pages_.close(first);
+  EXPECT_TRUE(texts(watching).empty());
+  EXPECT_TRUE(pages_.receive(again, hand_at(0.1)));
+}
+
+TEST_F(LivePagesTest, MorePagesThanItsMaximumAreNotOpened) {
+  std::vector<LiveChannel*> open_pages;
+  for (std::size_t i = 0; i < LivePages::kMax; ++i) {
+    EXPECT_FALSE(pages_.is_full());
+    open_pages.push_back(&open(std::string(1, static_cast<char>('a' + i))));
+  }
+  EXPECT_TRUE(pages_.is_full());
+  EXPECT_EQ(pages_.open("f"), nullptr);
+  pages_.close(*open_pages[2]);
+  EXPECT_EQ(texts(open("f")), std::vector{kWatches});
+}
+
+TEST_F(LivePagesTest, EveryPageIsToldOfChangedParameters) {
+  LiveChannel &first = open("a"), &second = open("b");
+  texts(first), texts(second);
+  EXPECT_TRUE(pages_.receive(first, change_to(450)));
+  for (LiveChannel* page : {&first, &second}) {
+    const auto told = texts(*page);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0]["values"][3], 450);
+  }
+  EXPECT_TRUE(pages_.receive(first, change_to(-1)));
+  EXPECT_EQ(texts(first).size(), 1u) << "why it was refused";
+  EXPECT_TRUE(texts(second).empty()) << "nothing has changed";
+}
+
+TEST_F(LivePagesTest, EveryPageIsToldWhatDoesNotWorkNow) {
+  LiveChannel& first = open("a");
+  texts(first);
+  pages_.tell({"no frame for 0.2 s: the last cloud stays", ""});
+  const nlohmann::json told = {
+      {"trouble", {{"camera", "no frame for 0.2 s: the last cloud stays"}, {"force", ""}}}};
+  EXPECT_EQ(texts(first), std::vector{told});
+  EXPECT_EQ(texts(open("b")), (std::vector{kWatches, told})) << "a page that comes later, too";
+  pages_.tell({"", "\xff is no UTF-8"});
+  EXPECT_EQ(texts(first).size(), 1u);
+}
+
+// Also before the first tick, and to a page that comes, or comes again, before the program ends.
+TEST_F(LivePagesTest, EveryPageIsToldWhyTheRunHasEnded) {
+  LiveChannel& first = *pages_.open("a");
+  EXPECT_EQ(pages_.ended(), "");
+  pages_.end("its duration is over");
+  pages_.end("another reason");
+  EXPECT_EQ(pages_.ended(), "its duration is over");
+  const nlohmann::json told = {{"ended", "its duration is over"}};
+  EXPECT_FALSE(first.is_over());
+  EXPECT_EQ(texts(first), std::vector{told});
+  EXPECT_TRUE(first.is_over()) << "the server closes the connection";
+  LiveChannel& late = *pages_.open("b");
+  EXPECT_EQ(texts(late), std::vector{told});
+  EXPECT_TRUE(late.is_over());
+}
+
+TEST(ViewMessages, TheStateSaysWhyThereIsNoChannel) {
+  const nlohmann::json running = nlohmann::json::parse(state_message("", true));
+  EXPECT_EQ(running, (nlohmann::json{{"protocol", kViewProtocol}, {"ended", ""}, {"full", true}}));
+  const nlohmann::json ended = nlohmann::json::parse(state_message("stopped by a signal", false));
+  EXPECT_EQ(ended["ended"], "stopped by a signal");
+}
+
+}  // namespace
+}  // namespace remote_touch::live_pages_test
