@@ -10,16 +10,27 @@
 
 namespace remote_touch {
 
-// squares: filled cells of a map, as large as the distance of the samples; map: the same coloured by z; band:
-// from y to z; image: one pixel for every cell of a grid, of colour z = 0xRRGGBB.
-enum class CurveStyle { line, dots, steps, dashed, circle, bars, squares, map, band, image };
+enum class CurveStyle {
+  line,
+  dots,
+  steps,
+  dashed,
+  circle,
+  bars,
+  squares,  // filled cells of a map, as large as the distance of the samples
+  map,      // the same, coloured by z
+  band,     // from y to z
+  image,    // one pixel for every cell of a grid, of colour z = 0xRRGGBB
+  surface,  // heights z over a grid of (x, y), in perspective, alone in its panel
+  letters   // a dot at (x, y) with the name that z has
+};
 
 struct Curve {
   std::string table, x, y;  // names of a table and two of its columns
   CurveStyle style = CurveStyle::line;
   std::string label = {};  // empty: not in the legend
   double radius = 0;       // of circles, in data units
-  std::string z = {};      // a third column, of maps, bands and images
+  std::string z = {};      // a third column, of maps, bands, images, surfaces and letters
 };
 
 struct Panel {

@@ -68,6 +68,10 @@ std::string style_name(CurveStyle style) {
       return "band";
     case CurveStyle::image:
       return "image";
+    case CurveStyle::surface:
+      return "surface";
+    case CurveStyle::letters:
+      return "letters";
   }
   return "line";
 }

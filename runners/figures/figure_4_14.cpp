@@ -80,6 +80,14 @@ Table profile_table(const Oracle& oracle) {
   return table;
 }
 
+Table surface_table(const PointCloud& cloud) {
+  Table table{"surface", "the points"};
+  table.add("x", "m", "x of the point", std::vector<double>(cloud.x.begin(), cloud.x.end()));
+  table.add("y", "m", "height, y", std::vector<double>(cloud.y.begin(), cloud.y.end()));
+  table.add("z", "m", "z of the point", std::vector<double>(cloud.z.begin(), cloud.z.end()));
+  return table;
+}
+
 // The points of the row that the path lies over, and where the proxy of radius r_c sits in the last full
 // valley.
 std::vector<Table> points_and_ball(const Scenario& scenario, const Trace& trace, double valley_x) {
@@ -112,14 +120,20 @@ Figure figure_4_14(const FigureContext& context) {
 
   Figure figure{"4.14",
                 "Sharp corners",
-                "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the wave and the "
-                "contact point. Bottom: a part of it, with the points and a circle of radius r_c. Convex "
-                "corners are rendered sharp; in a valley the proxy rests on both flanks.",
-                {contact_table(contact), profile_table(oracle)}};
+                "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
+                "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
+                "with the points and a circle of radius r_c. Convex corners are rendered sharp; in a valley "
+                "the proxy rests on both flanks.",
+                {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))}};
   for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
   const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
   const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
-  figure.panels = {{"The whole wave",
+  figure.panels = {{"The point cloud, x, y and z equally scaled",
+                    "x (m)",
+                    "z (m)",
+                    false,
+                    {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}},
+                   {"The whole wave",
                     "x (m)",
                     "y (m)",
                     false,

@@ -126,7 +126,8 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
   for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
     rows.push_back({trace.time_s[i], trace.hip_position_m[i].y(), trace.proxy_position_m[i].y(),
                     surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
-                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force_N[i].norm()});
+                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force_N[i].norm(),
+                    (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm()});
   }
   const std::vector<ColumnName> columns = {
       {"time", "s", "simulated time"},
@@ -138,7 +139,8 @@ Table path_table(const std::string& name, const std::string& title, const Fixtur
       {"boundary", "m", "r_f + r_c"},
       {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c"},
       {"deviation_in_frame", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
-      {"force", "N", "magnitude of the force"}};
+      {"force", "N", "magnitude of the force"},
+      {"hip_distance", "m", "distance between HIP and proxy"}};
   return table_of(name, title, columns, rows);
 }
 
@@ -171,6 +173,9 @@ std::vector<Panel> panels() {
   const auto axis = [](const char* title, const char* y_label) {
     return Panel{title, "time (s)", y_label, false, {}, std::pair(0.0, 15.0)};
   };
+  Panel hip_distance = axis("Distance between HIP and proxy, as in the dissertation", "|HIP - proxy| (m)");
+  hip_distance.curves = {{"with_noise", "time", "hip_distance", CurveStyle::line, "with the sensor's noise"},
+                         {"noise_free", "time", "hip_distance", CurveStyle::line, "noise-free camera"}};
   Panel height = axis("Height", "y (m)"), distance = axis("Distance to the true surface", "distance (m)");
   Panel deviation = axis("Distance - r_f - r_c: moving true surface", "deviation (m)");
   Panel force = axis("Force", "force (N)");
@@ -189,7 +194,7 @@ std::vector<Panel> panels() {
   deviation.y_range = std::pair(-0.003, 0.004);
   force.curves = {{"with_noise", "time", "force", CurveStyle::line, "with the sensor's noise"},
                   {"noise_free", "time", "force", CurveStyle::line, "noise-free camera"}};
-  return {height, distance, deviation, force};
+  return {hip_distance, height, distance, deviation, force};
 }
 
 void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, double frame_s) {

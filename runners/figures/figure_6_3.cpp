@@ -7,6 +7,7 @@
 #include "analysis/measures/measures.h"
 #include "core/geometry/rotation.h"
 #include "runners/figures/fixture_run.h"
+#include "runners/figures/tools/box_contacts.h"
 #include "runners/figures/tools/tool_picture.h"
 #include "runners/second_implementation/second_implementation.h"
 
@@ -42,10 +43,10 @@ double tool_deg(const Trace& trace, std::size_t i) {
 
 // Where the device has turned farthest.
 std::size_t plateau(const Trace& trace) {
-  std::size_t max_distance = 0;
+  std::size_t farthest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (device_deg(trace, i) > device_deg(trace, max_distance)) max_distance = i;
-  return max_distance;
+    if (device_deg(trace, i) > device_deg(trace, farthest)) farthest = i;
+  return farthest;
 }
 
 std::int32_t max(const std::vector<std::int32_t>& counts) {
@@ -310,7 +311,8 @@ Figure figure_6_3(const FigureContext& context) {
       "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as constraints with "
       "their distance, ahead of the tool. Right: the tool's voxels as printed. The picture is of the left "
       "run at 30 deg: the tool filled, the device transparent. The number of points that touch depends on "
-      "how close they lie (table runs); the constraints that hold the tool are never more than 6."};
+      "how close they lie (tables runs and spacings, last row); the constraints that hold the tool are never "
+      "more than 6."};
   const std::size_t step = kSpacings_mm.size(), of_husky = step * kRules.size();
   for (std::size_t r = 0; r < kRules.size(); ++r) {
     const BoxRun& run = runs[r * step];
@@ -324,6 +326,7 @@ Figure figure_6_3(const FigureContext& context) {
   add_floor_claims(figure, context);
   figure.tables.push_back(summary_table(runs));
   add_pictures(figure, context, runs[0]);
+  add_contacts_over_spacing(figure, context.sweep(Sweep::load("fig6.3-spacings")), 4);
   return figure;
 }
 

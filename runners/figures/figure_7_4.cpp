@@ -13,6 +13,7 @@ namespace {
 constexpr double kValveRegion_m = 0.04;
 constexpr double kHeldLeft_s = 2.75, kHeldRight_s = 6.25;  // in the middle of the two pushes
 constexpr double kBetween_s = 4.5;                         // halfway, as at the beginning and the end
+constexpr double kStart_s = 0.25;
 
 // A push beside the left valve's middle, 6 cm deeper than the first.
 const char* const kOffCentre =
@@ -63,7 +64,7 @@ void add_claims(Figure& figure, const ValveTask& task) {
   claim(claim_at_most(name, "largest force while nothing is within the look-ahead", "0", max_free_force_N(t),
                       0, "N"));
   claim(claim_between(name, "times that the force rises from nothing", "2", pushes(t), 2, 2, "times"));
-  for (const double free_s : {0.25, kBetween_s, t.time_s.back()})
+  for (const double free_s : {kStart_s, kBetween_s, t.time_s.back()})
     claim(claim_at_most(name, "force at " + std::to_string(free_s).substr(0, 4) + " s", "0",
                         t.force_N[tick_of(t, free_s)].norm(), 0, "N"));
   add_push_claims(figure, task, "left", kHeldLeft_s);
@@ -90,9 +91,36 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   add_task_claims(figure, slip);
 }
 
+// The four moments A to D of the caption.
+std::vector<std::size_t> moments_7_4(const Trace& t) {
+  return {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s), tick_of(t, kHeldRight_s), t.length() - 1};
+}
+
+Table moment_table(const Trace& t) {
+  std::vector<double> time_s, force_N, torque_Nm;
+  std::vector<std::int32_t> letter;
+  for (const std::size_t tick : moments_7_4(t)) {
+    letter.push_back(static_cast<std::int32_t>(letter.size()));
+    time_s.push_back(t.time_s[tick]);
+    force_N.push_back(t.force_N[tick].norm()), torque_Nm.push_back(t.torque_Nm[tick].norm());
+  }
+  Table table{"moments", "A: start, B: pushed to the left, C: pushed to the right, D: end"};
+  table.columns.push_back({"letter", "1", "moment of the task", letter, 1, {"A", "B", "C", "D"}});
+  table.add("time", "s", "simulated time", time_s);
+  table.add("force", "N", "norm of the force", force_N);
+  table.add("torque", "N m", "norm of the torque", torque_Nm);
+  return table;
+}
+
 Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
   Panel panel{title, "time (s)", label, false, {}, {}, {}, std::pair(double(row), 0.0)};
   panel.curves = {{task.name, "time", column, CurveStyle::line, ""}};
+  return panel;
+}
+
+Panel lettered(Panel panel) {
+  const std::string column = panel.curves.front().y;
+  panel.curves.push_back({"moments", "time", column, CurveStyle::letters, "", 0, "letter"});
   return panel;
 }
 
@@ -131,18 +159,21 @@ Figure figure_7_4(const FigureContext& context) {
       "A simulated camera sees two handwheels in a tank of turbid water; the points of both hues get "
       "regions of 4 cm. A simulated operator (a mass drawn to its path by a spring) moves a valve "
       "key of 112 spheres: A) starts, B) pushes towards the left valve, C) towards the right one, D) "
-      "leaves. The pictures show tool (filled) and device (transparent) in B and C, and a push deep "
-      "beside the left valve's middle, where the tool slips round. Everything is simulated."};
+      "leaves. The letters in the traces and the pictures are the same four moments. The pictures show tool "
+      "(filled) and device (transparent); the last one is a push deep beside the left valve's middle, where "
+      "the tool slips round. Everything is simulated."};
   for (const ValveTask& task : tasks) figure.tables.push_back(task_table(task));
   figure.tables.push_back(summary_table(tasks));
-  figure.panels = {time_panel(tasks[0], "First task", "force", "force (N)", 0),
-                   time_panel(tasks[0], "", "torque", "torque (N m)", 1),
+  figure.tables.push_back(moment_table(tasks[0].trace));
+  figure.panels = {lettered(time_panel(tasks[0], "First task", "force", "force (N)", 0)),
+                   lettered(time_panel(tasks[0], "", "torque", "torque (N m)", 1)),
                    time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};
-  add_task_picture_tables(figure, context, tasks[0],
-                          {tick_of(tasks[0].trace, kHeldLeft_s), tick_of(tasks[0].trace, kHeldRight_s)});
+  add_task_picture_tables(figure, context, tasks[0], moments_7_4(tasks[0].trace));
   add_task_picture_tables(figure, context, tasks[1], {tasks[1].trace.length() - 1});
-  figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 0, 0, 1));
-  figure.panels.push_back(task_picture(tasks[0], "C) pushed to the right", 1, 1, 1));
+  figure.panels.push_back(task_picture(tasks[0], "A) at the start", 0, 0, 1));
+  figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 1, 0, 2));
+  figure.panels.push_back(task_picture(tasks[0], "C) pushed to the right", 2, 1, 1));
+  figure.panels.push_back(task_picture(tasks[0], "D) at the end", 3, 1, 2));
   figure.panels.push_back(task_picture(tasks[1], "Slipped round, at the end", 0, 2, 1));
   add_claims(figure, tasks[0]);
   add_slip(figure, tasks[1]);

@@ -17,6 +17,19 @@ Experiment steady_rise(const std::string& sign) {
                                "eq4.15", {"renderer.velocity_force=" + sign});
 }
 
+// (4.13) sets a negative estimate to 0, "since there is no risk for pop through", so (4.15) has no term here.
+Experiment steady_fall() {
+  return Experiment::from_json(R"({
+    "title": "a noise-free plane recedes at 0.1 m/s from a HIP that keeps its depth",
+    "scenario": {"name": "moving-lift", "noise_sigma_m": 0, "wait_s": 0.2, "start_depth_m": 0,
+                 "start_velocity_m_per_s": -0.1, "rise_s": 2, "acceleration_s": 0},
+    "renderer": {"name": "proxy"},
+    "trajectory": {"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.03,
+                   "per_frame": false},
+    "duration_s": 1.9})",
+                               "eq4.15");
+}
+
 // From when the velocity estimate has settled.
 Trace settled(const Trace& trace) {
   Trace part;
@@ -68,6 +81,10 @@ Figure figure_eq4_15(const FigureContext& context) {
       claim_differs("eq4.15", "the same, printed sign (plus)", "smooth", jump[0], 2 * kJump_N - kRounding_N,
                     2 * kJump_N + kRounding_N, "N"),
       claim_between("eq4.15", "the same, without the term", "-", jump[1], kJump_N - kRounding_N,
+                    kJump_N + kRounding_N, "N"),
+      claim_differs("eq4.15",
+                    "the same for a plane that recedes, working sign: v_hat is never below 0 (4.13)",
+                    "smooth", max_force_jump_N(settled(context.run(steady_fall()))), kJump_N - kRounding_N,
                     kJump_N + kRounding_N, "N"),
   };
   return figure;

@@ -112,8 +112,8 @@ Experiment rise(int steps, double step_m, double velocity_m_per_s) {
                   "scenario.start_depth_m=" + std::to_string(velocity_m_per_s / 2), "scenario.rise_s=4",
                   "scenario.acceleration_s=0", "duration_s=4", "renderer.velocity_estimate=false",
                   "renderer.step_rule=fixed", "renderer.fixed_step_m=" + std::to_string(step_m * 1e9) + "e-9",
-                  "renderer.steps_per_tick=" + std::to_string(fast ? 3 : 1),
-                  "haptic_rate_hz=" + std::to_string(fast ? 10000 : steps * kFrames_hz)});
+                  fast ? "renderer.steps_per_tick=3" : "renderer.steps_per_tick=1",
+                  std::string("haptic_rate_hz=").append(std::to_string(fast ? 10000 : steps * kFrames_hz))});
 }
 
 struct Predecessor {

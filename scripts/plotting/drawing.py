@@ -12,6 +12,7 @@ import numpy as np
 
 from plotting.cells import cell_ends, cell_size, colour_range, distinct, outlines
 from plotting.scene import rgb
+from plotting.surface import draw_surface, is_surface
 
 NOTHING, NOTHING_COLOUR = "no value", "#d4d4d4"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
@@ -44,11 +45,23 @@ def draw_steps(axes, curve, panel, colour):
 
 
 def draw_dots(axes, curve, panel, colour):
-    """The fewer dots are in sight, the larger they are."""
+    """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first:
+    they are rings around them, those of a third are wider rings."""
     count = np.count_nonzero(in_sight(curve, panel))
     size = 6 if count <= 30 else 4 if count <= 100 else 2.5 if count <= 300 else 1.5 if count <= 3000 else 1
-    axes.plot(curve.x.values, curve.y.values, "o", color=colour, markersize=size, markeredgewidth=0,
-              label=curve.label)
+    series = [other for other in panel.curves if other.style == "dots"].index(curve)
+    options = {"markeredgewidth": 0}
+    if series > 0 and count <= 100:
+        size, options = size + 5 * series, {"markerfacecolor": "none", "markeredgewidth": 1.5}
+    axes.plot(curve.x.values, curve.y.values, "o", color=colour, markersize=size, label=curve.label, **options)
+
+
+def draw_letters(axes, curve, _, __):
+    """Dots with the names of z above them."""
+    axes.plot(curve.x.values, curve.y.values, "o", color="black", markersize=5, zorder=4)
+    for x, y, name in zip(*(column.values[is_finite(curve)] for column in (curve.x, curve.y, curve.z))):
+        axes.annotate(curve.z.names[name], (x, y), xytext=(0, 6), textcoords="offset points", ha="center", va="bottom",
+                      fontweight="bold", path_effects=HALO)
 
 
 def draw_circles(axes, curve, _, colour):
@@ -116,7 +129,7 @@ def draw_image(axes, curve, _, __):
 
 DRAW = {"line": draw_line, "dashed": draw_dashed, "steps": draw_steps, "dots": draw_dots,
         "circle": draw_circles, "bars": draw_bars, "squares": draw_squares, "map": draw_map, "band": draw_band,
-        "image": draw_image}
+        "image": draw_image, "letters": draw_letters}
 
 
 def has_cells(panel):
@@ -283,17 +296,20 @@ def curve_key(curve, i):
     return curve.label or (curve.y.long_name, i)
 
 
-def draw_panel(axes, panel, colours):
-    """colours: of each curve, by curve_key."""
+def draw_panel(axes, panel, colours, title_width=80):
+    """colours: of each curve, by curve_key. title_width: in letters."""
+    if is_surface(panel):
+        draw_surface(axes, panel, with_units)
+        return
     xs, ys = [c.x for c in panel.curves], [c.y for c in panel.curves]
     for set_scale, columns in ((axes.set_xscale, xs), (axes.set_yscale, ys)):
         if any(column.is_log for column in columns):
             set_scale("log")
     for i, curve in enumerate(panel.curves):
-        DRAW[curve.style](axes, curve, panel, colours[curve_key(curve, i)])
+        DRAW[curve.style](axes, curve, panel, colours.get(curve_key(curve, i)))
     set_given(axes.set_xlim, panel.x_range)
     set_y_range(axes, panel)
-    axes.set_title(textwrap.fill(panel.title, 80), loc="left")
+    axes.set_title(textwrap.fill(panel.title, title_width), loc="left")
     if is_image(panel):
         without_axes(axes)
         return

@@ -9,8 +9,8 @@ import numpy as np
 from plotting.plot_error import PlotError
 
 SCHEMA = "remote-touch-figure/2"
-STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image")
-NEED_Z = ("map", "band", "image")
+STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "image", "surface", "letters")
+NEED_Z = ("map", "band", "image", "surface", "letters")
 FRACTION = re.compile(r"(fraction|share|probability) of |1 when ")
 
 
@@ -40,7 +40,7 @@ class Curve:
     style: str
     label: str
     radius: float
-    z: Column | None  # the colours of a map or an image, the other edge of a band; None for every other style
+    z: Column | None  # colours of a map or an image, other edge of a band, heights of a surface, names of letters; or None
 
 
 @dataclasses.dataclass

@@ -9,8 +9,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from plotting.drawing import curve_key, draw_panel, has_cells, is_image, legend_below
 from plotting.scene import draw_scene
+from plotting.surface import add_title, is_surface
 
 WIDTH_IN, HEIGHT_IN, PAD_IN, DPI = 9.0, 6.0, 0.1, 130
+LETTER_IN = 0.095  # mean width of a letter of a panel's title
+OWN_COLOURS = ("surface", "letters")  # styles that take no colour of the list
 COLOURS = ["#1f4e79", "#c8501e", "#2f7d4f", "#8a4f9e", "#b08900", "#555555", "#2f93b5", "#a3224a"]
 RC = {
     "font.size": 11, "axes.titlesize": 12, "axes.labelsize": 11, "legend.fontsize": 10,
@@ -24,7 +27,8 @@ RC = {
 
 def colours(panels):
     """A label has one colour in all panels."""
-    keys = dict.fromkeys(curve_key(curve, i) for panel in panels for i, curve in enumerate(panel.curves))
+    keys = dict.fromkeys(curve_key(curve, i) for panel in panels for i, curve in enumerate(panel.curves)
+                         if curve.style not in OWN_COLOURS)
     return {key: COLOURS[i % len(COLOURS)] for i, key in enumerate(keys)}
 
 
@@ -47,6 +51,11 @@ def canvas_width(columns):
     return WIDTH_IN if columns == 1 else 1.5 * WIDTH_IN
 
 
+def title_width(columns):
+    """Letters of a panel's title that fit over the panel, beside its labels."""
+    return 80 if columns == 1 else int((canvas_width(columns) / columns - 0.8) / LETTER_IN)
+
+
 def row_height(row, columns, rows):
     """Inches for the panels of one row: what equal aspect asks for, else a share of the page."""
     share = max(HEIGHT_IN / rows, 2.3)
@@ -55,6 +64,8 @@ def row_height(row, columns, rows):
         height = max(share, 3.8) if has_cells(panel) else share
         if panel.scene:
             height = 0.95 * canvas_width(columns) / columns * panel.scene.proportion + 0.6
+        elif is_surface(panel):
+            height = 0.4 * canvas_width(columns) / columns
         (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
         if is_image(panel):
             height = 0.95 * canvas_width(columns) / columns * abs(y1 - y0) / abs(x1 - x0) + 0.6
@@ -84,7 +95,10 @@ def guess(canvas, drawn, rows, columns):
 
 
 def margins(canvas, axes):
-    """What labels and legend need left, right, below and above, in inches."""
+    """What labels and legend need left, right, below and above, in inches. A view in perspective has its labels inside
+    its panel, and only the title above it."""
+    if axes.name == "3d":
+        return [PAD_IN, PAD_IN, PAD_IN, PAD_IN + 0.25]
     outer = axes.get_tightbbox(canvas.canvas.get_renderer(), for_layout_only=True)
     inner = axes.get_position().transformed(canvas.transFigure)
     return [max(0.0, size) / canvas.dpi + PAD_IN
@@ -111,8 +125,10 @@ def arrange(canvas, drawn, heights, columns, top_in):
 
 def align(drawn):
     """Equal aspect may narrow a panel. Those below it with the same x_range follow, so that x stays above x."""
-    for _, axes, _ in drawn:
+    for _, axes, panel in drawn:
         axes.apply_aspect()
+        if is_surface(panel):
+            add_title(axes, panel)
     for (_, column), narrowed, panel in drawn:
         if not (panel.equal_aspect and has_range(panel)):
             continue
@@ -141,11 +157,12 @@ def draw_figure(figure, png, titled):
     of_label = colours(figure.panels)
     drawn = []
     for i, (panel, cell) in enumerate(zip(figure.panels, cells)):
-        axes = canvas.add_axes([0, 0, 1, 1], label=str(i))
+        projection = "3d" if is_surface(panel) else None
+        axes = canvas.add_axes([0, 0, 1, 1], label=str(i), projection=projection)
         if panel.scene:
             draw_scene(axes, panel, columns)
         else:
-            draw_panel(axes, panel, of_label)
+            draw_panel(axes, panel, of_label, title_width(columns))
         drawn.append((cell, axes, panel))
     heights = [row_height([(a, p) for cell, a, p in drawn if cell[0] == row], columns, rows)
                for row in range(rows)]

@@ -111,6 +111,15 @@ def sweep_panels(file):
     return panels
 
 
+def notes(file, is_done):
+    """How many of the finished runs have each kind of note, in words; results of earlier versions have none."""
+    if "/sweep/notes" not in file:
+        return []
+    bits, kinds = np.ravel(dataset(file, "/sweep/notes")[()])[is_done], text(file.attrs, "note_kinds").split(",")
+    counts = [(kind, int(np.count_nonzero(bits >> bit & 1))) for bit, kind in enumerate(kinds)]
+    return [f"{count} of {bits.size} runs: {kind}" for kind, count in counts if count]
+
+
 def left_out(file):
     """What of a sweep the picture does not show, in words."""
     words = []
@@ -125,6 +134,7 @@ def left_out(file):
                         ("are not done", states.count("pending") + states.count("elsewhere"))):
         if count:
             words.append(f"without {count} of {planned} runs, which {what}")
+    words += notes(file, np.ravel(state[()]) == 2)
     return "".join(f"; {each}" for each in words)
 
 
