@@ -35,16 +35,24 @@ Column error_column(const SweepResult& result) {
 Column round_column(const SweepResult& result) {
   return {"round", "1", "round of refinement that asked for the run, -1: none", result.round, 1, {}};
 }
+Column notes_column(const SweepResult& result) {
+  return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes, 1, {}};
+}
 Column replicate_column(const SweepResult& result) {
   std::vector<std::int32_t> numbers;
   for (int i = 0; i < result.replicates; ++i) numbers.push_back(i);
   return {"replicate", "1", "repetition with other noise", numbers, 1, {}};
 }
 
-std::string joined(const std::vector<Column>& columns) {
-  std::string names;
-  for (const Column& column : columns) names += (names.empty() ? "" : ",") + column.name;
-  return names;
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
+  return all;
+}
+std::string joined_names(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return joined(names);
 }
 
 std::vector<std::string> split(const std::string& names) {
@@ -70,6 +78,7 @@ std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   std::vector<Column> columns = result.axes;
   columns.push_back({"attributes", "1", "", texts, 1, {}});
   if (!result.round.empty()) columns.push_back(round_column(result));
+  if (!result.note_kinds.empty()) columns.push_back({"note_kinds", "1", "", result.note_kinds, 1, {}});
   return digest(columns);
 }
 
@@ -82,7 +91,8 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   hdf5.attribute("/", "schema", schema_name("sweep"));
   hdf5.attributes("/", attributes);
   if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
-  hdf5.attributes("/", {{"axes", joined(result.axes)}, {"measures", joined(result.measures)}});
+  hdf5.attributes("/", {{"axes", joined_names(result.axes)}, {"measures", joined_names(result.measures)}});
+  if (!result.note_kinds.empty()) hdf5.attribute("/", "note_kinds", joined(result.note_kinds));
   hdf5.attribute("/", "default", "sweep");  // NeXus: what a viewer opens first
   hdf5.group("/sweep");
   std::vector<Column> scales = result.axes;
@@ -91,6 +101,7 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   for (const Column& scale : scales) hdf5.columns("/sweep", {scale}, axes.emplace_back(scale.name));
   for (const Column& measure : result.measures) hdf5.array("/sweep", measure, axes, storage);
   hdf5.array("/sweep", state_column(result), axes, storage);
+  if (!result.note_kinds.empty()) hdf5.array("/sweep", notes_column(result), axes, storage);
   if (!result.round.empty()) hdf5.array("/sweep", round_column(result), axes, Storage::compact);
   if (storage == Storage::in_place)
     hdf5.array("/sweep",
@@ -103,7 +114,8 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
 
 }  // namespace
 
-// FNV-1a over the run's number, state and values, so that values that belong to another run do not pass.
+// FNV-1a over the run's number, state, values and notes, so that values that belong to another run do not
+// pass.
 std::int32_t checksum(const SweepResult& result, std::size_t run) {
   std::uint32_t hash = 2166136261u;
   const auto mix = [&hash](std::uint64_t bits) {
@@ -114,6 +126,7 @@ std::int32_t checksum(const SweepResult& result, std::size_t run) {
   mix(static_cast<std::uint64_t>(result.state[run]));
   for (const Column& measure : result.measures)
     mix(std::bit_cast<std::uint64_t>(std::get<std::vector<double>>(measure.values)[run]));
+  if (!result.notes.empty()) mix(static_cast<std::uint32_t>(result.notes[run]));
   return static_cast<std::int32_t>(hash);
 }
 
@@ -163,7 +176,7 @@ class SweepReader {
   TextAttributes provenance() const {
     TextAttributes kept;
     for (const auto& [name, value] : hdf5_.attributes())
-      if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures"}))
+      if (!is_one_of(name, {"schema", "digest", "plan_digest", "default", "axes", "measures", "note_kinds"}))
         kept.emplace_back(name, value);
     return kept;
   }
@@ -218,7 +231,23 @@ void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result)
     result.state[run] = asked_for ? RunState::pending : RunState::not_sampled;
     for (Column& measure : result.measures)
       std::get<std::vector<double>>(measure.values)[run] = std::numeric_limits<double>::quiet_NaN();
+    if (!result.notes.empty()) result.notes[run] = 0;
   }
+}
+
+// Results of earlier versions have no notes.
+void read_notes(const SweepReader& reader, std::size_t runs, SweepResult& result) {
+  constexpr std::size_t kBits = 31;  // a number without its sign
+  if (!reader.has("notes")) return;
+  result.note_kinds = split(reader.text("note_kinds"));
+  if (result.note_kinds.empty() || result.note_kinds.size() > kBits)
+    reader.damaged("its attribute note_kinds has no names, or too many");
+  result.notes = reader.values<std::int32_t>("notes", runs);
+}
+
+void require_known_notes(const SweepReader& reader, const SweepResult& result) {
+  for (const std::int32_t bits : result.notes)
+    if (bits < 0 || bits >> result.note_kinds.size() != 0) reader.damaged("a note is unknown");
 }
 
 }  // namespace
@@ -240,6 +269,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
       reader.damaged("a state is unknown");
     result.state.push_back(static_cast<RunState>(state));
   }
+  read_notes(reader, runs, result);
   if (reader.has("round")) result.round = reader.values<std::int32_t>("round", runs);
   if (stored.in_progress) {
     result.error.resize(runs);
@@ -250,6 +280,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
     result.error = reader.values<std::string>("error", runs);
     if (reader.text("digest") != digest(result)) reader.damaged("its digest is another");
   }
+  require_known_notes(reader, result);
   for (std::size_t run = 0; run < result.round.size(); ++run)
     if ((result.round[run] < 0) != (result.state[run] == RunState::not_sampled))
       reader.damaged("a run belongs to no round");

@@ -28,6 +28,7 @@ SweepInProgress::SweepInProgress(const std::filesystem::path& file, const SweepR
     measure_offsets_.push_back(there.offset("/sweep/" + measure.name));
   state_offset_ = there.offset("/sweep/state");
   checksum_offset_ = there.offset("/sweep/checksum");
+  if (!result.notes.empty()) notes_offset_ = there.offset("/sweep/notes");
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0)
     refuse(file_, std::string("cannot be written (") + std::strerror(errno) + "): expected a writable file");
@@ -46,6 +47,7 @@ void SweepInProgress::record(const SweepResult& result, std::size_t run) {
   const auto state = static_cast<std::int32_t>(result.state[run]);
   const std::int32_t sum = checksum(result, run);
   put(state_offset_ + 4 * place, &state, sizeof state);
+  if (!result.notes.empty()) put(notes_offset_ + 4 * place, &result.notes[run], sizeof result.notes[run]);
   put(checksum_offset_ + 4 * place, &sum, sizeof sum);
 }
 

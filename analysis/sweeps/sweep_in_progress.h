@@ -22,8 +22,8 @@ class SweepInProgress {
   SweepInProgress(const SweepInProgress&) = delete;
   SweepInProgress& operator=(const SweepInProgress&) = delete;
 
-  // Stores the values and the state of one run. One call at a time. Throws InputError when it cannot be
-  // written.
+  // Stores the values, the state and the notes of one run. One call at a time. Throws InputError when it
+  // cannot be written.
   void record(const SweepResult& result, std::size_t run);
   // After this, everything recorded survives a power cut. Throws also when the file was replaced or removed.
   void flush();
@@ -34,7 +34,7 @@ class SweepInProgress {
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::vector<std::int64_t> measure_offsets_;
-  std::int64_t state_offset_ = 0, checksum_offset_ = 0;
+  std::int64_t state_offset_ = 0, checksum_offset_ = 0, notes_offset_ = 0;
 };
 
 }  // namespace remote_touch

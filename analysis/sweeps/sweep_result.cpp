@@ -13,6 +13,7 @@ void SweepResult::start(bool refined) {
   state.assign(runs, RunState::not_sampled);
   round.assign(refined ? runs : 0, -1);
   error.assign(runs, {});
+  notes.assign(note_kinds.empty() ? 0 : runs, 0);
 }
 
 std::size_t SweepResult::cell_count() const {
@@ -44,6 +45,18 @@ const std::vector<double>& SweepResult::measure(const std::string& name) const {
   for (const Column& measure : measures)
     if (measure.name == name) return std::get<std::vector<double>>(measure.values);
   throw std::out_of_range("the sweep has no measure " + name);
+}
+
+std::vector<NoteCount> note_counts(const SweepResult& result) {
+  std::vector<NoteCount> counts;
+  for (std::size_t kind = 0; kind < result.note_kinds.size(); ++kind) {
+    NoteCount count{result.note_kinds[kind]};
+    for (std::size_t run = result.notes.size(); run-- > 0;)
+      if (result.state[run] == RunState::done && (result.notes[run] >> kind & 1) != 0)
+        ++count.runs, count.first = run;
+    if (count.runs > 0) counts.push_back(std::move(count));
+  }
+  return counts;
 }
 
 Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell, double above) {

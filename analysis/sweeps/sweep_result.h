@@ -26,8 +26,12 @@ struct SweepResult {
   std::vector<RunState> state;
   std::vector<std::int32_t> round;  // of refinement that added the run; empty without refinement
   std::vector<std::string> error;
+  // The kinds of notes on a run, and of each run a bit for each of them: bit i is note_kinds[i]. 0 where the
+  // run is not done. Both are empty in results that were stored without notes.
+  std::vector<std::string> note_kinds;
+  std::vector<std::int32_t> notes;
 
-  // Sizes the arrays, every run not_sampled. pre: axes, replicates and measures are set.
+  // Sizes the arrays, every run not_sampled. pre: axes, replicates, measures and note_kinds are set.
   void start(bool refined);
 
   std::size_t cell_count() const;
@@ -46,6 +50,15 @@ struct SweepResult {
   std::vector<std::size_t> runs_in(RunState requested) const;         // rising
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
+
+// The finished runs that have a note of one kind.
+struct NoteCount {
+  std::string kind;
+  std::size_t runs = 0;
+  std::size_t first = 0;  // the run with the lowest number
+};
+// In the order of note_kinds; kinds that no finished run has are left out.
+std::vector<NoteCount> note_counts(const SweepResult& result);
 
 // How often an event happened in the finished runs of a cell.
 struct Tally {

@@ -57,6 +57,7 @@ struct SweepRequest {
   std::string shard;   // empty: from the environment, else the whole sweep
   int threads = 0;     // 0: as OpenMP decides
   bool dry_run = false;
+  bool strict = false;
 };
 int command_sweep(const CommandLine& line, const SweepRequest& request);
 
@@ -100,6 +101,7 @@ struct ReplayRequest {
   std::string cell;  // "3,4"
   int replicate = 0;
   std::string output;
+  bool strict = false;
 };
 int command_replay(const CommandLine& line, const ReplayRequest& request);
 
@@ -156,10 +158,17 @@ struct LiveRequest {
   std::string device, depth = "sim:";  // device empty: browser: with view, else sim:
   std::string record, output, report;  // files to write; empty: none
   std::optional<double> duration_s;    // none: until a signal comes
-  bool view = false;                   // in a browser
+  bool strict = false;
+  bool view = false;  // in a browser
   int view_port = 0;
 };
 int command_live(const CommandLine& line, const LiveRequest& request);
+
+struct RecoverRequest {
+  std::string file;  // FILE.unfinished
+  std::string output;
+};
+int command_recover(const CommandLine& line, const RecoverRequest& request);
 
 struct CacheRequest {
   std::optional<double> max_MB;  // none: nothing is removed

@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/cli/commands.h"
+#include "runners/sessions/unfinished_session.h"
 #include "runners/settings/json_parameters.h"
 
 namespace remote_touch {
@@ -53,6 +56,22 @@ void print_hashes(const std::string& path, const Column& column, const std::vect
   std::puts("");
 }
 
+// How many runs of a sweep have each kind of note, see SweepResult::notes. kinds: their names, with a comma
+// between two of them.
+void print_notes(const std::string& path, const Column& column, const std::string& kinds) {
+  const auto* all = std::get_if<std::vector<std::int32_t>>(&column.values);
+  if (!all) return;
+  std::printf("  %-32s %8zu x %d  %-6s", path.c_str(), column.length(), column.width, "");
+  std::istringstream names(kinds);
+  std::string name;
+  for (int bit = 0; bit < 31 && std::getline(names, name, ','); ++bit) {
+    const auto has = [bit](std::int32_t notes) { return (notes >> bit & 1) != 0; };
+    if (const auto count = std::count_if(all->begin(), all->end(), has); count > 0)
+      std::printf("  %s %td", name.c_str(), count);
+  }
+  std::puts("");
+}
+
 void print(const std::string& path, const Column& column) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) {
     print_numbers(path, column, *numbers);
@@ -81,22 +100,46 @@ void print_attribute(const std::string& name, std::string value) {
   std::printf("  %-12s %s\n", name.c_str(), value.c_str());
 }
 
-}  // namespace
-
-int command_inspect(const CommandLine&, const InspectRequest& request) {
-  const std::string& file = request.file;
-  const Hdf5Content content = read_hdf5(file);
-  std::printf("%s\n", file.c_str());
-  if (was_opened_for_writing(file))
-    std::puts(
-        "  note         another program opened it for writing; every value is as it was written (SHA-256)");
-  for (const auto& [name, value] : content.attributes) {
+void print_attributes(const std::string& file, const TextAttributes& attributes) {
+  for (const auto& [name, value] : attributes) {
     if (name == "config" && !value.empty())
       std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());
     else
       print_attribute(name, value);
   }
-  for (const auto& [path, column] : content.datasets) print(path, column);
+}
+
+void print_unfinished(const std::string& file) {
+  const UnfinishedSession session = read_unfinished(file);
+  std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", file.c_str(), session.ticks,
+              session.frames, session.is_growing ? "; it is being recorded" : "");
+  if (session.is_whole) std::puts("  note         the recording ended, and only its file was not made");
+  if (session.left_out_bytes > 0)
+    std::printf("  note         the last %" PRIu64 " bytes are no whole block\n", session.left_out_bytes);
+  std::printf("  next         remote-touch recover %s -o FILE\n", file.c_str());
+  print_attributes(file, session.attributes);
+  print_attributes(file, session.ending);
+}
+
+}  // namespace
+
+int command_inspect(const CommandLine&, const InspectRequest& request) {
+  const std::string& file = request.file;
+  if (is_journal(file)) {
+    print_unfinished(file);
+    return kDone;
+  }
+  const Hdf5Content content = read_hdf5(file);
+  std::printf("%s\n", file.c_str());
+  if (was_opened_for_writing(file))
+    std::puts(
+        "  note         another program opened it for writing; every value is as it was written (SHA-256)");
+  print_attributes(file, content.attributes);
+  for (const auto& [path, column] : content.datasets)
+    if (path == "/sweep/notes")
+      print_notes(path, column, attribute(content.attributes, "note_kinds"));
+    else
+      print(path, column);
   return kDone;
 }
 

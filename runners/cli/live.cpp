@@ -8,8 +8,12 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <functional>
+#include <new>
+#include <stdexcept>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/cli/commands.h"
@@ -96,8 +100,9 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
 }
 
 // Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
-std::string lead_to(const LiveView& view) {
-  std::printf("look at it, and touch it: %s\n", view.address().c_str());
+// With a device of its own the page only shows the run.
+std::string lead_to(const LiveView& view, const std::string& device) {
+  std::printf("look at it%s: %s\n", device == "browser:" ? ", and touch it" : "", view.address().c_str());
   std::fflush(stdout);
   return show_in_browser(view.address());
 }
@@ -130,15 +135,42 @@ void print_trace(const LiveRequest& request, const LiveLog& log, const TextAttri
                 log.trace.length(), static_cast<long long>(log.ticks));
 }
 
+// A hand motion cannot be repeated: that one file cannot be written is no reason to leave out the others.
+void note_failure(std::string& lost, const std::function<void()>& write) {
+  std::string why;
+  try {
+    write();
+    return;
+  } catch (const std::bad_alloc&) {
+    why = "out of memory";
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  lost += (lost.empty() ? "" : "; ") + why;
+}
+
+// Printed before the loop begins.
+void print_files(const LiveRequest& request) {
+  if (!request.record.empty())
+    report_line("recording " + request.record + "; until the end it is " +
+                journal_of(request.record).string() + ", which stays if the program does not reach the end");
+  else if (!request.output.empty())
+    report_line(request.output + " is in memory until the end; only --record outlasts the program");
+}
+
 }  // namespace
 
 int command_live(const CommandLine& line, const LiveRequest& request) {
-  require_distinct(
-      {{"--record", request.record}, {"--output", request.output}, {"--report", request.report}});
+  const std::string journal = request.record.empty() ? "" : journal_of(request.record).string();
+  require_distinct({{"--record", request.record},
+                    {"--record", journal},
+                    {"--output", request.output},
+                    {"--report", request.report}});
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
   std::vector<FileLock> locks;
   for (const std::string& file : {request.record, request.output, request.report})
     if (!file.empty()) locks.push_back(lock_output(line, file, inputs_of(request, experiment)));
+  if (!request.record.empty()) require_no_journal_beside(request.record);
   LiveOptions options;
   options.device = device_of(request), options.depth = request.depth;
   options.duration_s = request.duration_s.value_or(0);
@@ -153,10 +185,15 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   };
   const auto view = request.view ? open_view(line, request, experiment, options) : nullptr;
   LeadingPage leading;
-  if (view) options.on_start = [&] { leading.file = lead_to(*view); };
+  options.on_start = [&] {
+    if (view) leading.file = lead_to(*view, options.device);
+    if (!line.quiet) print_files(request);
+  };
   see_to_every_end();
   const LiveResult result = run_live(experiment, options);
+  if (view) view->end(result.ended);
   experiment.add_depth_device(options.provenance);
+  add_report(options.provenance, result.report);
 
   std::printf("%s and %s: %s; ended because %s\n", result.device.c_str(), request.depth.c_str(),
               result.real_time.c_str(), result.ended.c_str());
@@ -166,9 +203,15 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
         "    forces and torques were scaled by %.3g, so that no spring exceeds the maximum stiffness of the device\n",
         result.force_scale);
   std::fputs(text(report).c_str(), stdout);
-  if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
-  print_trace(request, result.log, options.provenance);
-  if (!result.lost.empty()) throw InputError(result.lost);
+  std::fputs(text_of(result.report).c_str(), stdout);
+  std::string lost = result.lost;
+  note_failure(lost, [&] { print_trace(request, result.log, options.provenance); });
+  note_failure(lost, [&] {
+    if (!request.report.empty()) write_figure(request.report, live_figure(report), options.provenance);
+  });
+  // No InputError: after Ctrl-C the program takes that for the end of a wait, and does not print it.
+  if (!lost.empty()) throw std::runtime_error(lost);
+  if (request.strict) refuse_notes(result.report);
   return result.failed ? kCheckFailed : kDone;
 }
 

@@ -79,6 +79,7 @@ void add(const ShardFile& part, SweepResult& whole) {
       throw InputError(part.file, "damaged (holds runs of another shard)");
     whole.state[run] = result.state[run];
     whole.error[run] = result.error[run];
+    if (!whole.notes.empty()) whole.notes[run] = result.notes[run];
     for (std::size_t i = 0; i < whole.measures.size(); ++i)
       std::get<std::vector<double>>(whole.measures[i].values)[run] =
           std::get<std::vector<double>>(result.measures[i].values)[run];
@@ -115,6 +116,8 @@ int command_merge(const CommandLine&, const MergeRequest& request) {
   for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
     if (part->stored.result.run_count() != whole.run_count())
       throw InputError(part->file, "damaged (another number of runs)");
+    if (part->stored.result.note_kinds != whole.note_kinds)
+      throw InputError(part->file, "damaged (other kinds of notes than " + parts.front().file + ")");
     add(*part, whole);
   }
   if (!whole.runs_in(RunState::elsewhere).empty())

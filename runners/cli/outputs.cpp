@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "core/parameters/input_error.h"
 
@@ -35,6 +36,8 @@ void require(const CommandLine& line, const std::string& output, const std::vect
              bool is_ours, const char* kind) {
   for (const auto* all : {&inputs, &line.plugins})
     for (const std::string& input : *all) require_different_file(output, input);
+  if (is_journal(output))
+    throw InputError(output, "is an unfinished recording, which nothing overwrites: expected another file");
   if (!line.force && !is_ours && holds_something(output))
     throw InputError(output, std::string("is there already and is no ") + kind +
                                  " of this program: expected another file, or --force");

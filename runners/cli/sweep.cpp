@@ -12,7 +12,9 @@
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
 #include "runners/provenance/provenance.h"
+#include "runners/simulation/note_kinds.h"
 #include "runners/simulation/simulation.h"
+#include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
@@ -43,21 +45,25 @@ TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, co
 struct Sample {
   double seconds_per_run = 0;
   int failed = 0;
+  SweepResult tried;  // only these runs are done in it
 };
 Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandLine& line) {
   const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
   SimulationOptions options;
+  RunReport report;
+  options.report = &report;
   options.kernels = line.kernels;
   options.stop = line.stop;
   const auto start = Clock::now();
   constexpr std::size_t kSamples = 16;
   std::size_t done = 0;
-  Sample sample;
+  Sample sample{0, 0, sweep.plan()};
   for (; done < std::min(kSamples, runs.size()) && seconds_since(start) < 2; ++done) {
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
     const std::size_t run = runs[(7 * done % kSamples) * runs.size() / kSamples];
     try {
       simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
+      sample.tried.notes[run] = note_bits(report.notes), sample.tried.state[run] = RunState::done;
     } catch (const std::exception&) {
       ++sample.failed;  // the sweep would record it
     }
@@ -66,7 +72,7 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   return sample;
 }
 
-int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line) {
+int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, bool strict) {
   const std::size_t runs = plan.result.runs_in(RunState::pending).size();
   const Sample sample = sample_runs(sweep, plan.result, line);
   std::printf("%s\n  %s cells, %zu runs to do, all valid", sweep.title().c_str(),
@@ -80,6 +86,9 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line) 
   if (sample.failed > 0) std::printf("; %d of those tried failed", sample.failed);
   std::printf("\n  file: %.3g MB while it runs, less when it is finished\n",
               1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
+  for (const std::string& note : note_lines(sample.tried))
+    std::printf("  note, of those tried: %s\n", note.c_str());
+  if (strict) refuse_notes(sample.tried);
   return kDone;
 }
 
@@ -95,7 +104,8 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     throw InputError("--output", "is required; see remote-touch sweep --help");
   if (!request.dry_run) require_writable(file);
   const TextAttributes attributes = attributes_of(sweep, request, shard);
-  if (request.dry_run) return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line);
+  if (request.dry_run)
+    return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line, request.strict);
 
   SweepSession session(sweep, shard, attributes, file);
   Progress progress(sweep.title(), line.quiet);
@@ -110,7 +120,9 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
                  file.c_str());
     return kInterrupted;
   }
-  return print_summary(file, session.result());
+  const int code = print_summary(file, session.result());
+  if (request.strict) refuse_notes(session.result());
+  return code;
 }
 
 }  // namespace remote_touch

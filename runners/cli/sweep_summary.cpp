@@ -8,6 +8,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/cli/commands.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
@@ -56,6 +57,7 @@ int print_summary(const std::string& file, const SweepResult& result) {
     std::printf(", %zu in other shards", elsewhere);
   std::printf(", digest %s\n", digest(result).c_str());
   for (const Column& measure : result.measures) print_measure(measure);
+  for (const std::string& line : note_lines(result)) std::printf("  note: %s\n", line.c_str());
   if (failed.empty()) return kDone;
   print_failures(result, failed);
   return kCheckFailed;

@@ -9,7 +9,8 @@ namespace remote_touch {
 
 std::string extent_text(const SweepResult& result);  // "76 x 71"
 
-// Cells, runs and each measure's mean and range. Returns kDone, or kCheckFailed when a run failed.
+// Cells, runs, each measure's mean and range, and the notes on the runs as counts by kind. Returns kDone, or
+// kCheckFailed when a run failed.
 int print_summary(const std::string& file, const SweepResult& result);
 
 }  // namespace remote_touch

@@ -41,6 +41,17 @@ std::vector<std::int32_t> states_of(const SweepResult& result) {
   return states;
 }
 
+// The kinds of notes on each run, with "; " between two of them.
+std::vector<std::string> notes_of(const SweepResult& result) {
+  std::vector<std::string> texts;
+  for (const std::int32_t bits : result.notes) {
+    std::string& text = texts.emplace_back();
+    for (std::size_t kind = 0; kind < result.note_kinds.size(); ++kind)
+      if ((bits >> kind & 1) != 0) text += (text.empty() ? "" : "; ") + result.note_kinds[kind];
+  }
+  return texts;
+}
+
 Table table_of_sweep(const Hdf5Reader& file) {
   const SweepResult result = read_sweep(file).result;
   const std::size_t runs = result.run_count();
@@ -62,6 +73,8 @@ Table table_of_sweep(const Hdf5Reader& file) {
   table.columns.insert(table.columns.end(), result.measures.begin(), result.measures.end());
   if (!result.round.empty())
     table.columns.push_back({"round", "1", "round of refinement, -1: none", result.round, 1, {}});
+  if (!result.notes.empty())
+    table.columns.push_back({"notes", "1", "kinds of the notes on the run", notes_of(result), 1, {}});
   table.columns.push_back({"error", "1", "why the run failed", result.error, 1, {}});
   return table;
 }

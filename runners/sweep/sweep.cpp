@@ -11,6 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/settings/json_parameters.h"
 #include "runners/settings/renamed_names.h"
+#include "runners/simulation/note_kinds.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
 #include "runners/sweep/sweep_statements.h"
@@ -139,7 +140,7 @@ Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
 }
 
 void Sweep::Definition::check_axes(const std::string& label) const {
-  std::set<std::string> names = {"replicate", "state", "round", "error", "checksum"};
+  std::set<std::string> names = {"replicate", "state", "notes", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
   std::size_t runs = static_cast<std::size_t>(refine ? refine->max_replicates : replicates);
   for (const SweepAxis& axis : axes) {
@@ -247,6 +248,7 @@ SweepResult Sweep::plan(const Shard& shard) const {
   result.replicates = definition_->refine ? definition_->refine->max_replicates : definition_->replicates;
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
+  result.note_kinds = note_kind_names();
   result.start(definition_->refine.has_value());
   std::size_t number = 0;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
@@ -289,8 +291,7 @@ const std::vector<Measure>& Sweep::measures() const {
 }
 
 bool Sweep::needs_true_contact() const {
-  return std::any_of(measures().begin(), measures().end(),
-                     [](const Measure& measure) { return measure.runs == MeasuredRuns::contact; });
+  return std::any_of(measures().begin(), measures().end(), remote_touch::needs_true_contact);
 }
 
 std::optional<RefinementRule> Sweep::refinement() const {

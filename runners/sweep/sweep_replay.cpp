@@ -28,7 +28,7 @@ TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay&
 }  // namespace
 
 Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
-                  const std::filesystem::path& output) {
+                  const std::filesystem::path& output, Strict strict) {
   const std::size_t cell = stored.result.cell_of(run);
   const int replicate = stored.result.replicate_of(run);
   Replay replay{sweep.experiment(cell, replicate), {}, {}, {}, {}};
@@ -38,6 +38,7 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   options.report = &replay.report;
   replay.trace = simulate(replay.experiment, options);
   require_unchanged(replay.experiment.inputs(), inputs);
+  if (strict == Strict::yes) refuse_notes(replay.report);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
   replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);
   replay.experiment.add_depth_device(replay.attributes);

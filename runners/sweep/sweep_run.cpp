@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/parameters/input_error.h"
+#include "runners/simulation/note_kinds.h"
 #include "runners/simulation/simulation.h"
 
 namespace remote_touch {
@@ -21,9 +22,12 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     simulation.kernels = options.kernels;
     simulation.stop = options.stop;
     simulation.find_true_contact = sweep.needs_true_contact();
+    RunReport report;
+    simulation.report = &report;
     const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
       std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);
+    result.notes[run] = note_bits(report.notes);
     result.state[run] = RunState::done;
   } catch (const std::bad_alloc&) {
     throw;

@@ -55,7 +55,7 @@ void set_attribute(TextAttributes& attributes, const std::string& name, const st
 // The runs of the earlier call. Only what they gave is taken: the rest is known.
 void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
   if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
-      earlier.round.size() != result.round.size())
+      earlier.round.size() != result.round.size() || earlier.note_kinds != result.note_kinds)
     throw InputError(file.string(), "damaged (its arrays do not fit its configuration): expected a new file");
   for (std::size_t i = 0; i < result.measures.size(); ++i)
     result.measures[i].values = std::move(earlier.measures[i].values);
@@ -63,6 +63,7 @@ void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepRe
     if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
   result.round = std::move(earlier.round);
   result.error = std::move(earlier.error);
+  result.notes = std::move(earlier.notes);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "runners/simulation/simulation.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep.h"
+#include "runners/sweep/sweep_notes.h"
 #include "runners/view/sweep_cells.h"
 
 namespace remote_touch {
@@ -111,9 +112,12 @@ std::unique_ptr<ShownRun> run_again(const StoredSweep& stored, const Sweep& swee
   simulation.kernels = options.kernels;
   simulation.stop = options.stop;
   simulation.find_true_contact = sweep.needs_true_contact();
+  RunReport report;
+  simulation.report = &report;
   const Trace trace = simulate(experiment, simulation);
   RunSource source{name_of(stored.result, run), std::make_shared<ColumnsInMemory>(trace.columns()),
                    attributes_of_run(stored, experiment)};
+  add_report(source.attributes, report);
   if (!measures_are_stored(stored, sweep, run, trace))
     source.note =
         "Not the run that is stored: its measures differ. Another version of the program made the sweep.";
@@ -136,6 +140,7 @@ Json map_json(const std::string& file, const std::string& title, const SweepResu
            {"judged", judged.measure},
            {"threshold", judged.threshold},
            {"runs", runs},
+           {"notes", note_lines(result)},
            {"axes", Json::array()},
            {"measures", Json::array()}};
   for (const Column& axis : result.axes) map["axes"].push_back(axis_json(axis));

@@ -55,6 +55,10 @@ def of_sweep(result):
                                 _attributes("1", "number of the repeated run", []))
     variables = {name: (dimensions, values, _attributes(units, long_name, value_names))
                  for name, units, long_name, values, value_names in result["measures"]}
+    if "notes" in variables:  # as CF says of numbers that are sets of flags
+        kinds = dict(result["attributes"])["note_kinds"].split(",")
+        variables["notes"][2].update(flag_masks=np.array([1 << bit for bit in range(len(kinds))], dtype=np.int32),
+                                     flag_meanings=" ".join(kind.replace(" ", "_") for kind in kinds))
     if any(result["error"]):
         shape = variables["state"][1].shape
         variables["error"] = (dimensions, np.array(result["error"], dtype=object).reshape(shape),

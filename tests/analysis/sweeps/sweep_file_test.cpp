@@ -30,6 +30,7 @@ SweepResult awkward(int replicates = 2, bool refined = true) {
                  {"sigma_m", "m", "scenario.sigma_m", std::vector<double>{0, 0.1, 1.0 / 3}, 1, {}}};
   result.replicates = replicates;
   result.measures = {{"first", "1", "a measure", {}, 1, {}}, {"second", "N", "another", {}, 1, {}}};
+  result.note_kinds = {"other", "no contact", "frames unused"};
   result.start(refined);
   const double values[] = {0.1, -0.0, 5e-324, 1.0 / 3, -1e308, kNan};
   for (std::size_t run = 0; run < result.run_count(); ++run) {
@@ -39,7 +40,14 @@ SweepResult awkward(int replicates = 2, bool refined = true) {
     if (result.state[run] != RunState::done) continue;
     std::get<std::vector<double>>(result.measures[0].values)[run] = values[run % 6];
     std::get<std::vector<double>>(result.measures[1].values)[run] = static_cast<double>(run);
+    result.notes[run] = static_cast<std::int32_t>(run % 8);
   }
+  return result;
+}
+
+// As earlier versions stored it.
+SweepResult without_notes(SweepResult result) {
+  result.note_kinds.clear(), result.notes.clear();
   return result;
 }
 
@@ -47,6 +55,8 @@ void expect_same(const SweepResult& a, const SweepResult& b) {
   EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.round, b.round);
   EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.note_kinds, b.note_kinds);
+  EXPECT_EQ(a.notes, b.notes);
   EXPECT_EQ(a.replicates, b.replicates);
   const auto expect_equal = [](const std::vector<Column>& x, const std::vector<Column>& y) {
     ASSERT_EQ(x.size(), y.size());
@@ -78,6 +88,55 @@ TEST(SweepFile, WhatIsWrittenComesBack) {
       write_sweep(folder / "again.h5", stored.result, stored.attributes);
       EXPECT_EQ(bytes_of(folder / "again.h5"), bytes_of(folder / "x.h5"));
     }
+}
+
+TEST(SweepFile, NotesAreNotPartOfTheDigest) {
+  const TestFolder folder("sweep_file_test");
+  SweepResult other = awkward();
+  other.notes[0] ^= 7;
+  const std::string sum = write_sweep(folder / "x.h5", awkward(), kAttributes);
+  EXPECT_EQ(write_sweep(folder / "y.h5", other, kAttributes), sum);
+  EXPECT_EQ(write_sweep(folder / "z.h5", without_notes(awkward()), kAttributes), sum);
+}
+
+TEST(SweepFile, AResultWithoutNotesIsRead) {
+  const TestFolder folder("sweep_file_test");
+  SweepResult result = without_notes(awkward());
+  write_sweep(folder / "x.h5", result, kAttributes);
+  EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), "note_kinds"), "");
+  expect_same(read_sweep(folder / "x.h5").result, result);
+  write_sweep_in_progress(folder / "y.h5", result, kAttributes);
+  result.error.assign(result.run_count(), "");
+  expect_same(read_sweep(folder / "y.h5").result, result);
+}
+
+TEST(SweepFile, NotesWithoutANameAreRefused) {
+  const TestFolder folder("sweep_file_test");
+  for (const std::int32_t unnamed : {8, -1}) {
+    SweepResult result = awkward();
+    result.notes[2] = unnamed;
+    write_sweep(folder / "x.h5", result, kAttributes);
+    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }), "x.h5: damaged (a note is unknown)");
+  }
+}
+
+// Of 12 runs, 5 and 11 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
+TEST(SweepResult, CountsTheFinishedRunsWithEachKindOfNote) {
+  const std::vector<NoteCount> counts = note_counts(awkward());
+  ASSERT_EQ(counts.size(), 3u);
+  EXPECT_EQ(counts[0].kind, "other");
+  EXPECT_EQ(counts[0].runs, 2u) << "runs 1 and 9";
+  EXPECT_EQ(counts[0].first, 1u);
+  EXPECT_EQ(counts[1].kind, "no contact");
+  EXPECT_EQ(counts[1].runs, 3u) << "runs 2, 6 and 10";
+  EXPECT_EQ(counts[1].first, 2u);
+  EXPECT_EQ(counts[2].runs, 2u) << "runs 4 and 6";
+  SweepResult one = awkward();
+  one.notes.assign(one.run_count(), 0);
+  EXPECT_TRUE(note_counts(one).empty());
+  one.notes[3] = 1;
+  EXPECT_TRUE(note_counts(one).empty()) << "run 3 is not done";
+  EXPECT_TRUE(note_counts(without_notes(awkward())).empty());
 }
 
 TEST(SweepFile, TheDigestIsOfEveryValue) {
@@ -112,6 +171,7 @@ TEST(SweepInProgress, IsReadAsFarAsItIs) {
   SweepInProgress storage(folder / "x.h5", result, kAttributes, true);
   result.state[3] = RunState::done;
   for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[3] = -0.25;
+  result.notes[3] = 5;
   storage.record(result, 3);
   storage.flush();
   expect_same(read_sweep(folder / "x.h5").result, result);
@@ -127,8 +187,9 @@ TEST(SweepInProgress, ARunWrittenInPartIsPending) {
   SweepResult expected = result;
   expected.state[8] = RunState::pending;
   for (Column& measure : expected.measures) std::get<std::vector<double>>(measure.values)[8] = kNan;
+  expected.notes[8] = 0;
   const std::pair<const char*, std::size_t> parts[] = {
-      {"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}};
+      {"first", 8}, {"second", 8}, {"state", 4}, {"notes", 4}, {"checksum", 4}};
   for (const auto& [name, size] : parts) {
     const auto begin =
         static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name)) +
@@ -150,7 +211,8 @@ TEST(SweepInProgress, ValuesOfAnotherRunDoNotPass) {
   const SweepResult result = awkward();
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   std::string swapped = bytes_of(folder / "x.h5");
-  for (const auto& [name, size] : {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"checksum", 4}}) {
+  for (const auto& [name, size] :
+       {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"notes", 4}, {"checksum", 4}}) {
     char* begin = swapped.data() + Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name);
     std::memcpy(begin + 2 * size, begin + 8 * size, static_cast<std::size_t>(size));  // run 8 over run 2
   }
@@ -181,7 +243,8 @@ TEST(SweepInProgress, NoticesThatItsFileIsGone) {
 
 // The reader asks a child process about a file in progress, one question after the other. A sweep that ends,
 // or begins another round, puts a new file in its place between two of them.
-constexpr int kQuestions = 9;  // attributes, two axes, replicates, two measures, state, round, checksum
+constexpr int kQuestions =
+    10;  // attributes, two axes, replicates, two measures, state, notes, round, checksum
 
 RunInChild replacing(const std::filesystem::path& file, int at, int& asked) {
   return [&asked, file, at](const ChildLimits& limits, ChildReader reader, const std::string& question) {

@@ -65,6 +65,20 @@ TEST(ResultTables, OfASweepHaveARowForEachRun) {
   EXPECT_EQ(std::get<std::vector<std::string>>(tables[0].columns[5].values)[5], "no \u00e9lan");
 }
 
+TEST(ResultTables, OfASweepNameTheKindsOfNotes) {
+  const TestFolder folder("result_tables");
+  SweepResult sweep = two_by_two();
+  sweep.note_kinds = {"no contact", "frames unused"};
+  sweep.notes = {0, 1, 2, 3, 0, 0, 0, 0};
+  write_sweep(folder / "a.h5", sweep, kProvenance);
+  const Table table = result_tables(Hdf5Reader(folder / "a.h5"))[0];
+  const Column& notes = table.columns[table.columns.size() - 2];
+  EXPECT_EQ(notes.name, "notes");
+  EXPECT_EQ(std::get<std::vector<std::string>>(notes.values),
+            (std::vector<std::string>{"", "no contact", "frames unused", "no contact; frames unused", "", "",
+                                      "", ""}));
+}
+
 TEST(ResultTables, OfAFigureAreItsTables) {
   const TestFolder folder("result_tables");
   Figure figure;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/parameters/input_error.h"
+#include "runners/simulation/note_kinds.h"
 #include "runners/simulation/simulation.h"
 #include "tests/support/test_files.h"
 
@@ -33,6 +34,7 @@ void expect_same(const SweepResult& a, const SweepResult& b) {
   EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.round, b.round);
   EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.notes, b.notes);
   ASSERT_EQ(a.measures.size(), b.measures.size());
   for (const Column& measure : a.measures)
     for (std::size_t run = 0; run < a.run_count(); ++run)
@@ -52,6 +54,22 @@ TEST(SweepRuns, HaveTheBitsOfSingleRuns) {
   // Replicates differ in their noise, where there is any.
   EXPECT_EQ(result.measure("max_penetration")[0], result.measure("max_penetration")[1]);
   EXPECT_NE(result.measure("max_penetration")[22], result.measure("max_penetration")[23]);
+}
+
+// The press of fig4.12 begins at 0.5 s.
+TEST(SweepRuns, StoreTheNotesOfSingleRuns) {
+  const Sweep sweep =
+      quick({R"(axes=[{"parameter": "duration_s", "values": [0.2, 0.45, 0.8666666666666667]}])"});
+  const SweepResult result = run_sweep(sweep, {});
+  ASSERT_EQ(result.notes.size(), 6u);
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    RunReport report;
+    SimulationOptions options;
+    options.report = &report;
+    simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
+    EXPECT_EQ(result.notes[run], note_bits(report.notes)) << run;
+    EXPECT_EQ((result.notes[run] & note_bits({{"phase not reached", ""}})) != 0, run < 4) << run;
+  }
 }
 
 TEST(SweepRuns, DoNotDependOnThreads) {

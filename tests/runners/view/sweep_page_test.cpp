@@ -73,6 +73,16 @@ TEST_F(SweepPageTest, SaysWhereARunIsNotTheOneThatIsStored) {
   EXPECT_HAS(read.json["runs"][1]["note"].get<std::string>(), "its measures differ");
 }
 
+// Every run of this sweep ends at 0.3 s, before the press begins.
+TEST_F(SweepPageTest, ShowsNotesAsCountsAndAtTheirRun) {
+  const Sweep ends_before = Sweep::from_json(kSweep, "a test", {"duration_s=0.3"});
+  const SweepResult result = run_sweep(ends_before, {});
+  write_sweep(folder_ / "map.h5", result, provenance(ends_before.to_json(), "a test", ""));
+  const ReadPage read = page({"1,2"});
+  EXPECT_HAS(read.json["sweep"]["notes"].dump(), "6 of 6 runs: phase not reached: ");
+  EXPECT_HAS(read.json["runs"][0]["note"].get<std::string>(), "before the press begins at 0.5 s");
+}
+
 TEST_F(SweepPageTest, RefusesWhatItCannotShow) {
   EXPECT_HAS(refusal([&] { page({"7,0"}); }), "expected 0..1,0..2");
   SweepResult pending = stored_;

@@ -1,0 +1,26 @@
+#include "runners/sweep/sweep_notes.h"
+
+#include "core/parameters/input_error.h"
+#include "runners/simulation/note_kinds.h"
+#include "runners/sweep/cell_text.h"
+
+namespace remote_touch {
+
+std::vector<std::string> note_lines(const SweepResult& result) {
+  const std::string done = std::to_string(result.runs_in(RunState::done).size());
+  std::vector<std::string> lines;
+  for (const NoteCount& count : note_counts(result)) {
+    std::string first = "--cell " + cell_text(result, result.cell_of(count.first));
+    if (result.replicates > 1) first += " --replicate " + std::to_string(result.replicate_of(count.first));
+    lines.push_back(std::to_string(count.runs) + " of " + done + " runs: " + text_of_kind(count.kind) +
+                    " (the first: " + first + ")");
+  }
+  return lines;
+}
+
+void refuse_notes(const SweepResult& result) {
+  const std::vector<std::string> lines = note_lines(result);
+  if (!lines.empty()) throw InputError("--strict", lines.front());
+}
+
+}  // namespace remote_touch

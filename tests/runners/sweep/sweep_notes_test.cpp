@@ -1,0 +1,52 @@
+// The notes on the runs of a sweep as lines of counts.
+#include "runners/sweep/sweep_notes.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/test_files.h"
+
+namespace remote_touch::sweep_notes_test {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+// 2 x 3 cells, of which one run has failed.
+SweepResult two_by_three(int replicates) {
+  SweepResult result;
+  result.axes = {{"a", "1", "", std::vector<double>{0, 1}, 1, {}},
+                 {"b", "1", "", std::vector<double>{0, 1, 2}, 1, {}}};
+  result.replicates = replicates;
+  result.note_kinds = {"no contact", "a kind of another program"};
+  result.start(false);
+  result.state.assign(result.run_count(), RunState::done);
+  result.state[0] = RunState::failed;
+  return result;
+}
+
+TEST(SweepNotes, AreCountedByKind) {
+  SweepResult result = two_by_three(1);
+  EXPECT_EQ(note_lines(result), Lines{});
+  EXPECT_NO_THROW(refuse_notes(result));
+  result.notes = {1, 0, 0, 0, 3, 1};
+  EXPECT_EQ(
+      note_lines(result),
+      (Lines{"2 of 5 runs: no contact: no point was touched and no force was felt (the first: --cell 1,1)",
+             "1 of 5 runs: a kind of another program (the first: --cell 1,1)"}));
+  EXPECT_EQ(refusal([&] { refuse_notes(result); }), "--strict: " + note_lines(result).front());
+}
+
+TEST(SweepNotes, NameTheReplicateWhereThereAreSeveral) {
+  SweepResult result = two_by_three(2);
+  result.notes[9] = 2;
+  EXPECT_EQ(note_lines(result),
+            Lines{"1 of 11 runs: a kind of another program (the first: --cell 1,1 --replicate 1)"});
+}
+
+TEST(SweepNotes, OfAResultWithoutThemAreNone) {
+  SweepResult result = two_by_three(1);
+  result.note_kinds.clear(), result.notes.clear();
+  EXPECT_EQ(note_lines(result), Lines{});
+}
+
+}  // namespace
+}  // namespace remote_touch::sweep_notes_test
