@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "runners/experiment/section_rules.h"
 #include "runners/experiment/sections.h"
@@ -29,6 +30,7 @@ Experiment Experiment::from_json(const Json& configuration) {
 }
 
 Experiment Experiment::load(const std::string& name_or_file, const std::vector<std::string>& overrides) {
+  require_no_journal(name_or_file);
   const std::string text = has_result_header(name_or_file)
                                ? session_experiment(name_or_file)
                                : embedded_or_file(embedded_experiments(), name_or_file, "an experiment's");

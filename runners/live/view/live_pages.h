@@ -1,8 +1,8 @@
 // The pages that show one live run: which of them has the hand, and what all of them are told.
 //
 // The first page has the hand; those that come later watch. When the page with the hand closes, the page that
-// has watched longest gets it. A page that connects again, because its connection was lost, takes the place
-// of its own older connection.
+// has watched longest gets it. A page that connects again before the server has noticed the loss takes the
+// place of its own older connection, and keeps the hand; later it is a new page.
 #pragma once
 
 #include <array>
