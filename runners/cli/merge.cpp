@@ -8,6 +8,7 @@
 #include "runners/cli/commands.h"
 #include "runners/cli/sweep_summary.h"
 #include "runners/provenance/input_hashes.h"
+#include "runners/provenance/recipe.h"
 #include "runners/sweep/shard.h"
 
 namespace remote_touch {

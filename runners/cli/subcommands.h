@@ -10,6 +10,7 @@
 
 #include "runners/cli/commands.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that CLI11 has
 namespace CLI {
 class App;
 class Validator;

@@ -235,7 +235,7 @@ class BeastServer final : public ViewServer {
         channel->end({});
         // The channel may be another page's as soon as it is closed.
         asio::steady_timer timer(context_);
-        while (is_sending) {
+        while (is_sending) {  // NOLINT(bugprone-infinite-loop): send_all sets it
           timer.expires_after(kPicture);
           co_await timer.async_wait(use_awaitable);
         }
