@@ -1,10 +1,10 @@
 #include "analysis/measures/lateral_force_measures.h"
 
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/mean.h"
 #include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
@@ -30,7 +30,7 @@ std::vector<Parts> parts_in_contact(const Trace& trace) {
   return list;
 }
 
-// In ticks in which the force pushes out.
+// The ratios of the ticks in which the force pushes out of the surface.
 std::vector<double> lateral_ratios(const Trace& trace) {
   std::vector<double> ratios;
   for (const Parts& parts : parts_in_contact(trace)) {
@@ -38,11 +38,6 @@ std::vector<double> lateral_ratios(const Trace& trace) {
     if (parts.along_normal_N > 0 && std::isfinite(ratio)) ratios.push_back(ratio);
   }
   return ratios;
-}
-
-double mean(const std::vector<double>& values) {
-  if (values.empty()) return kNoValue;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/mean.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {
@@ -20,7 +21,7 @@ double work_J(const Trace& trace, std::size_t i) {
          torque_Nm.dot(rotation_vector(trace.hip_orientation[i + 1] * trace.hip_orientation[i].conjugate()));
 }
 
-// What the hand feels in tick i: not a command for which the device has no motor.
+// The hand feels a wrench in tick i. It feels no command for which the device has no motor.
 bool has_wrench(const Trace& trace, std::size_t i) {
   if (trace.has_hand())
     return !trace.device_force_N[i].isZero(0) || (trace.has_tool() && !trace.device_torque_Nm[i].isZero(0));
@@ -61,10 +62,7 @@ double max_energy_injected_J(const Trace& trace) {
 }
 
 double mean_energy_per_update_J(const Trace& trace) {
-  const std::vector<double> pieces = work_between_updates_J(trace);
-  double sum = 0;
-  for (const double piece : pieces) sum += piece;
-  return pieces.empty() ? kNoValue : sum / static_cast<double>(pieces.size());
+  return mean(work_between_updates_J(trace));
 }
 
 double max_energy_per_update_J(const Trace& trace) {

@@ -150,7 +150,7 @@ void JournalWriter::refuse(int error) const {
                                          "): expected a writable place with room");
 }
 
-// What was written of a block that finds no room is cut off again; where that fails, readers leave it out.
+// Cuts off again what was written of a block that finds no room. If that fails, readers leave it out.
 void JournalWriter::write(const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);

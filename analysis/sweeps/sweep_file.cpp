@@ -44,23 +44,10 @@ Column replicate_column(const SweepResult& result) {
   return {"replicate", "1", "repetition with other noise", numbers, 1, {}};
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
-  return all;
-}
-std::string joined_names(const std::vector<Column>& columns) {
+std::string names_of(const std::vector<Column>& columns) {
   std::vector<std::string> names;
   for (const Column& column : columns) names.push_back(column.name);
-  return joined(names);
-}
-
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> list;
-  std::istringstream text(names);
-  text.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
-  for (std::string name; std::getline(text, name, ',');) list.push_back(name);
-  return list;
+  return joined_names(names);
 }
 
 std::vector<std::int32_t> checksums(const SweepResult& result) {
@@ -70,6 +57,20 @@ std::vector<std::int32_t> checksums(const SweepResult& result) {
 }
 
 }  // namespace
+
+std::string joined_names(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
+  return all;
+}
+
+std::vector<std::string> split_names(const std::string& joined) {
+  std::vector<std::string> list;
+  std::istringstream text(joined);
+  text.exceptions(std::ios::badbit);  // without memory it throws, where it would pass for the end
+  for (std::string name; std::getline(text, name, ',');) list.push_back(name);
+  return list;
+}
 
 std::string plan_digest(const SweepResult& result, TextAttributes attributes) {
   std::sort(attributes.begin(), attributes.end());
@@ -91,8 +92,8 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   hdf5.attribute("/", "schema", schema_name("sweep"));
   hdf5.attributes("/", attributes);
   if (storage == Storage::in_place) hdf5.attribute("/", "plan_digest", plan_digest(result, attributes));
-  hdf5.attributes("/", {{"axes", joined_names(result.axes)}, {"measures", joined_names(result.measures)}});
-  if (!result.note_kinds.empty()) hdf5.attribute("/", "note_kinds", joined(result.note_kinds));
+  hdf5.attributes("/", {{"axes", names_of(result.axes)}, {"measures", names_of(result.measures)}});
+  if (!result.note_kinds.empty()) hdf5.attribute("/", "note_kinds", joined_names(result.note_kinds));
   hdf5.attribute("/", "default", "sweep");  // NeXus: what a viewer opens first
   hdf5.group("/sweep");
   std::vector<Column> scales = result.axes;
@@ -239,7 +240,7 @@ void take_back_parts(const std::vector<std::int32_t>& sums, SweepResult& result)
 void read_notes(const SweepReader& reader, std::size_t runs, SweepResult& result) {
   constexpr std::size_t kBits = 31;  // a number without its sign
   if (!reader.has("notes")) return;
-  result.note_kinds = split(reader.text("note_kinds"));
+  result.note_kinds = split_names(reader.text("note_kinds"));
   if (result.note_kinds.empty() || result.note_kinds.size() > kBits)
     reader.damaged("its attribute note_kinds has no names, or too many");
   result.notes = reader.values<std::int32_t>("notes", runs);
@@ -258,10 +259,10 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
   SweepResult& result = stored.result;
   stored.attributes = reader.provenance();
   stored.in_progress = reader.has("checksum");
-  for (const std::string& name : split(reader.text("axes"))) result.axes.push_back(reader.axis(name));
+  for (const std::string& name : split_names(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());
   const std::size_t runs = reader.run_count(result);
-  for (const std::string& name : split(reader.text("measures")))
+  for (const std::string& name : split_names(reader.text("measures")))
     result.measures.push_back(reader.column<double>(name, runs));
   if (result.axes.empty() || result.measures.empty()) reader.damaged("it names no axes or no measures");
   for (const std::int32_t state : reader.values<std::int32_t>("state", runs)) {

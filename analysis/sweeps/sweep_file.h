@@ -14,6 +14,10 @@ namespace remote_touch {
 // Digest of axes, measures, states and errors. Notes are not part of it: they say nothing about the numbers.
 std::string digest(const SweepResult& result);
 
+// Names with a comma between two of them, as the attributes axes, measures and note_kinds have them.
+std::string joined_names(const std::vector<std::string>& names);
+std::vector<std::string> split_names(const std::string& joined);
+
 // The finished file: equal results are equal bytes. attributes: configuration, provenance and shard; schema
 // and digest are added. Returns the digest. Throws InputError when it cannot be written.
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,

@@ -57,7 +57,7 @@ struct NoteCount {
   std::size_t runs = 0;
   std::size_t first = 0;  // the run with the lowest number
 };
-// In the order of note_kinds; kinds that no finished run has are left out.
+// The counts are in the order of note_kinds. Kinds that no finished run has are left out.
 std::vector<NoteCount> note_counts(const SweepResult& result);
 
 // How often an event happened in the finished runs of a cell.

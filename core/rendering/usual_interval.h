@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// After a pause the stream goes on as before, so a pause says nothing about when the next frame comes. An
+// The stream goes on after a pause as before, so a pause says nothing about when the next frame comes. An
 // interval is a pause as far as it is longer than kLongest times the usual interval before it. This limit
 // grows with every interval, so that a stream that becomes slower is believed after a few frames. The first
 // interval of a stream is always believed.

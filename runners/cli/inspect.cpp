@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_file.h"
 #include "runners/cli/commands.h"
 #include "runners/sessions/unfinished_session.h"
 #include "runners/settings/json_parameters.h"
@@ -62,12 +62,11 @@ void print_notes(const std::string& path, const Column& column, const std::strin
   const auto* all = std::get_if<std::vector<std::int32_t>>(&column.values);
   if (!all) return;
   std::printf("  %-32s %8zu x %d  %-6s", path.c_str(), column.length(), column.width, "");
-  std::istringstream names(kinds);
-  std::string name;
-  for (int bit = 0; bit < 31 && std::getline(names, name, ','); ++bit) {
+  const std::vector<std::string> names = split_names(kinds);
+  for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 31); ++bit) {
     const auto has = [bit](std::int32_t notes) { return (notes >> bit & 1) != 0; };
     if (const auto count = std::count_if(all->begin(), all->end(), has); count > 0)
-      std::printf("  %s %td", name.c_str(), count);
+      std::printf("  %s %td", names[bit].c_str(), count);
   }
   std::puts("");
 }

@@ -100,7 +100,7 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
 }
 
 // Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
-// With a device of its own the page only shows the run.
+// The page only shows the run if the session has another device.
 std::string lead_to(const LiveView& view, const std::string& device) {
   std::printf("look at it%s: %s\n", device == "browser:" ? ", and touch it" : "", view.address().c_str());
   std::fflush(stdout);

@@ -113,7 +113,7 @@ Figure figure_4_10(const FigureContext& context) {
   const Scene scene{proxy_W + Vec3(0.05, 0.035, 0.075), proxy_W, Vec3::UnitY(), 0.075, 0.7,
                     proxy_in_cloud("touch", 0.0005)};
   figure.panels = {scene_panel("After 2.5 s", 0, 0, scene)};
-  // In the middle between four points a ball that touches them is deepest.
+  // A ball that touches four points is deepest in the middle between them.
   const double spacing_m = (cloud.point(1) - cloud.point(0)).norm();
   const double sinks_m =
       kContactRadius_m - std::sqrt(kContactRadius_m * kContactRadius_m - spacing_m * spacing_m / 2);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/mean.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 #include "runners/second_implementation/second_implementation.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/isotonic_regression.h"
+#include "analysis/statistics/mean.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 #include "runners/second_implementation/second_implementation.h"

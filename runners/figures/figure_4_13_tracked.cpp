@@ -7,6 +7,7 @@
 
 #include "analysis/measures/lateral_force_measures.h"
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/mean.h"
 #include "runners/figures/figures.h"
 #include "runners/figures/pop_through_map.h"
 
@@ -143,8 +144,8 @@ const Slide& at_noise(const std::vector<Slide>& slides, double sigma) {
   return slides[static_cast<std::size_t>(found - std::begin(kSlideNoise))];
 }
 
-// Without noise the force acts along the normal; noise turns the normal that a renderer estimates. The ranges
-// are those of a mean of three seeds, 3.3 standard errors around the mean of seeds 1 to 40: as measured.
+// The force acts along the normal without noise; noise turns the normal that a renderer estimates. The ranges
+// state what was measured: 3.3 standard errors of a mean of three seeds, around the mean of seeds 1 to 40.
 std::vector<Claim> lateral_claims(const std::string& figure, const std::vector<Slide>& ours,
                                   const std::vector<Slide>& paper) {
   struct Range {

@@ -14,7 +14,7 @@ const std::string kTouchFigure = "first-touch";
 constexpr double kSpacing_m = 0.0015;  // of the points, as in Table 4.2
 constexpr int kHandPhases = 9;         // start times for each speed of a hand that moves
 
-// Where the proxy is over the grid.
+// The place of the proxy over the grid.
 enum class Over { between_points, point };
 
 FirstTouch touch_at(double frame_rate_hz, Over over) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/measures/measures.h"
+#include "analysis/statistics/mean.h"
 #include "runners/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -136,8 +136,4 @@ Panel map_panel(const std::string& title, std::vector<Curve> curves) {
   return panel;
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 }  // namespace remote_touch

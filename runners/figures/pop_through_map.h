@@ -69,6 +69,4 @@ inline Claim of_map(Claim claim) {
   return claim;
 }
 
-double mean(const std::vector<double>& values);
-
 }  // namespace remote_touch

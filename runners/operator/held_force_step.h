@@ -13,7 +13,7 @@ struct MassOnSpring {
   double mass = 1;            // m, above 0
   double stiffness = 0;       // k, to the path
   double path_damping = 0;    // c_p, to the path
-  double ground_damping = 0;  // c_g, to the ground: of the device's joints, or of a hand that lets go
+  double ground_damping = 0;  // c_g, to the ground: of the device's joints, or of a hand that opens
 };
 
 // The energies of a step, J. The first two are supplied; the others are where they go.
@@ -34,8 +34,8 @@ struct StepEnergy {
 // One step of a given duration. Its coefficients are computed once with +, -, *, / and a square root alone,
 // so their bits do not depend on the C library.
 //
-// With w = k / m, d = (c_p + c_g) / m, and phi the response to a unit impulse, phi'' + d phi' + w phi = 0,
-// phi(0) = 0, phi'(0) = 1, its integral psi and the integral chi of that,
+// Let w = k / m, d = (c_p + c_g) / m, and phi the response to a unit impulse, phi'' + d phi' + w phi = 0,
+// phi(0) = 0, phi'(0) = 1; psi is its integral and chi the integral of psi. Then
 //   x(T) - x(0) = x'(0) phi + r psi + w p' chi,   x'(T) = x'(0) phi' + r phi + w p' psi,
 //   phi' = 1 - w psi - d phi,   r = (F + k (p(0) - x(0)) + c_p p') / m.
 //
@@ -59,8 +59,8 @@ class HeldForceStep {
     Vec3 velocity;      // x'(T)
   };
   Motion motion(const Start& start) const;
-  // In closed form; the sum of what is gained and dissipated is what is supplied, within rounding. Slower
-  // than motion(), because the integrals of the squares of velocities are computed in each call.
+  // A closed form. Gained and dissipated energy are what is supplied, within rounding. It is slower than
+  // motion(), because the integrals of the squares of velocities are computed in each call.
   StepEnergy energy(const Start& start) const;
 
  private:

@@ -30,12 +30,12 @@ std::string validate(const OperatorSettings& s);
 
 // m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
 // grip: the hand's spring and damper to the intended position have g k and g c, and (1 - g) c damps the
-// motion of a hand that lets go. Rotations have the same form about the pose at the beginning of the tick,
+// motion of a hand that opens. Rotations have the same form about the pose at the beginning of the tick,
 // with rotation vectors in world axes and the inertia inertia_kg_m2 about every axis.
 //
-// In a tick f and g are constant and x_i is linear in time. The solution is exact (HeldForceStep): the device
-// is a zero-order hold, which gives energy to a hand that a spring pushes, so a stiff device can make it
-// unstable.
+// f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep). The
+// device is a zero-order hold, which gives energy to a hand that a spring pushes. So a stiff device can make
+// it unstable.
 class OperatorModel {
  public:
   // pre: validate(settings) is empty.

@@ -77,21 +77,12 @@ py::dict run_sweep_of(const std::string& subject, const std::optional<std::strin
 
 }  // namespace
 
-namespace {
-// As in the file.
-std::string joined_kinds(const SweepResult& result) {
-  std::string names;
-  for (const std::string& kind : result.note_kinds) names += (names.empty() ? "" : ",") + kind;
-  return names;
-}
-}  // namespace
-
 py::dict to_python(StoredSweep stored) {
   SweepResult& result = stored.result;
   TextAttributes attributes = {{"schema", schema_name("sweep")}};
   attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
   attributes.emplace_back("digest", digest(result));
-  if (!result.note_kinds.empty()) attributes.emplace_back("note_kinds", joined_kinds(result));
+  if (!result.note_kinds.empty()) attributes.emplace_back("note_kinds", joined_names(result.note_kinds));
   std::vector<py::ssize_t> shape;
   for (const Column& axis : result.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
   shape.push_back(result.replicates);
@@ -113,12 +104,12 @@ py::dict to_python(StoredSweep stored) {
     measures.append(to_python(
         Column{"round", "1", "round of refinement that added the run", std::move(result.round), 1, {}},
         shape));
-  all["measures"] = measures;
   if (!result.notes.empty())
     measures.append(to_python(
         Column{
             "notes", "1", "notes on the run, one bit for each of note_kinds", std::move(result.notes), 1, {}},
         shape));
+  all["measures"] = measures;
   all["error"] = py::cast(result.error);
   all["replicates"] = result.replicates;
   return all;

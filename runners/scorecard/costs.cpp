@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/statistics/mean.h"
 #include "analysis/storage/atomic_file.h"
 #include "runners/provenance/provenance.h"
 #include "runners/scorecard/json_number.h"
@@ -11,16 +12,6 @@
 #include "runners/simulation/simulation.h"
 
 namespace remote_touch {
-
-namespace {
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(values.size());
-}
-
-}  // namespace
 
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {

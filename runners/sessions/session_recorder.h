@@ -34,7 +34,7 @@ class SessionRecorder {
   void append(const SessionChange& change) { changes_.push_back(change); }
   // pre: is_complete(frame, view).
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // What was written until now outlasts a power cut. May be called from another thread.
+  // Makes what was written until now outlast a power cut. Another thread may call it.
   void sync() const { journal_.sync(); }
   // Makes the session file, with these attributes also, and then removes the journal. When it throws, the
   // journal stays, and is whole. attributes: `ended`, why the run ended, and others known at the end only.

@@ -36,7 +36,7 @@ void add_contact(const Trace& trace, std::vector<Note>& notes) {
     notes.push_back({"no frame", "no frame arrived before the run ended"});
   else if (std::all_of(trace.contact_count.begin(), trace.contact_count.end(), is_none) &&
            std::all_of(trace.force_N.begin(), trace.force_N.end(), is_zero))
-    notes.push_back({"no contact", "no contact: no point was touched, and no force was felt"});
+    notes.push_back(no_contact_note());
 }
 
 // The points of a frame within a ball, in the order of the search: rows of an image stay together.
@@ -86,6 +86,10 @@ double spacing_m(const std::vector<Vec3>& near) {
 }
 
 }  // namespace
+
+Note no_contact_note() {
+  return {"no contact", "no contact: no point was touched, and no force was felt"};
+}
 
 void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes) {
   for (const Phase& phase : phases)

@@ -26,6 +26,9 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
 std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m,
                                 const Kernels& kernels);
 
+// "no contact", for a run or a session in which nothing was touched.
+Note no_contact_note();
+
 // Adds a note for each phase of the scene or of the hand that begins at end_s or later.
 void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes);
 

@@ -48,8 +48,8 @@ Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact&
   return {distance_m - contact.rest_distance_m, hip_distance_m};
 }
 
-// Where the renderer touches: below the proxy. A tool touches with an area, so its normal is known only on a
-// plane.
+// The normal at the place that the renderer touches, below the proxy. A tool touches with an area, so its
+// normal is known only on a plane.
 Vec3 true_normal(const Scenario& scenario, const RenderOutput& out, double time_s) {
   const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (out.state == ContactState::free || out.force_N.isZero(0)) return unknown;

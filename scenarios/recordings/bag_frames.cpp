@@ -23,7 +23,7 @@ void check_image_size(const std::string& subject, const DepthImage& depth, std::
                                 std::to_string(height) + ", as its CameraInfo has");
 }
 
-// In all that makes a depth image a cloud.
+// The cameras agree in all that makes a depth image a cloud.
 bool same_camera(const CameraInfoMessage& a, const CameraInfoMessage& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model &&
          a.distortion == b.distortion && a.K == b.K && a.P == b.P;

@@ -19,7 +19,7 @@ class PanelScene : public Scenario {
   PointCloud cloud(int frame) const override;
   // To the panels as they are at that time, between frames too.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Of a scene with one panel.
+  // Known for a scene with one panel.
   std::optional<Vec3> plane_normal(double time_s) const override;
 
   virtual std::vector<FlatPanel> panels(double time_s) const = 0;

@@ -3,12 +3,14 @@
 
 Usage: run_ctest.py BUILD_FOLDER [--jobs N] [--stop-after N] [CTEST_OPTION...]
 
-Prints what ctest prints, without the lines of GoogleTest about tests that passed. After --stop-after failures (default 10) the run ends. Then follow: the slowest tests, the first
-failure once more with its output, skips that tests/allowed_skips does not list, and one line with the counts.
+Prints what ctest prints, without the lines of GoogleTest about tests that passed. After --stop-after failures (default
+10) the run ends. Then follow: the slowest tests, the first failure once more with its output, skips that
+tests/allowed_skips does not list, and one line with the counts.
 A skip that is not listed counts as a failure. Of a program of GoogleTest each of its tests counts.
 Exit: 0 all passed, 1 not.
 """
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -34,15 +36,17 @@ HUNG_AFTER_S = "7200"  # ends a test that would never end; none takes so long on
 class Watch:
     """What the lines of ctest say: results, and the output of the first test that failed."""
 
-    def __init__(self):
+    def __init__(self, names):
+        """names: of the tests that ctest runs. A test may run ctest itself and print results of others."""
         self.seconds, self.passed, self.failed, self.skipped = {}, [], [], []
         self.first_failure, self.in_first_failure = [], False
+        self.names = names
 
     def read(self, line):
         if NEXT_TEST.match(line):
             self.in_first_failure = False
         result = RESULT.match(line)
-        if result:
+        if result and result.group(1) in self.names:
             self.take(result.group(1), result.group(2).strip(), float(result.group(3)))
         if self.in_first_failure:
             self.first_failure.append(line.rstrip("\n"))
@@ -59,7 +63,7 @@ class Watch:
 
 
 def without_passed(lines):
-    """Leaves out the pairs of lines in which GoogleTest tells that a test begins and passes."""
+    """Leaves out the pairs of lines in which GoogleTest reports that a test begins and passes."""
     begun = ""
     for line in lines:
         if begun and not ENDED_WELL.match(line):
@@ -73,7 +77,9 @@ def without_passed(lines):
 
 def run(command, stop_after):
     """Runs ctest and ends it early after so many failures. Returns what was seen."""
-    watch, ended_early = Watch(), False
+    listed = subprocess.run([*command, "--show-only=json-v1"], stdout=subprocess.PIPE, text=True, cwd=ROOT,
+                            check=True).stdout
+    watch, ended_early = Watch({test["name"] for test in json.loads(listed)["tests"]}), False
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
                           cwd=ROOT, start_new_session=True) as ctest:
         for line in without_passed(ctest.stdout):

@@ -60,8 +60,8 @@ double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
   if (state_ == GateState::waiting) {
     const double engage_torque_Nm =
         limits_.max_force_N > 0 ? limits_.engage_force_N * limits_.max_torque_Nm / limits_.max_force_N : 0;
-    // Where the limit is 0 no torque gets to the device, so none of it can come as a jolt. Where the limit of
-    // the force is 0, the threshold is 0, and a command without torque must still begin.
+    // A limit of 0 lets no torque get to the device, so none can come as a jolt. If the limit of the force is
+    // 0, the threshold is 0, and a command without torque must still begin.
     const double torque_Nm = command.torque_Nm.norm();
     const bool has_torque = limits_.max_torque_Nm > 0 && torque_Nm > 0 && torque_Nm >= engage_torque_Nm;
     if (command.force_N.norm() >= limits_.engage_force_N || has_torque) return 0;

@@ -31,7 +31,8 @@ class SimulatedDevice final : public HapticDevice {
   }
 
  private:
-  // After a longer pause the hand passes the time before these ticks in one step.
+  // The hand makes at most so many steps at once. It passes the time of a longer pause before them in one
+  // step.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::unique_ptr<const Trajectory> script_;

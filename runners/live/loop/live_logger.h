@@ -24,8 +24,8 @@ class LiveLogger {
   // Takes what has come and calls the function given to ask(); call it about every kPeriod_s.
   void step() noexcept;
   static constexpr double kPeriod_s = 0.005;
-  // What was recorded until now outlasts a power cut; call it about every kSyncPeriod_s, from a thread of its
-  // own, because a disk may take seconds.
+  // Makes what was recorded until now outlast a power cut. Call it about every kSyncPeriod_s, from a thread
+  // of its own, because a disk may take seconds.
   void sync() noexcept;
   static constexpr double kSyncPeriod_s = 1;
   // Takes all that is left and finishes the file. closing: gets the whole log, unless that failed, and
@@ -33,14 +33,14 @@ class LiveLogger {
   // stopped, and step() and sync() are no longer called.
   void finish(const std::function<TextAttributes(const LiveLog&)>& closing = {});
 
-  // In place of finish(), for a run that an exception ends: writes all that is left, and returns a line on
-  // the file that keeps it; empty: nothing was recorded. pre: as finish().
+  // Writes all that is left of a run that an exception ends, in place of finish(). Returns a line on the file
+  // that keeps it; empty: nothing was recorded. pre: as finish().
   std::string keep();
 
   // For the camera: false if kMaxFrames frames are waiting for the disk.
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // For other threads: why nothing can be recorded or logged any more, and which file keeps what was
-  // recorded; empty: no failure.
+  // The reason why nothing can be recorded or logged any more, and the file that keeps what was recorded;
+  // empty: no failure. Other threads may call it.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
   // Calls the question once, in a step(), with the log at that time.

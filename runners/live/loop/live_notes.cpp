@@ -56,7 +56,7 @@ RunReport report_of(const LiveFacts& facts) {
   if (facts.log.latency_s.size() == 0)
     report.notes.push_back({"no frame", "no frame arrived before the session ended"});
   else if (facts.log.contact_ticks == 0)
-    report.notes.push_back({"no contact", "no contact: no point was touched, and no force was felt"});
+    report.notes.push_back(no_contact_note());
   add_unused_frames(facts.camera, report.notes);
   add_missed_phases(facts.phases, static_cast<double>(facts.log.end_tick()) / facts.haptic_rate_hz,
                     report.notes);

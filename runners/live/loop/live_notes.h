@@ -1,4 +1,4 @@
-// What a live session has read, and notes on what did not happen in it.
+// Reports what a live session has read, with notes on what did not happen in it.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ class LiveParts {
 
   // The haptic loop, until the run ends; it then releases the device.
   void run_loop() noexcept;
-  // To be called beside the loop: camera().step(), heartbeat().check(), logger().step() and logger().sync(),
+  // Threads beside the loop call camera().step(), heartbeat().check(), logger().step() and logger().sync(),
   // and for the user is_over() and report_changes() every kReportPeriod_s.
   CameraFeed& camera() { return *camera_; }
   Heartbeat& heartbeat() { return servo_->heartbeat(); }

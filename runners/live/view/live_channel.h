@@ -1,5 +1,5 @@
-// Between a live run and one page that shows it: what is to be sent, and what came. The run never waits for
-// the page: of frames the page gets the newest only, of ticks those of the last seconds. LivePages has the
+// Connects a live run with one page that shows it: what is to be sent, and what came. The run never waits for
+// the page, which gets only the newest frame and the ticks of the last seconds. LivePages has the
 // channels of all pages of a run.
 #pragma once
 
@@ -35,8 +35,8 @@ class LiveChannel {
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
 
-  // From the server's thread. A page has come, or is closed: it gets everything from now on. `trouble`: the
-  // newest trouble_message(); empty: there was none yet.
+  // A page has come, or is closed; it gets everything from now on. The server's thread calls them. `trouble`:
+  // the newest trouble_message(); empty: there was none yet.
   void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
   // The page that watched has the hand from now on.
@@ -45,8 +45,8 @@ class LiveChannel {
   void tell_parameters();
   bool is_open() const { return is_open_; }
   bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
-  // From any thread. A text for the page, as in view_messages.h; and the last one, after which the server
-  // closes the connection (empty: it closes at once).
+  // tell: a text for the page, see view_messages.h. end: the last one, after which the server closes the
+  // connection (empty: it closes at once). Any thread may call them.
   void tell(std::string text);
   void end(std::string last);
   bool is_over();

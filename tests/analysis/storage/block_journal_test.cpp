@@ -59,7 +59,7 @@ TEST(BlockJournal, GivesBackItsBlocksAfterItsWriter) {
   EXPECT_EQ(reader.left(), before);
 }
 
-// As a kill or a power cut leaves it: the blocks that lie before the cut, at every byte.
+// A kill or a power cut leaves the blocks that lie before the cut, whatever the byte.
 TEST(BlockJournal, ACutFileGivesTheBlocksBeforeTheCut) {
   const TestFolder folder("block_journal");
   const auto sizes = write(folder);

@@ -45,7 +45,7 @@ SweepResult awkward(int replicates = 2, bool refined = true) {
   return result;
 }
 
-// As earlier versions stored it.
+// Earlier versions stored it so.
 SweepResult without_notes(SweepResult result) {
   result.note_kinds.clear(), result.notes.clear();
   return result;
@@ -120,7 +120,7 @@ TEST(SweepFile, NotesWithoutANameAreRefused) {
   }
 }
 
-// Of 12 runs, 5 and 11 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
+// Runs 5 and 11 of the 12 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
 TEST(SweepResult, CountsTheFinishedRunsWithEachKindOfNote) {
   const std::vector<NoteCount> counts = note_counts(awkward());
   ASSERT_EQ(counts.size(), 3u);

@@ -19,7 +19,7 @@ std::vector<LiftUpdate> lift(const std::vector<std::string>& overrides) {
   return lift_updates(simulate(Experiment::load("fig4.12", overrides)), Vec3(0, 1, 0), 0.00499, 30);
 }
 
-// Without noise everything is known: v_j from the definition of the lift, v_hat_j = v_{j-1}, n_hat = n, and
+// Everything is known without noise: v_j from the definition of the lift, v_hat_j = v_{j-1}, n_hat = n, and
 // the proxy rests on the four points around it, whose square of 1.5 mm has the half diagonal 0.75 sqrt(2) mm.
 // A tick ends when a step changes no bit, so all of it holds within rounding.
 TEST(LiftUpdates, QuantitiesOfALiftWithoutNoise) {

@@ -99,7 +99,7 @@ TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
   EXPECT_NEAR(pull_N(0.007), expected_N(0.007, 0.003), 1e-12);
 }
 
-// After missed ticks the rate is a difference over all of them, not n times too large.
+// The rate after missed ticks is a difference over all of them, not n times too large.
 TEST(VirtualCoupling, TheDamperSpreadsADifferenceOverMissedTicks) {
   const double damping = 5;
   for (const double ticks : {1.0, 2.0, 40.0}) {

@@ -151,7 +151,7 @@ TEST(OperatorModel, WithoutAGripTheDeviceLeadsTheHand) {
   EXPECT_LT((turning - Vec3(0.01 / 0.05, 0, 0)).norm(), 1e-9);
 }
 
-// After n ticks of a torque the angle is torque / inertia (n tick)^2 / 2, and then it grows evenly.
+// The angle after n ticks of a torque is torque / inertia (n tick)^2 / 2; then it grows evenly.
 TEST(OperatorModel, AFreeTurnKeepsItsAxisAndItsSpeed) {
   std::mt19937 random(6);
   OperatorSettings s;
@@ -225,7 +225,7 @@ TEST(OperatorModel, EnergyNeverGrowsByItself) {
   }
 }
 
-// After n missed ticks the hand is where n ticks of the same force and of an even path take it.
+// The hand is, after n missed ticks, where n ticks of the same force and of an even path take it.
 TEST(OperatorModel, MovesOnThroughMissedTicks) {
   const OperatorSettings s;
   const Wrench wrench{{3, -2, 1}, {0, 0, 0.02}};

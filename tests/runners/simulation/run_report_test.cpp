@@ -132,7 +132,7 @@ TEST(RunReport, TheSpacingIsTheMedianDistanceToTheNearestNeighbour) {
   trace.append(0, {}, out, {});
   int wide = 0;
   for (unsigned seed = 1; seed <= 300; ++seed) {
-    // In a cube of 4 cm: 2 to 60 points, whose spacing is about that of the limit.
+    // A cube of 4 cm has 2 to 60 points, whose spacing is about that of the limit.
     const GivenPoints scene(scenes::random_cloud(2 + static_cast<int>(seed % 59), 0.02, seed));
     const bool is_wide =
         median_spacing_m(scene.cloud(0), 3 * kContactRadius_m) > std::sqrt(2.0) * kContactRadius_m;

@@ -59,7 +59,7 @@ class Hand final : public Trajectory {
   const std::optional<SurfacePlan> plan_;
 };
 
-// Of the camera's frame (x right, y down, z forward), see MovingPlane::cloud().
+// A point of the camera's frame (x right, y down, z forward), see MovingPlane::cloud().
 Vec3 in_world(double x, double y, double z) {
   return {1 + z, 2 + x, 3 + y};
 }

@@ -109,8 +109,8 @@ TEST(ToolContact, SlabsAreLiftedUpToTheirThicknessByLookAhead) {
   }
 }
 
-// By the continuous rule a frame moves out only a tool that was held when it came. A slab at rest is held
-// from the first frame on that shows the plane in it. Where one frame shows it below the slab and the next
+// The continuous rule moves a tool out at a frame only if it was held when the frame came. A slab at rest is
+// held from the first frame on that shows the plane in it. If one frame shows it below the slab and the next
 // above, it is lost: in a fraction 1 - f_c h / v of all start times, although a held slab is carried at this
 // speed.
 TEST(ToolContact, ASlabAtRestIsCarriedIfAFrameShowsThePlaneInItByContinuous) {

@@ -23,7 +23,7 @@ constexpr double kEdge_m = 0.006;  // default of edge_jump_m
 
 // Depth that is seen along the ray (x, y, 1); NaN: nothing.
 using Surface = std::function<double(double x, double y)>;
-// Whether a pixel is measured.
+// True for a pixel that is measured.
 using Mask = std::function<bool(int u, int v)>;
 
 const CameraIntrinsics kCamera = scenes::kinect();

@@ -46,7 +46,7 @@ export class Connection {
     else this.finish({ kind: "copy", text: "This is a copy of a live run's page, which cannot show the run. Open the address that the terminal prints." });
   }
 
-  // For good.
+  // Ends the connection; it does not connect again.
   close(): void {
     this.isOver = true;
     window.clearTimeout(this.timer);

@@ -204,7 +204,7 @@ class LivePage {
   }
 }
 
-// Before the first tick there is only a text.
+// The page has only a text before the first tick.
 function showText(text: string): void {
   document.body.classList.add("text");
   document.body.textContent = text;

@@ -41,7 +41,7 @@ export class MouseHand {
     document.addEventListener("keyup", (event) => this.key(event, false));
   }
 
-  // From here on.
+  // The hand moves from here on.
   start(position: Vector, orientation: number[]): void {
     const [w, x, y, z] = orientation;
     this.place.set(...position).multiplyScalar(1000);

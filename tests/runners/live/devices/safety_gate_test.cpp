@@ -70,7 +70,7 @@ TEST(SafetyGate, ForceAndTorqueMustBothBeShorterThanTheirThresholds) {
   EXPECT_FALSE(begins(Vec3::Zero(), {0.008, -0.008, 0.008})) << "14 mN m";
 }
 
-// With limits whose thresholds are exact in binary: 0.25 N, and 0.25 / 4 of 0.5 N m.
+// The limits have thresholds that are exact in binary: 0.25 N, and 0.25 / 4 of 0.5 N m.
 TEST(SafetyGate, AForceOrTorqueEqualToItsThresholdDoesNotBegin) {
   SafetyLimits limits;
   limits.engage_force_N = 0.25, limits.max_force_N = 4, limits.max_torque_Nm = 0.5;

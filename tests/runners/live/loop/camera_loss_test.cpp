@@ -86,7 +86,7 @@ TEST_F(CameraLoss, ThatSendsNothingMoreLeavesItsLastCloud) {
   EXPECT_FALSE(result.failed) << result.ended;
   EXPECT_EQ(result.counts.camera.received, 30);
   EXPECT_EQ(result.log.stale_ticks, 2000 - 1168);
-  ASSERT_EQ(troubles_.size(), 1u) << "a page is told what the terminal is told";
+  ASSERT_EQ(troubles_.size(), 1u) << "a page gets what the terminal gets";
   EXPECT_EQ(troubles_[0].camera, told_[0].line);
   EXPECT_EQ(troubles_[0].force, "");
 }

@@ -1,4 +1,4 @@
-// What a live session reports at its end and stores in its files, on a simulated clock.
+// A live session on a simulated clock: what it reports at its end and stores in its files.
 #include "runners/live/loop/live_notes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which page of a live run has the hand, and what all pages are told about the run.
+// The pages of a live run: one has the hand, and all get the state of the run.
 #include "runners/live/view/live_pages.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::string hand_at(double x_m, std::uint32_t buttons = 0) {
   return bytes.append(reinterpret_cast<const char*>(pose), sizeof pose);
 }
 
-// Of parameter 3, the stiffness.
+// A change of parameter 3, the stiffness.
 std::string change_to(double value) {
   std::string bytes("\3\0\0\0\1\0\0\0\3\0\0\0\0\0\0\0", 16);
   return bytes.append(reinterpret_cast<const char*>(&value), 8);

@@ -172,7 +172,7 @@ TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
   EXPECT_EQ(read_colour_png(file, width, height), expected);
 }
 
-// In every format that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
+// The formats that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
 TEST_F(DepthPng, ATransparentPixelHasNoColour) {
   int width = 0, height = 0;
   const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF};
