@@ -2,7 +2,6 @@
 // Hz. The environment variable VIRTUAL_CAMERA tells it what to do, as words with commas between them:
 //   absent           no camera is plugged in
 //   stop_after=N     sends no frame after frame N, which is not missing
-//   lose_after=N     likewise, and reports that it was unplugged
 //   small_after=N    depth after frame N has half of the rows
 //   stays_mirrored   shows a mirrored image, whatever it is told
 //   unregistered     does not register depth to colour
@@ -28,6 +27,7 @@ namespace remote_touch::virtual_camera {
 namespace {
 
 std::atomic<int> sent{0};  // the number of the newest frame; 0: none since the camera was opened
+std::atomic<bool> is_unplugged{false};
 
 // The number behind the word; without one 1; without the word 0.
 int told(const std::string& word) {
@@ -101,7 +101,9 @@ class Stream : public oni::driver::StreamBase {
 // One thread sends the frames of both streams, colour first.
 class Device : public oni::driver::DeviceBase {
  public:
-  explicit Device(void (*lose)(void*), void* driver) : lose_(lose), driver_(driver) { sent = 0; }
+  explicit Device(void (*lose)(void*), void* driver) : lose_(lose), driver_(driver) {
+    sent = 0, is_unplugged = false;
+  }
   ~Device() override {
     {
       const std::lock_guard lock(mutex_);
@@ -166,7 +168,7 @@ class Device : public oni::driver::DeviceBase {
 // one.
 void Device::run() {
   using Clock = std::chrono::steady_clock;
-  const int stop_after = told("stop_after"), lose_after = told("lose_after");
+  const int stop_after = told("stop_after");
   const auto period = std::chrono::nanoseconds(1'000'000'000 / kRate_hz);
   const auto start = Clock::now();
   const auto after = [&](int number) {
@@ -176,7 +178,7 @@ void Device::run() {
   std::unique_lock lock(mutex_);
   for (int number = 1; !is_closed_; number = after(number)) {
     changed_.wait_until(lock, start + number * period, [this] { return is_closed_; });
-    if (lose_after > 0 && number > lose_after) {
+    if (is_unplugged) {
       lock.unlock();
       lose_(driver_);
       return;
@@ -304,7 +306,10 @@ class Driver : public oni::driver::DriverBase {
 
 ONI_EXPORT_DRIVER(remote_touch::virtual_camera::Driver)
 
-// sent_frames.h calls it by this name.
+// virtual_camera.h calls them by these names.
 extern "C" int virtual_camera_sent() {
   return remote_touch::virtual_camera::sent;
+}
+extern "C" void virtual_camera_unplug() {
+  remote_touch::virtual_camera::is_unplugged = true;
 }

@@ -10,7 +10,7 @@
 
 #include "runners/live/loop/live_run.h"
 #include "runners/live/sensors/openni2_camera.h"
-#include "tests/doubles/virtual_openni2/sent_frames.h"
+#include "tests/doubles/virtual_openni2/virtual_camera.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
@@ -20,6 +20,7 @@ namespace remote_touch::live_camera_test {
 namespace {
 
 using virtual_camera::sent_frames;
+using virtual_camera::unplug;
 
 class LiveCamera : public testing::Test {
  protected:
@@ -76,7 +77,10 @@ TEST_F(LiveCamera, ThatSendsNothingMore) {
 
 TEST_F(LiveCamera, ThatIsUnplugged) {
   const std::string expected = "no more frames (openni2: was disconnected): the last cloud stays";
-  const LiveResult result = run("flat=500,lose_after=10", [&] { return told() == expected; });
+  const LiveResult result = run("flat=500", [&] {
+    if (has_frame_) unplug();
+    return told() == expected;
+  });
   EXPECT_EQ(told(), expected);
   EXPECT_EQ(result.ended, "stopped by a signal");
   EXPECT_TRUE(result.failed);
