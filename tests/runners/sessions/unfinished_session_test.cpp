@@ -1,4 +1,4 @@
-// What an unfinished recording holds where its blocks are not those of a recording, and what is refused.
+// An unfinished recording may hold blocks that no recording has: they are left out, or the file is refused.
 #include "runners/sessions/unfinished_session.h"
 
 #include <gtest/gtest.h>
