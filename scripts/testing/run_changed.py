@@ -91,10 +91,12 @@ def main():
     print(f"Left to scripts/test --ci: {', '.join(sorted(left)) or 'nothing that includes what changed'}", flush=True)
     known = targets_of_build(build)
     targets = [room.replace("/", "_") + "_tests" for room in with_tests] + ["remote-touch"]
+    if "python_module" in of_program:
+        targets.append("remote_touch_python")
     own_main = [file.stem for room in with_tests for file in (ROOT / "tests" / room).glob("*_test.cpp")]
     wanted = [each for each in targets + own_main if each in known]
     if of_program or with_tests:
-        code = subprocess.run(["cmake", "--build", build, "--parallel", "2", "--target", *wanted], check=False).returncode
+        code = subprocess.run(["ninja", "-C", build, "-j", "2", *wanted], check=False).returncode
         if code != 0:
             print("test: FAILED: the build (see above)")
             sys.exit(2)
