@@ -21,6 +21,8 @@ const char* text_of(Better better) {
       return "larger is better";
     case Better::near_zero:
       return "nearer to zero is better";
+    case Better::not_negative:
+      return "below zero larger is better";
     case Better::neither:
       break;
   }
@@ -28,7 +30,18 @@ const char* text_of(Better better) {
 }
 
 double badness(double value, Better better) {
-  return better == Better::larger ? -value : better == Better::near_zero ? std::abs(value) : value;
+  switch (better) {
+    case Better::larger:
+      return -value;
+    case Better::near_zero:
+      return std::abs(value);
+    case Better::not_negative:
+      return value >= 0 ? 0 : -value;  // NaN stays NaN
+    case Better::neither:
+    case Better::smaller:
+      break;
+  }
+  return value;
 }
 
 }  // namespace remote_touch

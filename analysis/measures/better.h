@@ -6,7 +6,9 @@
 
 namespace remote_touch {
 
-enum class Better { neither, smaller, larger, near_zero };
+// not_negative: values of 0 and more are equally good. A gap that is smaller is no worse, as long as it is
+// one.
+enum class Better { neither, smaller, larger, near_zero, not_negative };
 
 // The keys are the names of measures. A measure without an entry has no direction.
 using Directions = std::map<std::string, Better>;

@@ -39,9 +39,9 @@ double unconverged_fraction(const Trace& trace);
 double non_finite_fraction(const Trace& trace);
 double max_force_N(const Trace& trace);
 
-// The runs in which a measure means something: all, those of a point proxy, those of them for which
-// Trace::contact was computed, those with a tool, those with guidance, those for which Trace::true_normal was
-// computed and is known in some tick.
+// The runs for which a measure is defined. all: every run. proxy: runs with a point proxy. contact: runs with
+// a point proxy for which Trace::contact was computed. tool: runs with a tool. guidance: runs with guidance.
+// true_normal: runs for which Trace::true_normal was computed and is known in at least one tick.
 enum class MeasuredRuns { all, proxy, contact, tool, guidance, true_normal };
 
 // A measure that needs only a trace, by name: for summaries and for sweeps.
@@ -58,7 +58,7 @@ struct Measure {
 // runners/experiment/catalog.h.
 const std::vector<Measure>& built_in_measures();
 bool applies(const Measure& measure, const Trace& trace);
-// It needs rows that no column has: Trace::contact or Trace::true_normal.
+// True if the measure needs Trace::contact or Trace::true_normal, which are not stored as columns.
 bool needs_true_contact(const Measure& measure);
 const char* name_of(MeasuredRuns runs);  // "all runs", "runs without a tool", ...
 // NaN where the measure does not apply.

@@ -1,8 +1,8 @@
 // Energy that the device gives to the hand: force . displacement of the HIP until the next tick, and with a
-// tool torque . rotation. This is the exact work of a force that is held for a tick; a simulated operator
-// gains or dissipates all of it (runners/operator/held_force_step.h). Where the run simulates an operator or
-// a device, the force and torque are what the device exerts with the motors that it has, else what the
-// renderer commands.
+// tool also torque . rotation. This is the exact work of a force that is held for a tick. A simulated
+// operator gains or dissipates all of it (runners/operator/held_force_step.h). If the run simulates an
+// operator or a device, the force and torque are those that the device exerts with the motors that it has.
+// Otherwise they are those that the renderer commands.
 #pragma once
 
 #include "analysis/trace/trace.h"
@@ -17,8 +17,8 @@ double energy_injected_J(const Trace& trace);
 // B. Hannaford and J.-H. Ryu, IEEE Trans. Robotics and Automation 18 (2002), with the opposite sign.
 double max_energy_injected_J(const Trace& trace);
 
-// Work done on the hand from one frame update to the next, over the complete intervals in which the hand
-// feels a force or a torque: mean and maximum, J. NaN without any.
+// Work done on the hand from one frame update to the next, J: mean and maximum over the complete intervals in
+// which the hand feels a force or a torque. NaN if there is no such interval.
 double mean_energy_per_update_J(const Trace& trace);
 double max_energy_per_update_J(const Trace& trace);
 

@@ -3,6 +3,8 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "runners/experiment/catalog.h"
+
 namespace remote_touch {
 
 namespace {
@@ -135,6 +137,11 @@ void print_measures(const std::vector<ValueComparison>& measures, std::FILE* out
                    measure.candidate - measure.baseline, word_for(measure.judgement),
                    text_of(measure.better));
   std::fprintf(out, "  %zu of %zu measures are equal\n", equal, measures.size());
+  std::string left_out;
+  for (const Measure& measure : remote_touch::measures())
+    if (needs_true_contact(measure)) left_out += (left_out.empty() ? "" : ", ") + measure.name;
+  std::fprintf(out, "  not compared, since traces do not store what they need (compare sweeps): %s\n",
+               left_out.c_str());
 }
 
 // What is told of a region: all of an event's, and of other measures the whole and what changed.

@@ -20,6 +20,9 @@ TEST(Judged, ByTheDirection) {
   EXPECT_EQ(judged(-3, 2, Better::near_zero, {}), Judgement::better);
   EXPECT_EQ(judged(1, 2, Better::neither, {}), Judgement::changed);
   EXPECT_EQ(judged(-1, 1, Better::near_zero, {}), Judgement::changed);
+  // A renderer that follows the surface more closely has a smaller gap, which is no fault.
+  EXPECT_EQ(judged(0.005, 0.0047, Better::not_negative, {}), Judgement::changed);
+  EXPECT_EQ(judged(0.005, -0.001, Better::not_negative, {}), Judgement::worse);
   EXPECT_EQ(judged(1, 2, Better::smaller, {1, 0}), Judgement::equal);
   EXPECT_EQ(judged(1, kInfinity, Better::smaller, {}), Judgement::worse);
 }
@@ -28,6 +31,7 @@ TEST(Judged, NoNumberIsNeitherBetterNorWorse) {
   EXPECT_EQ(judged(kNaN, kNaN, Better::smaller, {}), Judgement::equal);
   EXPECT_EQ(judged(1, kNaN, Better::smaller, {}), Judgement::changed);
   EXPECT_EQ(judged(kNaN, 1, Better::smaller, {}), Judgement::changed);
+  EXPECT_EQ(judged(-1, kNaN, Better::not_negative, {}), Judgement::changed);
 }
 
 TEST(JudgedRunByRun, WhereAllRunsWentOneWay) {

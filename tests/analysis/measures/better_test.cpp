@@ -19,8 +19,9 @@ TEST(BetterOfMeasures, IsInTheirTable) {
   for (const char* name : {"popped_through", "rms_contact_error", "rms_force_jump", "force_noise",
                            "tool_popped_through", "max_tool_penetration", "guidance_error"})
     EXPECT_EQ(better_of(name), Better::smaller) << name;
-  for (const char* name : {"contact_force_fraction", "min_slave_distance", "min_clearance"})
-    EXPECT_EQ(better_of(name), Better::larger) << name;
+  for (const char* name : {"min_slave_distance", "min_clearance"})
+    EXPECT_EQ(better_of(name), Better::not_negative) << name;
+  EXPECT_EQ(better_of("contact_force_fraction"), Better::larger);
   EXPECT_EQ(better_of("mean_height"), Better::near_zero);
   // More force is no better and no worse: a proxy that popped through exerts none.
   for (const char* name :
@@ -42,6 +43,9 @@ TEST(Badness, IsSmallerWhereItIsBetter) {
   EXPECT_GT(badness(1, Better::larger), badness(2, Better::larger));
   EXPECT_LT(badness(-1, Better::near_zero), badness(2, Better::near_zero));
   EXPECT_LT(badness(1, Better::near_zero), badness(-2, Better::near_zero));
+  EXPECT_LT(badness(-1, Better::not_negative), badness(-2, Better::not_negative));
+  EXPECT_LT(badness(0, Better::not_negative), badness(-1, Better::not_negative));
+  EXPECT_EQ(badness(1, Better::not_negative), badness(2, Better::not_negative));
 }
 
 TEST(DirectionOf, AnUnknownMeasureIsNone) {
