@@ -1,6 +1,6 @@
-// Connects a live run with one page that shows it: what is to be sent, and what came. The run never waits for
-// the page, which gets only the newest frame and the ticks of the last seconds. LivePages has the
-// channels of all pages of a run.
+// Connects a live run with one page that shows it: queues the messages to the page, and handles those from
+// it. The run never waits for the page. A slow page gets only the newest frame, and waiting ticks are dropped
+// when there are too many. LivePages has the channels of all pages of a run.
 #pragma once
 
 #include <atomic>
@@ -23,7 +23,7 @@ namespace remote_touch {
 
 class LiveChannel {
  public:
-  static constexpr std::size_t kMaxRows = 5000;      // that wait for a page; older ones are let go
+  static constexpr std::size_t kMaxRows = 5000;      // ticks that may wait; with more, all are dropped
   static constexpr std::size_t kMaxPoints = 300000;  // of a frame
   static constexpr std::uint32_t kMaxInFlight = 2;   // messages that the page has not acknowledged
 
@@ -35,25 +35,27 @@ class LiveChannel {
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
 
-  // A page has come, or is closed; it gets everything from now on. The server's thread calls them. `trouble`:
-  // the newest trouble_message(); empty: there was none yet.
+  // open(): a page has connected, and gets everything from now on. close(): the page has disconnected. The
+  // server's thread calls both. `trouble`: the newest trouble_message(); empty if there was none yet.
   void open(PageRole role = PageRole::hand, const std::string& trouble = {});
   void close();
-  // The page that watched has the hand from now on.
+  // Gives the hand to the page, which has only watched until now.
   void give_hand();
-  // The parameters were changed by another page.
+  // Sends the parameters to the page, because another page has changed them.
   void tell_parameters();
   bool is_open() const { return is_open_; }
   bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
-  // tell: a text for the page, see view_messages.h. end: the last one, after which the server closes the
-  // connection (empty: it closes at once). Any thread may call them.
+  // tell(): queues a text for the page, see view_messages.h. end(): queues the last text; the server closes
+  // the connection after it, or at once if it is empty. is_over(): true if the connection is to be closed.
+  // Any thread may call them.
   void tell(std::string text);
   void end(std::string last);
   bool is_over();
-  // False: not a message of a page; ignored and counted.
+  // Handles a message from the page. Returns false, and counts the message as refused, if it is malformed or
+  // if this page may not send it.
   bool receive(std::string_view bytes);
-  // The next message, or none now. Texts: JSON, see view_messages.h. The columns come before all other texts,
-  // except that the last text comes at once.
+  // Finds the next message to the page; false if there is none now. Texts are JSON, see view_messages.h. The
+  // columns are sent before all other texts; only the text of end() may come earlier.
   struct Message {
     std::string bytes;
     bool is_text = false;

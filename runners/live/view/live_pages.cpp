@@ -47,23 +47,22 @@ std::uint64_t LivePages::refused() const {
   return sum;
 }
 
-LivePages::Page* LivePages::free_page() {
-  const auto found =
-      std::find_if(pages_.begin(), pages_.end(), [](const Page& page) { return !page.is_taken; });
-  return found == pages_.end() ? nullptr : &*found;
-}
-
 LivePages::Page* LivePages::with_hand() {
   const auto found =
       std::find_if(pages_.begin(), pages_.end(), [](const Page& page) { return page.channel->has_hand(); });
   return found == pages_.end() ? nullptr : &*found;
 }
 
-bool LivePages::is_full() const {
-  return std::all_of(pages_.begin(), pages_.end(), [](const Page& page) { return page.is_taken; });
+bool LivePages::is_full(std::string_view name) const {
+  const auto others = std::count_if(pages_.begin(), pages_.end(), [&](const Page& page) {
+    return page.channel->is_open() && page.name != name;
+  });
+  const auto is_taken = [](const Page& page) { return page.is_taken; };
+  return others >= static_cast<std::ptrdiff_t>(kMax) || std::all_of(pages_.begin(), pages_.end(), is_taken);
 }
 
 LiveChannel* LivePages::open(std::string_view name) {
+  if (is_full(name)) return nullptr;
   // The older connection of the same page: its page does not hear it any more, even if the network has not
   // reported that yet.
   for (Page& page : pages_)
@@ -71,8 +70,8 @@ LiveChannel* LivePages::open(std::string_view name) {
       page.channel->close();
       page.channel->end({});
     }
-  Page* const page = free_page();
-  if (page == nullptr) return nullptr;
+  const auto page =
+      std::find_if(pages_.begin(), pages_.end(), [](const Page& each) { return !each.is_taken; });
   page->name = name, page->came = ++came_;
   const PageRole role = with_hand() ? PageRole::watches : PageRole::hand;
   const std::lock_guard lock(mutex_);

@@ -1,8 +1,10 @@
-// The pages that show one live run: which of them has the hand, and what all of them get.
+// The pages that show one live run. LivePages decides which page has the hand, and passes ticks, frames and
+// texts to all of them.
 //
-// The first page has the hand; those that come later watch. When the page with the hand closes, the page that
-// has watched longest gets it. A page that connects again before the server has noticed the loss takes the
-// place of its own older connection, and keeps the hand; later it is a new page.
+// The first page has the hand; later pages watch. When the page with the hand closes, the page that has
+// watched longest gets the hand. A page may lose its connection and connect again before the server has
+// noticed the loss. It then replaces its own older connection and keeps the hand. A page that connects later
+// counts as a new page.
 #pragma once
 
 #include <array>
@@ -28,18 +30,20 @@ class LivePages {
   void take(const LiveTick& tick) noexcept;
   void take(const Frame& frame) noexcept;
   void tell(const LiveTrouble& trouble);
-  // The run has ended: every page gets the reason, now or when it asks. Only the first call counts.
+  // The run has ended: sends the reason to every page, also to pages that connect later. Only the first call
+  // counts.
   void end(const std::string& why);
-  std::string ended() const;  // why; empty: it goes on
+  std::string ended() const;  // the reason; empty while the run goes on
   std::uint64_t refused() const;
 
-  // The server's thread calls these. page: the name that the page gave itself, at most kMaxName bytes. Null:
-  // kMax pages are connected. The channel belongs to this page until close().
+  // The server's thread calls these. open() returns the channel for a page, which belongs to the page until
+  // close(), or null if is_full(page). page: the name that the page gave itself, at most kMaxName bytes.
   static constexpr std::size_t kMaxName = 32;
   LiveChannel* open(std::string_view page);
   void close(LiveChannel& channel);
-  bool is_full() const;
-  // See LiveChannel::receive(); other pages get the parameters that have changed.
+  // Whether kMax other pages are connected. A page that connects again does not count.
+  bool is_full(std::string_view page) const;
+  // See LiveChannel::receive(). If the message has changed parameters, the other pages get the new values.
   bool receive(LiveChannel& channel, std::string_view bytes);
 
  private:
@@ -49,11 +53,10 @@ class LivePages {
     bool is_taken = false;
     std::uint64_t came = 0;  // the order in which the pages came
   };
-  Page* free_page();
   Page* with_hand();
 
   const std::shared_ptr<LiveControls> controls_;
-  std::array<Page, kMax> pages_;
+  std::array<Page, 2 * kMax> pages_;  // the older connection of each page may still be there
   std::uint64_t came_ = 0;
   mutable std::mutex mutex_;  // of the following
   std::string trouble_;       // the newest message; empty: none

@@ -24,13 +24,13 @@ class LiveView {
   LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels, int port);
 
   std::string address() const { return server_->address(); }
-  // Lets the run tell this view its ticks and frames, and gives it the page's hand. This view must outlive
-  // it.
+  // Connects the run with this view: the view gets the ticks and frames, and the run gets the hand from the
+  // page. This view must outlive the run.
   void connect(LiveOptions& options);
-  // The run has ended: tells all pages why, and waits at most a second for them to close. Only the first call
-  // counts; the destructor calls it, too.
+  // The run has ended: sends the reason to all pages, and waits at most a second until they have closed. Only
+  // the first call counts. The destructor calls it too.
   void end(const std::string& why) { server_->end(why); }
-  // Number of messages that came and were refused.
+  // The number of messages from pages that were refused.
   std::uint64_t refused() const { return pages_.refused(); }
 
  private:

@@ -12,7 +12,8 @@
 
 namespace remote_touch {
 
-// One page has the hand and the sliders; all others watch, and what they send for either is refused.
+// One page has the hand and the sliders. All others watch; poses and changes of parameters from them are
+// refused.
 enum class PageRole { hand, watches };
 
 // JSON: {"columns": [{"name", "unit", "meaning", "width", "names"}, ...]}; hashes are left out.
@@ -26,7 +27,7 @@ std::string parameters_message(const LiveControls& controls, const std::string& 
 // watches.
 std::string role_message(PageRole role);
 
-// JSON: {"trouble": {"camera": TEXT, "force": TEXT}}: what does not work now; empty texts: nothing.
+// JSON: {"trouble": {"camera": TEXT, "force": TEXT}}: what does not work now. An empty text: that part works.
 std::string trouble_message(const LiveTrouble& trouble);
 
 // JSON: {"ended": TEXT}: why the run has ended.
@@ -36,8 +37,8 @@ std::string ended_message(const std::string& why);
 std::string alive_message();
 
 // JSON, the answer to a request for `state`: {"protocol": NUMBER, "ended": TEXT, "full": BOOL}. protocol:
-// kViewProtocol, by which a page recognises a server of another version; ended: why the run has ended, or
-// empty; full: as many pages are connected as can be.
+// kViewProtocol, by which a page recognises a server of another version. ended: why the run has ended, or
+// empty. full: the maximum number of pages is connected.
 std::string state_message(const std::string& ended, bool is_full);
 inline constexpr int kViewProtocol = 2;
 

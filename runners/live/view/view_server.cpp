@@ -98,7 +98,7 @@ class BeastServer final : public ViewServer {
   }
   ~BeastServer() override {
     try {
-      end("it failed, as the terminal says");
+      end("it failed; the terminal shows the reason");
     } catch (const std::exception&) {  // no memory: the pages find out by themselves
     }
     context_.stop();
@@ -166,15 +166,16 @@ class BeastServer final : public ViewServer {
 
   http::status judged(const Request& request) const {
     const beast::string_view target = request.target();
-    const bool is_channel = same(target.substr(0, target.find('?')), path_ + "channel");
-    if (!is_channel && !same(target, path_ + "state") && !same(target, path_)) return http::status::not_found;
+    const beast::string_view place = target.substr(0, target.find('?'));
+    const bool is_channel = same(place, path_ + "channel");
+    if (!is_channel && !same(place, path_ + "state") && !same(target, path_)) return http::status::not_found;
     if (!is_ours(request[http::field::host])) return http::status::forbidden;
     if (request.method() != http::verb::get) return http::status::method_not_allowed;
     if (!is_channel) return http::status::ok;
     const beast::string_view origin = request[http::field::origin];
     if (!origin.starts_with("http://") || !is_ours(origin.substr(7))) return http::status::forbidden;
     if (!websocket::is_upgrade(request) || !is_name(name_in(request))) return http::status::bad_request;
-    return pages_.is_full() ? http::status::conflict : http::status::switching_protocols;
+    return pages_.is_full(name_in(request)) ? http::status::conflict : http::status::switching_protocols;
   }
   static std::string name_in(const Request& request) {
     const beast::string_view target = request.target();
@@ -195,9 +196,9 @@ class BeastServer final : public ViewServer {
     response.set(http::field::x_frame_options, "DENY");
     response.set("Referrer-Policy", "no-referrer");
     response.set("X-Content-Type-Options", "nosniff");
-    if (status == http::status::ok && same(request.target(), path_ + "state")) {
+    if (status == http::status::ok && !same(request.target(), path_)) {
       response.set(http::field::content_type, "application/json");
-      response.body() = state_message(pages_.ended(), pages_.is_full());
+      response.body() = state_message(pages_.ended(), pages_.is_full(name_in(request)));
     } else if (status == http::status::ok) {
       response.set(http::field::content_type, "text/html; charset=utf-8");
       response.set(

@@ -1,10 +1,11 @@
 // Serves the page of a live run, and its channels, to browsers on this machine. Compiled in if Boost's
 // headers are installed.
 //
-// Bound to 127.0.0.1. The address has a secret of 128 bits; a request without it, with the name of another
-// host (DNS rebinding), or from a page of another origin is refused. Below the address are `channel?NAME`, a
-// WebSocket of the page that calls itself NAME (lower-case hexadecimal digits, at most LivePages::kMaxName),
-// and `state`, which says why there is no channel, see state_message().
+// The server is bound to 127.0.0.1. Its address contains a secret of 128 bits. It refuses a request without
+// the secret, a request that names another host (DNS rebinding), and a request from a page of another origin.
+// `channel?NAME` below the address is the WebSocket of the page that calls itself NAME: lower-case
+// hexadecimal digits, at most LivePages::kMaxName. `state` below the address reports why there is no channel,
+// see state_message().
 #pragma once
 
 #include <memory>
@@ -18,10 +19,9 @@ bool view_server_is_compiled_in();
 
 class ViewServer {
  public:
-  virtual ~ViewServer() = default;          // calls end(), and ends its thread
+  virtual ~ViewServer() = default;          // calls end() and ends its thread
   virtual std::string address() const = 0;  // http://127.0.0.1:PORT/SECRET/
-  // Tells the pages that the run has ended, see LivePages::end(). Returns when they have closed, or after a
-  // second.
+  // Sends the reason to the pages, see LivePages::end(). Returns when they have closed, or after a second.
   virtual void end(const std::string& why) = 0;
 };
 

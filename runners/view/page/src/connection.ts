@@ -100,7 +100,7 @@ export class Connection {
     if (this.isOver) return;
     this.socket = null;
     this.listener.state({ kind: "lost", text: "The connection is lost." });
-    const state = stateOf(await ask(), this.protocol);
+    const state = stateOf(await ask(this.name), this.protocol);
     if (this.isOver) return;
     if (state.final) {
       this.finish(state);
@@ -163,9 +163,9 @@ export class Connection {
   }
 }
 
-async function ask(): Promise<Answer> {
+async function ask(name: string): Promise<Answer> {
   try {
-    const response = await fetch(new URL("state", location.href), { cache: "no-store", signal: AbortSignal.timeout(answerMs) });
+    const response = await fetch(new URL(`state?${name}`, location.href), { cache: "no-store", signal: AbortSignal.timeout(answerMs) });
     return response.ok ? { status: response.status, ...((await response.json()) as object) } : { status: response.status };
   } catch (error) {
     if (error instanceof SyntaxError) return { status: 200 };

@@ -95,13 +95,28 @@ TEST_F(LivePagesTest, APageThatConnectsAgainKeepsTheHand) {
 TEST_F(LivePagesTest, MorePagesThanItsMaximumAreNotOpened) {
   std::vector<LiveChannel*> open_pages;
   for (std::size_t i = 0; i < LivePages::kMax; ++i) {
-    EXPECT_FALSE(pages_.is_full());
+    EXPECT_FALSE(pages_.is_full("f"));
     open_pages.push_back(&open(std::string(1, static_cast<char>('a' + i))));
   }
-  EXPECT_TRUE(pages_.is_full());
+  EXPECT_TRUE(pages_.is_full("f"));
   EXPECT_EQ(pages_.open("f"), nullptr);
   pages_.close(*open_pages[2]);
   EXPECT_EQ(texts(open("f")), std::vector{kWatches});
+}
+
+// A network that is lost for a moment closes no connection.
+TEST_F(LivePagesTest, AllPagesConnectAgainBeforeTheirOlderConnectionsAreClosed) {
+  const std::vector<std::string> names = {"a", "b", "c", "d"};
+  ASSERT_EQ(names.size(), LivePages::kMax);
+  std::vector<LiveChannel*> older;
+  for (const std::string& name : names) older.push_back(&open(name));
+  for (const std::string& name : names) {
+    EXPECT_FALSE(pages_.is_full(name));
+    EXPECT_EQ(open(name).has_hand(), name == "a");
+  }
+  EXPECT_EQ(pages_.open("f"), nullptr);
+  for (LiveChannel* channel : older) pages_.close(*channel);
+  EXPECT_TRUE(pages_.is_full("f"));
 }
 
 TEST_F(LivePagesTest, EveryPageIsToldOfChangedParameters) {
