@@ -17,12 +17,12 @@ enum class CurveStyle {
   dashed,
   circle,
   bars,
-  squares,  // filled cells of a map, as large as the distance of the samples
-  map,      // the same, coloured by z
+  squares,  // filled cells of a map; the side of a cell is the distance between samples
+  map,      // as squares, coloured by z
   band,     // from y to z
   image,    // one pixel for every cell of a grid, of colour z = 0xRRGGBB
-  surface,  // heights z over a grid of (x, y), in perspective, alone in its panel
-  letters   // a dot at (x, y) with the name that z has
+  surface,  // heights z over a grid of (x, y), in perspective; the only curve of its panel
+  letters   // a dot at (x, y), labelled with the name of the value of z
 };
 
 struct Curve {
@@ -30,7 +30,7 @@ struct Curve {
   CurveStyle style = CurveStyle::line;
   std::string label = {};  // empty: not in the legend
   double radius = 0;       // of circles, in data units
-  std::string z = {};      // a third column, of maps, bands, images, surfaces and letters
+  std::string z = {};      // a third column, for maps, bands, images, surfaces and letters
 };
 
 struct Panel {

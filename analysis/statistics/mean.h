@@ -1,11 +1,11 @@
-// The mean of numbers.
+// The arithmetic mean.
 #pragma once
 
 #include <vector>
 
 namespace remote_touch {
 
-// The numbers are added in their order. NaN of none.
+// Adds the numbers in the order of the list. Returns NaN for an empty list.
 double mean(const std::vector<double>& values);
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// Append-only files of blocks: a recording while it goes on. Whatever ends the program, every block that was
-// appended can be read again.
+// Append-only files of blocks, for a recording that is still running. Every block that was appended can be
+// read again, however the program ends.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,24 @@
 
 namespace remote_touch {
 
-// A journal begins with this line. Then come its blocks, one after the other, in the byte order of x86-64:
-//   char[4] "RTb1", uint32 kind, uint64 number of the block (from 0), uint64 size of its content,
-//   uint32 CRC-32 of the content, uint32 CRC-32 of the 28 bytes before; then the content.
+// A journal begins with this line. The blocks follow, one after the other, in the byte order of x86-64. A
+// block is
+//   char[4] "RTb1", uint32 kind, uint64 number of the block (from 0), uint64 size of the content,
+//   uint32 CRC-32 of the content, uint32 CRC-32 of the 28 bytes before, and then the content.
 inline constexpr std::string_view kJournalOpening = "Remote Touch unfinished recording, format 1\n";
 
-// The journal of a file that is being recorded: FILE.unfinished, beside the file that FILE links to.
+// Returns the journal of a file that is being recorded: FILE.unfinished. If FILE is a link, the journal is
+// beside the file that it links to.
 std::filesystem::path journal_of(const std::filesystem::path& target);
 
-// True if the file begins as a journal; the rest of it is not read.
+// True if the file begins with kJournalOpening. The rest of the file is not read.
 bool is_journal(const std::filesystem::path& file);
 
-// Throws InputError if the file is a journal, or if it does not exist and its journal does. The message says
-// how a recording is made of it.
+// Throws InputError if the file is a journal, or if it does not exist but its journal does. The message names
+// the command that makes a recording of the journal.
 void require_no_journal(const std::filesystem::path& file);
 
-// Throws InputError if the journal of the target exists: nothing but its user may remove it.
+// Throws InputError if the journal of the target exists, because only the user may remove it.
 void require_no_journal_beside(const std::filesystem::path& target);
 
 struct JournalBlock {
@@ -33,22 +35,23 @@ struct JournalBlock {
   std::string content;
 };
 
-// The journal exists from the constructor on, with its first block, until remove(). The destructor leaves it.
-// It is locked, so that readers know that it grows; the lock ends with the process. Members throw InputError
-// naming the target when the disk refuses; the blocks before remain whole.
+// Creates a journal with its first block, and appends further blocks. The journal exists from the constructor
+// until remove(); the destructor leaves it. The writer locks the file, so that readers know that it still
+// grows. The lock ends with the process at the latest. Members throw InputError, which names the target, if
+// the file cannot be written. The earlier blocks stay whole then.
 class JournalWriter {
  public:
-  // Throws InputError if the target is a folder, a pipe or a device, or has a journal already.
+  // Throws InputError if the target is a folder, a pipe or a device, or if it already has a journal.
   JournalWriter(const std::filesystem::path& target, const JournalBlock& first);
   ~JournalWriter();
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
 
-  // The system has the block afterwards: it outlasts the process, but not a power cut.
+  // Afterwards the operating system has the block: it survives the end of the process, but not a power cut.
   void append(const JournalBlock& block);
-  // The disk has every block that was appended before. May be called beside append(), from another thread.
+  // Writes every block that was appended before to the disk. Another thread may call it during append().
   void sync() const;
-  // Removes the file. A file that cannot be removed stays.
+  // Removes the file. If that fails, the file stays.
   void remove() noexcept;
 
   const std::filesystem::path& file() const { return file_; }
@@ -64,23 +67,25 @@ class JournalWriter {
   std::uint64_t next_number_ = 0, size_ = 0;  // size_: up to the end of the last whole block
 };
 
-// Reads the blocks in order, up to the first one that is not whole: cut, changed or out of order.
+// Reads the blocks in order, up to the first one that is not whole: cut off, changed or out of order.
 class JournalReader {
  public:
-  // Throws InputError naming the file when it is missing or no journal.
+  // Throws InputError, which names the file, if it is missing, is no journal or cannot be read.
   explicit JournalReader(const std::filesystem::path& file);
   ~JournalReader();
   JournalReader(const JournalReader&) = delete;
   JournalReader& operator=(const JournalReader&) = delete;
 
-  // The next block; none at the end, or where the next block is not whole. Throws InputError when the file
-  // cannot be read.
+  // Returns the next block. Returns nothing at the end, or if the next block is not whole. Throws InputError
+  // if the file cannot be read.
   std::optional<JournalBlock> next();
-  // Bytes behind the last block that next() returned, in a file of the size that it had at the beginning.
+  // Number of bytes after the last block that next() returned, up to the size that the file had in the
+  // constructor.
   std::uint64_t left() const { return size_ - at_; }
-  // True while its writer lives.
+  // True if a writer had the file open when this reader was constructed.
   bool is_growing() const { return is_growing_; }
-  // Takes back the last block that next() returned: its content is not what its kind says.
+  // Undoes the last next(), because the content of its block is not valid for its kind. left() then includes
+  // this block, and next() returns nothing.
   void reject() { at_ = last_; }
 
  private:

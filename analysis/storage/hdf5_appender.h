@@ -11,10 +11,11 @@
 
 namespace remote_touch {
 
-// Written under a temporary name beside the target; finish() seals it and renames it to the target. Without
-// finish() nothing is left; what a killed program leaves, the next appender of the same target removes. Not
-// for use from several threads at once, nor while another thread uses HDF5. Every member throws InputError
-// naming the target when it cannot be written; a device, /dev/null included, cannot.
+// Appends rows to the datasets of a file. The file is written under a temporary name beside the target;
+// finish() seals it and renames it to the target. Without finish() no file remains. If the program is killed,
+// the temporary file remains until the next appender of the same target removes it. Not for use from several
+// threads at once, nor while another thread uses HDF5. Every member throws InputError, which names the
+// target, if the target cannot be written. A device cannot be a target, not even /dev/null.
 class Hdf5Appender {
  public:
   enum class Number { f64, f32, i32, u64, u32, u16 };
@@ -35,7 +36,7 @@ class Hdf5Appender {
   void dataset(const Dataset& made);
   // rows: count rows in the type of the dataset and the machine's byte order.
   void append(const std::string& path, const void* rows, std::size_t count);
-  // One row that deflated_row() made. pre: the dataset has one row in each chunk.
+  // Appends one row that deflated_row() returned. pre: the dataset has one row in each chunk.
   void append_deflated(const std::string& path, const std::string& row);
   void attributes(const std::string& object, const TextAttributes& list);
   void finish();
@@ -60,11 +61,12 @@ class Hdf5Appender {
   std::map<std::string, Open> open_;
 };
 
-// The bytes of a row of values of this size, as the file stores them: shuffled (the first bytes of all
-// values, then the second ones, ...) and deflated. Does not use the HDF5 library, so that another thread may.
+// Returns the bytes of a row of `count` values as the file stores them: shuffled (the first bytes of all
+// values, then the second bytes, ...) and deflated. It does not call the HDF5 library, so it may run while
+// another thread uses HDF5.
 std::string deflated_row(const void* values, std::size_t count, std::size_t value_size);
 
-// True if the bytes are what deflated_row() makes of so many bytes.
+// True if `row` decompresses to exactly `size` bytes.
 bool is_deflated_row(const std::string& row, std::size_t size);
 
 }  // namespace remote_touch

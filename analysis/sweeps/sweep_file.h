@@ -1,5 +1,5 @@
-// A sweep in HDF5: group /sweep with the axes as dimension scales, one array for each measure, state, notes
-// and error.
+// A sweep in HDF5: group /sweep with the axes as dimension scales, one array for each measure, and arrays for
+// state, notes and error.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,12 @@
 
 namespace remote_touch {
 
-// Digest of axes, measures, states and errors. Notes are not part of it: they say nothing about the numbers.
+// Digest of axes, measures, states, errors and, with refinement, rounds. Notes are not part of it, because
+// they do not change the numbers.
 std::string digest(const SweepResult& result);
 
-// Names with a comma between two of them, as the attributes axes, measures and note_kinds have them.
+// Joins names with commas, and splits them again. The attributes axes, measures and note_kinds have this
+// form.
 std::string joined_names(const std::vector<std::string>& names);
 std::vector<std::string> split_names(const std::string& joined);
 
@@ -27,7 +29,7 @@ std::string write_sweep(const std::filesystem::path& file, const SweepResult& re
 // for a file that is not a sweep, or was changed since it was written.
 struct StoredSweep {
   SweepResult result;
-  TextAttributes attributes;  // without schema, digest and the names of axes, measures and kinds of notes
+  TextAttributes attributes;  // without schema, digest, and the names of axes, measures and kinds of notes
   bool in_progress = false;
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
@@ -39,7 +41,7 @@ StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run 
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes);
 std::int32_t checksum(const SweepResult& result, std::size_t run);
-// Digest of what stays as it is while the sweep runs: axes, rounds, kinds of notes and attributes.
+// Digest of what does not change while the sweep runs: axes, rounds, kinds of notes and attributes.
 std::string plan_digest(const SweepResult& result, TextAttributes attributes);
 // Size of that file, bytes; the finished one is smaller.
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);

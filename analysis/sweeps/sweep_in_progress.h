@@ -22,7 +22,7 @@ class SweepInProgress {
   SweepInProgress(const SweepInProgress&) = delete;
   SweepInProgress& operator=(const SweepInProgress&) = delete;
 
-  // Stores the values, the state and the notes of one run. One call at a time. Throws InputError when it
+  // Stores the values, the state and the notes of one run. One call at a time. Throws InputError if the file
   // cannot be written.
   void record(const SweepResult& result, std::size_t run);
   // After this, everything recorded survives a power cut. Throws also when the file was replaced or removed.

@@ -26,12 +26,14 @@ struct SweepResult {
   std::vector<RunState> state;
   std::vector<std::int32_t> round;  // of refinement that added the run; empty without refinement
   std::vector<std::string> error;
-  // The kinds of notes on a run, and of each run a bit for each of them: bit i is note_kinds[i]. 0 where the
-  // run is not done. Both are empty in results that were stored without notes.
+  // note_kinds: the names of the kinds of notes. notes: one number for each run; bit i is set if the run has
+  // a note of the kind note_kinds[i]. It is 0 if the run is not done. Both are empty in results that were
+  // stored without notes.
   std::vector<std::string> note_kinds;
   std::vector<std::int32_t> notes;
 
-  // Sizes the arrays, every run not_sampled. pre: axes, replicates, measures and note_kinds are set.
+  // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, measures and note_kinds are
+  // set.
   void start(bool refined);
 
   std::size_t cell_count() const;
@@ -51,13 +53,13 @@ struct SweepResult {
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
 
-// The finished runs that have a note of one kind.
+// The number of finished runs that have a note of one kind.
 struct NoteCount {
   std::string kind;
   std::size_t runs = 0;
-  std::size_t first = 0;  // the run with the lowest number
+  std::size_t first = 0;  // the lowest number of such a run
 };
-// The counts are in the order of note_kinds. Kinds that no finished run has are left out.
+// Returns the counts in the order of note_kinds, without kinds that no finished run has.
 std::vector<NoteCount> note_counts(const SweepResult& result);
 
 // How often an event happened in the finished runs of a cell.

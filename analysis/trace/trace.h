@@ -35,8 +35,8 @@ struct Trace {
     double slave_distance_m = 0;              // and of the slave's command
     std::uint64_t frame_hash = 0;             // of the newest frame delivered; 0 if it was not computed
     std::optional<TrueContact> contact = {};  // computed only where a measure asks for it
-    // Unit normal of the true surface where the renderer touches, towards the free side; NaN where it is not
-    // known or nothing is touched. Computed only where a measure asks for it.
+    // Unit normal of the true surface at the renderer's contact, towards the free side. NaN if it is not
+    // known or nothing is touched. Computed only if a measure needs it.
     std::optional<Vec3> normal = {};
   };
   void append(double time, const DeviceState& device, const RenderOutput& out, const Truth& truth,
@@ -82,9 +82,9 @@ struct TraceColumn {
 // Every column that a trace can have, in order.
 const std::vector<TraceColumn>& trace_columns();
 
-// The trace of stored columns, asked for by name one after the other; `contact` and `true_normal`, which no
-// column has, are empty. None where a column of its runs is missing, or one is of another kind, width or
-// length.
+// Builds a trace of stored columns, which it requests by name one after the other. `contact` and
+// `true_normal` stay empty, because they are not stored as columns. Returns nothing if a column of its runs
+// is missing, or if a column has another kind, width or length.
 std::optional<Trace> trace_of(const std::function<std::optional<Column>(const std::string&)>& column);
 
 }  // namespace remote_touch

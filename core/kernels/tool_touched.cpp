@@ -78,8 +78,9 @@ void touched_points(const PointColumns& points, const std::uint32_t* groups, std
       const Flags known = reached & place.at.is_known;
       const Doubles counted = known ? distance : all(kInfinite);
       least_of_all = counted < least_of_all ? counted : least_of_all;
-      const Flags voxel =
-          known & place.at.in_cell & (distance <= limits.voxels) ? voxels_at(voxels, place.at.cell) : Flags{};
+      const Flags voxel = (known & place.at.in_cell & (distance <= limits.voxels))
+                              ? voxels_at(voxels, place.at.cell)
+                              : Flags{};
       inside |= voxel == kInterior;
       Flags touched = voxel != 0, unclear = reached & ~known;
       const Flags may = known & ~touched & can_touch(points, i, fraction, limits, distance);

@@ -90,7 +90,7 @@ class ProxyRenderer final : public Renderer {
   double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // before the newest change
   FrameOrder order_;
   double frame_arrived_s_ = 0;
-  double force_time_s_ = 0;                 // of the tick whose force was computed last
+  double force_time_s_ = 0;                 // time of the tick whose force was computed last
   Vec3 frame_correction_m_ = Vec3::Zero();  // by (4.3) since the last tick
   bool stops_at_convergence_ = false;
 };

@@ -12,10 +12,10 @@ class VirtualCoupling {
   VirtualCoupling(const ProxyParameters& parameters, double haptic_rate_hz)
       : p_(parameters), haptic_rate_hz_(haptic_rate_hz) {}
 
-  // (4.15), (4.16): the force on the hand, N, towards the proxy (a damper can reverse it); zero while |u_hat|
-  // of (4.15) is r_c or less. u = HIP - P, since_frame_s = t - t_j, velocity = v_hat as a vector, ticks = the
-  // number of ticks since the last call, more than 1 after missed ones: the damper's rate is a difference
-  // over all of them.
+  // Returns the force on the hand by (4.15) and (4.16), N. It points towards the proxy; a damper can reverse
+  // it. It is zero while |u_hat| of (4.15) is at most r_c. u = HIP - P; since_frame_s = t - t_j; velocity =
+  // v_hat as a vector; ticks = the number of ticks since the last call, more than 1 after missed ticks. The
+  // rate of the damper is the difference since the last call divided by the time of these ticks.
   Vec3 force(const Vec3& u, double since_frame_s, const Vec3& velocity, double stiffness_N_per_m,
              double ticks = 1);
   // No contact: the next force starts without a finite difference.

@@ -32,8 +32,8 @@ class SurfaceVelocity {
   double m_per_s() const { return velocity_m_per_s_; }
   // v_hat as a vector, along the normal of the last frame.
   Vec3 vector() const { return velocity_m_per_s_ * normal_; }
-  // How long after a frame v_hat may be trusted, s: max_interval_s, or the newest interval without pauses
-  // when that is longer.
+  // The time after a frame during which v_hat may be used, s: the larger of max_interval_s and the newest
+  // interval between frames without its pause.
   double horizon_s() const { return horizon_s_; }
 
  private:

@@ -1,4 +1,4 @@
-// The interval between the frames of a stream, without its pauses.
+// The interval between the frames of a stream, without pauses of the stream.
 #pragma once
 
 #include <algorithm>
@@ -6,18 +6,18 @@
 
 namespace remote_touch {
 
-// The stream goes on after a pause as before, so a pause says nothing about when the next frame comes. An
-// interval is a pause as far as it is longer than kLongest times the usual interval before it. This limit
-// grows with every interval, so that a stream that becomes slower is believed after a few frames. The first
-// interval of a stream is always believed.
+// After a pause a stream continues at its former rate, so a pause does not predict when the next frame comes.
+// The part of an interval above a limit counts as a pause. The limit is kLongest times the previous interval
+// without its own pause. It grows with each longer interval, so a stream that becomes slower is accepted
+// after a few frames. The first interval of a stream has no limit.
 class UsualInterval {
  public:
-  // Up to two frames in a row may be lost, as with the default max_prediction_s of 0.1 s at 30 Hz.
+  // Two frames in a row may be lost without a pause, as with the default max_prediction_s of 0.1 s at 30 Hz.
   static constexpr double kLongest = 3;
 
-  // The interval that ends with the newest frame, s, without the part that is a pause.
+  // Returns the interval that ends with the newest frame, s, without the part that is a pause.
   double without_pause(double interval_s) const { return std::min(interval_s, longest_s_); }
-  // Ends an interval; one of 0 says nothing about the stream.
+  // Adds an interval that has ended. An interval of 0 is ignored.
   void add(double interval_s) {
     if (interval_s > 0) longest_s_ = kLongest * without_pause(interval_s);
   }

@@ -46,7 +46,7 @@ class RivalRenderer : public Renderer {
   double stiffness_N_per_m_;
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
-  double time_s_ = 0;  // of the present tick
+  double time_s_ = 0;  // of the current tick
 
  private:
   FrameOrder order_;

@@ -48,7 +48,7 @@ class TrackedSheetRenderer final : public Renderer {
   SheetTracker tracker_;
   std::shared_ptr<const NeighbourSearch> shown_;  // to the proxy
   double captured_s_ = 0;                         // of the newest frame in which the sheet was seen
-  UsualInterval usual_interval_;                  // of these frames
+  UsualInterval usual_interval_;                  // between such frames
   double hold_until_s_ = std::numeric_limits<double>::infinity();  // while the sheet is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the proxy is where the HIP was

@@ -34,7 +34,6 @@ Vec3 world(const ToolPose& pose, const Vec3& p_T) {
 SheetPatches::SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches,
                            const VoxelTool& tool, const Kernels& kernels)
     : unit_m_(unit_m),
-      reach_m_(tool.reach_m),
       places_(tool.mesh, kGroupRadius * unit_m, max_patches),
       patches_(std::max(max_patches, places_.groups().size())),
       shown_radius_m_(tool.reach_m + 2 * kMaxReach * unit_m) {

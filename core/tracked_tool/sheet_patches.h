@@ -96,7 +96,7 @@ class SheetPatches final : public PointChange {
   Vec3 out_of_swept(const Patch& patch, const ToolPose& now, const ToolPose& before) const;
   void note_query(Patch& patch, const ToolPose& pose) const;
 
-  const double unit_m_, reach_m_;
+  const double unit_m_;
   const ToolPlaces places_;
   std::vector<Patch> patches_;
   double shown_radius_m_ = 0;

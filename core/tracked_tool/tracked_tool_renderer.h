@@ -59,7 +59,7 @@ class TrackedToolRenderer final : public Renderer {
   std::shared_ptr<TiledCloud> changed_[2] = {std::make_shared<TiledCloud>(), std::make_shared<TiledCloud>()};
   int present_ = 0;
   double captured_s_ = 0;                                          // of the newest frame that is shown
-  UsualInterval usual_interval_;                                   // of these frames
+  UsualInterval usual_interval_;                                   // between such frames
   double hold_until_s_ = std::numeric_limits<double>::infinity();  // while what holds the tool is missing
   bool has_frame_ = false;
   bool placed_ = false;  // the tool is where the device was

@@ -43,7 +43,7 @@ void add_scorecard(Subcommands& commands) {
   add_scorecard_options(check_command, *check, "all that are stored");
   check_command->add_option("--stored", check->file, "the stored scorecard")->capture_default_str();
   auto [store_command, store] =
-      below.add("store", "store the numbers of a scorecard for check", command_scorecard_store);
+      below.add("store", "store the numbers of a scorecard for `scorecard check`", command_scorecard_store);
   add_scorecard_options(store_command, *store, "all");
   add_seeds(store_command, *store);
   store_command->add_option("--stored", store->file, "the file to write")->capture_default_str();
@@ -82,8 +82,9 @@ void add_compare(Subcommands& commands) {
       ->check(between(0, 1))
       ->capture_default_str();
   command
-      ->add_option("--alpha", compare->alpha,
-                   "significance level: probability of reporting better, worse or changed where nothing is")
+      ->add_option(
+          "--alpha", compare->alpha,
+          "significance level: probability of reporting better, worse or changed when nothing has changed")
       ->check(between(0, 1))
       ->capture_default_str();
   command->add_option("--json", compare->json, "also write the complete report to this JSON file");

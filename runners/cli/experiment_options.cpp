@@ -101,7 +101,7 @@ void add_merge_and_replay(Subcommands& commands) {
 
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
-  again->add_option("map", replay->map, "the result of a sweep")->required();
+  again->add_option("map", replay->map, "the result of a sweep; `run` replays a live session")->required();
   again
       ->add_option(
           "--cell", replay->cell,

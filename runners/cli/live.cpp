@@ -102,7 +102,8 @@ std::unique_ptr<LiveView> open_view(const CommandLine& line, const LiveRequest& 
 // Tells the address, and opens it where there is a desktop. Returns the file that leads there; empty: none.
 // The page only shows the run if the session has another device.
 std::string lead_to(const LiveView& view, const std::string& device) {
-  std::printf("look at it%s: %s\n", device == "browser:" ? ", and touch it" : "", view.address().c_str());
+  std::printf("open this page to see the run%s: %s\n", device == "browser:" ? " and to move the hand" : "",
+              view.address().c_str());
   std::fflush(stdout);
   return show_in_browser(view.address());
 }
@@ -153,9 +154,11 @@ void note_failure(std::string& lost, const std::function<void()>& write) {
 void print_files(const LiveRequest& request) {
   if (!request.record.empty())
     report_line("recording " + request.record + "; until the end it is " +
-                journal_of(request.record).string() + ", which stays if the program does not reach the end");
+                journal_of(request.record).string() + ", which is kept if the program is interrupted");
   else if (!request.output.empty())
-    report_line(request.output + " is in memory until the end; only --record outlasts the program");
+    report_line(
+        request.output +
+        " is only in memory until the end; use --record to keep the session if the program is interrupted");
 }
 
 }  // namespace

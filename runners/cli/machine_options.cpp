@@ -20,7 +20,7 @@ void add_live(Subcommands& commands) {
       "haptic device, SCHEME:ADDRESS; see remote-touch devices (default: sim:, with --view browser:)");
   CLI::Option* const view =
       command->add_flag("--view", live->view, "show the run in a browser, where the mouse moves the hand");
-  command->add_option("--view-port", live->view_port, "its port on 127.0.0.1; 0: any that is free")
+  command->add_option("--view-port", live->view_port, "port of the page on 127.0.0.1; 0: any free port")
       ->check(CLI::Range(0, 65535))
       ->needs(view)
       ->capture_default_str();
@@ -30,7 +30,7 @@ void add_live(Subcommands& commands) {
       ->check(between(1e-3, 1e6));
   command->add_option(
       "--record", live->record,
-      "record device and sensor to this HDF5 file; until the end FILE.unfinished has what is recorded");
+      "record device and sensor to this HDF5 file; until the end the recording is FILE.unfinished");
   command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
   command->add_flag("--strict", live->strict,
                     "a note on the session is an error: exit code 2, after everything is stored");
@@ -38,7 +38,7 @@ void add_live(Subcommands& commands) {
       "--report", live->report,
       "write timing and counts to this HDF5 file (a figure for scripts/plot); also on SIGUSR1");
   auto [recover, kept] = commands.add(
-      "recover", "make a recording of what a live session that did not end has recorded", command_recover);
+      "recover", "make a recording of the file that an interrupted live session has left", command_recover);
   recover
       ->add_option("file", kept->file, "FILE.unfinished, which live --record FILE leaves; it stays as it is")
       ->required();
@@ -62,7 +62,7 @@ void add_cache(Subcommands& commands) {
       command_cache);
   command
       ->add_option("--max", cache->max_MB,
-                   "remove what was used longest ago until at most so many MB are left; 0: everything")
+                   "remove the files used longest ago until at most this many MB are left; 0: all files")
       ->check(between(0, 1e9));
 }
 

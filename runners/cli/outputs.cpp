@@ -37,7 +37,7 @@ void require(const CommandLine& line, const std::string& output, const std::vect
   for (const auto* all : {&inputs, &line.plugins})
     for (const std::string& input : *all) require_different_file(output, input);
   if (is_journal(output))
-    throw InputError(output, "is an unfinished recording, which nothing overwrites: expected another file");
+    throw InputError(output, "is an unfinished recording and is never overwritten: expected another file");
   if (!line.force && !is_ours && holds_something(output))
     throw InputError(output, std::string("is there already and is no ") + kind +
                                  " of this program: expected another file, or --force");

@@ -11,10 +11,11 @@
 
 namespace remote_touch {
 
-// Throws InputError, before any work is done for it, unless the result can be written there: in a writable
-// folder, over none of the inputs and no plug-in, and over nothing but a result of this program, an empty
-// file or /dev/null, or with --force; and while no other process writes it. That is so until the lock is
-// destroyed. An unfinished recording is never overwritten.
+// Locks the output until the lock is destroyed. Throws InputError, before any work is done for the output,
+// unless the result can be written there. The folder must be writable. The output must be none of the inputs
+// and no plug-in. An existing file must be a result of this program, an empty file or /dev/null, unless
+// --force is given. No other process may be writing it. An unfinished recording is never overwritten, not
+// even with --force.
 [[nodiscard]] FileLock lock_output(const CommandLine& line, const std::string& output,
                                    const std::vector<std::string>& inputs);
 // The same for a text report, without a lock: an existing file may be replaced if it begins with that

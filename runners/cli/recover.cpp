@@ -15,7 +15,7 @@ int command_recover(const CommandLine& line, const RecoverRequest& request) {
   if (made.left_out_bytes > 0)
     std::printf("  note: the last %" PRIu64 " bytes of %s are no whole block\n", made.left_out_bytes,
                 request.file.c_str());
-  std::printf("  %s stays; remove it when you need it no more\n", request.file.c_str());
+  std::printf("  %s is unchanged; remove it when you no longer need it\n", request.file.c_str());
   return kDone;
 }
 

@@ -1,5 +1,5 @@
-// The subcommands of the command line: each function declares the options of some commands, and which command
-// they start.
+// The subcommands of the command line. Each add_commands_...() declares the options of some commands, and the
+// function that each command starts.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,8 @@ class Validator;
 
 namespace remote_touch {
 
-// The number of threads that a command starts. 0: OpenMP decides; less: the command starts none.
+// Returns the number of threads of a command that has no option for it. 0: OpenMP decides; -1: the command
+// starts none.
 int usual_threads(const std::string& command);
 template <class Request>
 int threads_of(const std::string& command, const Request& request) {
@@ -28,8 +29,9 @@ int threads_of(const std::string& command, const Request& request) {
     return usual_threads(command);
 }
 
-// Adds subcommands to app. When the user asks for one, act becomes the call of its function and threads the
-// number of threads that it starts. The request, which the options fill, lives as long as act.
+// Adds subcommands to `app`. When the user calls one of them, `act` becomes the call of its function, and
+// `threads` becomes the number of threads that it starts. The request, which the options fill, lives as long
+// as `act`.
 struct Subcommands {
   CLI::App& app;
   CommandLine& line;
@@ -45,12 +47,13 @@ struct Subcommands {
         [&line = line, request, run] { return run(line, *request); });
     return {command, request.get()};
   }
-  // threads_wanted and start are called when the user asks for this command, and for none below it.
+  // threads_wanted() is called and `act` becomes `start` when the user calls this command itself, but not
+  // when the user calls a subcommand of it.
   CLI::App* declare(const char* name, const char* meaning, std::function<int()> threads_wanted,
                     std::function<int()> start);
 };
 
-// A number from low to high. CLI::Range lets NaN through.
+// Accepts numbers from low to high. Rejects NaN, which CLI::Range accepts.
 CLI::Validator between(double low, double high);
 
 void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning);

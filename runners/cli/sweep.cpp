@@ -87,7 +87,7 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, 
   std::printf("\n  file: %.3g MB while it runs, less when it is finished\n",
               1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
   for (const std::string& note : note_lines(sample.tried))
-    std::printf("  note, of those tried: %s\n", note.c_str());
+    std::printf("  note on the runs that were tried: %s\n", note.c_str());
   if (strict) refuse_notes(sample.tried);
   return kDone;
 }

@@ -9,8 +9,8 @@ namespace remote_touch {
 
 std::string extent_text(const SweepResult& result);  // "76 x 71"
 
-// Cells, runs, each measure's mean and range, and the notes on the runs as counts by kind. Returns kDone, or
-// kCheckFailed when a run failed.
+// Prints the cells, the runs, the mean and range of each measure, and the number of runs with each kind of
+// note. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepResult& result);
 
 }  // namespace remote_touch

@@ -10,10 +10,10 @@ namespace {
 constexpr double kMaxTick_s = 0.01;  // of the haptic rates that an experiment may have
 // The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to it, and a stiffer
 // hand would swing five times in a tick.
-constexpr double kMaxStiffness = 1000;
+constexpr double kMaxNormalisedStiffness = 1000;
 
 std::string validate_spring(const char* name, double stiffness, double mass, const char* mass_name) {
-  const double max = kMaxStiffness * mass / (kMaxTick_s * kMaxTick_s);
+  const double max = kMaxNormalisedStiffness * mass / (kMaxTick_s * kMaxTick_s);
   if (stiffness <= max) return {};
   return name + (" = " + std::to_string(stiffness)) + ": expected at most " + std::to_string(max) +
          " for this " + mass_name;

@@ -29,26 +29,26 @@ Parameters parameters(OperatorSettings& s);
 std::string validate(const OperatorSettings& s);
 
 // m x'' = f + g k (x_i - x) + c (g x_i' - x'), with f the device's force, x_i the intended position and g the
-// grip: the hand's spring and damper to the intended position have g k and g c, and (1 - g) c damps the
-// motion of a hand that opens. Rotations have the same form about the pose at the beginning of the tick,
-// with rotation vectors in world axes and the inertia inertia_kg_m2 about every axis.
+// grip. The hand's spring and damper to the intended position are g k and g c, and (1 - g) c damps the motion
+// of a hand that opens. Rotations have the same form. They are rotation vectors in world axes relative to the
+// pose at the beginning of the tick, and the inertia is inertia_kg_m2 about every axis.
 //
 // f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep). The
-// device is a zero-order hold, which gives energy to a hand that a spring pushes. So a stiff device can make
-// it unstable.
+// device is a zero-order hold, which adds energy to a hand that a spring pushes. So a stiff device can make
+// the hand unstable.
 class OperatorModel {
  public:
   // pre: validate(settings) is empty.
   OperatorModel(const OperatorSettings& settings, double tick_s);
 
-  // Returns the hand's pose at time_s, if the path is at `intended` then and the device has exerted
-  // device_wrench since the last call. After n ticks without a call it makes one step of n ticks. The first
-  // call puts the hand onto the path, at rest. Buttons come from the settings.
+  // Returns the hand's pose at time_s. intended: where the path is then. device_wrench: what the device has
+  // exerted since the last call. If the last call was n ticks ago, the hand makes one step of n ticks. The
+  // first call puts the hand onto the path, at rest. Buttons come from the settings.
   DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
 
-  // The energies of the last step, translation and rotation; zero before the second call. What a change of
-  // the grip between two ticks adds to the springs, half the change of the stiffness times the squared
-  // distance, is not in them.
+  // Returns the energies of the last step, translation plus rotation; zero before the second call. A change
+  // of the grip between two ticks adds energy to the springs: half the change of the stiffness times the
+  // squared distance. This energy is not included.
   StepEnergy last_energy() const;
 
  private:

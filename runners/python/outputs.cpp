@@ -20,7 +20,7 @@ OutputFile::OutputFile(const std::string& file, bool force, const std::string& s
   const bool holds_something =
       std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
   if (is_journal(file))
-    throw InputError(file, "is an unfinished recording, which nothing overwrites: expected another file");
+    throw InputError(file, "is an unfinished recording and is never overwritten: expected another file");
   if (holds_something && !force && !has_result_header(file))
     throw InputError(file, "is there already and is no result: expected another file, or force=True");
   require_writable(file);

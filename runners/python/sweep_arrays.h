@@ -9,7 +9,7 @@
 namespace remote_touch {
 
 // {"axes", "measures", "error", "replicates", "attributes"}: measures are arrays over the axes and the
-// replicates; the array `notes` has a bit for each name of the attribute note_kinds.
+// replicates. So is `notes`, whose elements have one bit for each name of the attribute note_kinds.
 pybind11::dict to_python(StoredSweep stored);
 
 }  // namespace remote_touch

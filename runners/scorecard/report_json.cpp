@@ -37,6 +37,8 @@ const char* better_word(Better better) {
       return "smaller";
     case Better::near_zero:
       return "near_zero";
+    case Better::not_negative:
+      return "not_negative";
     case Better::neither:
       break;
   }

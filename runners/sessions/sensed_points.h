@@ -1,4 +1,4 @@
-// Statistics of the points in a sensor's frames, for the line on what a session has read.
+// Statistics of the points in a sensor's frames, for the line that reports what a session has read.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace remote_touch {
 
 class SensedPoints {
  public:
-  // Counts a complete frame, see is_complete(). Allocates nothing.
+  // Adds the points of a frame. Allocates nothing. pre: is_complete(frame, view).
   void add(const SensorFrame& frame, const SensorView& view);
 
   std::int64_t frames() const { return frames_; }
-  // "68.3 % of 3686400 points measured, depth 0.41 to 2.98 m, with colours". The depth is along the optical
-  // axis.
+  // Returns a text such as "68.3 % of 3686400 points measured, depth 0.41 to 2.98 m, with colours". The depth
+  // is along the optical axis.
   std::string text() const;
 
  private:
@@ -27,7 +27,7 @@ class SensedPoints {
   bool has_colours_ = false;
 };
 
-// "640 x 480 pixels", or "clouds of points".
+// Returns a text such as "640 x 480 pixels", or "clouds of points".
 std::string layout_text(const SensorView& view);
 
 }  // namespace remote_touch

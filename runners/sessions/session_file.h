@@ -24,7 +24,7 @@ struct SessionTick {
   int gate = 0;             // 0 waiting, 1 ramping, 2 engaged, 3 latched
 };
 
-// The attribute `ended` of a recording that was recovered.
+// The value of the attribute `ended` of a recording that was interrupted and then recovered.
 inline constexpr const char* kInterruptedRecording = "interrupted";
 
 // A live parameter that was changed. tick: number of the first tick with the new value; of a scenario's
@@ -46,29 +46,29 @@ struct SessionLayout {
 };
 SessionLayout layout_of(const SensorView& view);
 
-// A frame as a session stores it. Images are rows of deflated_row(); points and their colours are not
-// compressed.
+// A frame in the form in which a session stores it. Images are rows of deflated_row(). Points and their
+// colours are not compressed.
 struct StoredFrame {
   std::int32_t number = 0;
   double captured_s = 0;
   std::uint64_t fixtures_off = 0;
   std::uint32_t point_count = 0;
-  std::string depth, colour;  // the bytes; depth: of a cloud its points, float
+  std::string depth, colour;  // the bytes; depth of a cloud: its points, as float
 };
-// pre: is_complete(frame, view) of the view that has this layout.
+// pre: is_complete(frame, view), and layout is layout_of(view).
 StoredFrame stored_frame(const SessionLayout& layout, const SensorFrame& frame, double captured_s,
                          std::uint64_t fixtures_off);
 
-// The attributes of a session: schema, view, provenance, and live_parameters (their names). registered: X_WC
-// of the camera, including its registration.
+// Returns the attributes of a session: schema, view, provenance, and live_parameters (their names).
+// registered: X_WC of the camera, including its registration.
 TextAttributes session_attributes(const SensorView& view, const RigidTransform& registered,
                                   const TextAttributes& provenance,
                                   const std::vector<std::string>& live_parameters);
 
 // /ticks: number, position, orientation, buttons (as the renderer got them), taken, force and torque as
-// written to the device, gate. /frames: number, captured, fixtures_off, depth, colour; of clouds point_count,
-// points, colour. /changes: tick, parameter, value. The root's attributes: those of session_attributes(), and
-// those of finish().
+// written to the device, gate. /frames: number, captured, fixtures_off, and for images depth and colour, for
+// clouds point_count, points and colour. /changes: tick, parameter, value. The root's attributes: those of
+// session_attributes(), and those of finish().
 class SessionWriter {
  public:
   SessionWriter(const std::filesystem::path& target, const SessionLayout& layout,
@@ -85,7 +85,7 @@ class SessionWriter {
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
     append(stored_frame(layout_, frame, captured_s, fixtures_off));
   }
-  // attributes: more of them, known at the end only.
+  // attributes: further attributes, which are known only at the end.
   void finish(const TextAttributes& attributes = {});
 
  private:
@@ -109,8 +109,8 @@ class SessionReader {
   explicit SessionReader(Hdf5Reader file);
 
   std::string config() const;  // the experiment that was run, as JSON
-  // Why the recording ended: kInterruptedRecording where its program did not end it; empty in older
-  // recordings.
+  // Why the recording ended. kInterruptedRecording: its program did not end it. Empty in recordings of
+  // earlier versions.
   std::string ended() const;
   double haptic_rate_hz() const { return haptic_rate_hz_; }
   const SensorView& view() const { return view_; }

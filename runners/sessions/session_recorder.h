@@ -1,6 +1,6 @@
-// Records a live session so that nothing loses it: the recording grows in a journal beside its file
-// (analysis/storage/block_journal.h), and becomes a session file at the end. If there is no end (the program
-// is killed, the disk is full), the journal stays.
+// Records a live session so that no failure of the program loses it. While the session runs, the recording is
+// a journal beside its file (analysis/storage/block_journal.h). At the end a session file is made of the
+// journal. If there is no end, because the program is killed or the disk is full, the journal stays.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,37 @@
 
 namespace remote_touch {
 
-// Members throw InputError naming the target when it cannot be written. Not for use from several threads at
-// once, except sync().
+// Members throw InputError, which names the target, if it cannot be written. Not for use from several threads
+// at once, except sync().
 class SessionRecorder {
  public:
-  // Fewer ticks than these are in memory only, unless they took a frame that is not written yet.
+  // Ticks are written in blocks of at least this many, and are only in memory until then. More ticks wait if
+  // they took a frame that is not written yet.
   static constexpr std::size_t kTicksInABlock = 100;
 
   // Throws InputError if the journal of the target exists already.
   SessionRecorder(const std::filesystem::path& target, const SensorView& view,
                   const RigidTransform& registered, const TextAttributes& provenance,
                   const std::vector<std::string>& live_parameters = {});
-  // Keeps the journal if finish() was not called and anything was recorded.
+  // Without finish(): keeps the journal if a tick or a frame was recorded, and removes it otherwise.
   ~SessionRecorder();
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
-  // A change comes before the tick that has its number.
+  // A change must be appended before the tick that has its number.
   void append(const SessionTick& tick);
   void append(const SessionChange& change) { changes_.push_back(change); }
   // pre: is_complete(frame, view).
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // Makes what was written until now outlast a power cut. Another thread may call it.
+  // Makes everything that was written until now survive a power cut. Another thread may call it.
   void sync() const { journal_.sync(); }
-  // Makes the session file, with these attributes also, and then removes the journal. When it throws, the
-  // journal stays, and is whole. attributes: `ended`, why the run ended, and others known at the end only.
+  // Makes the session file, with these attributes added, and then removes the journal. If it throws, the
+  // journal stays, with every block that was written. attributes: `ended`, why the run ended, and others that
+  // are known only at the end.
   void finish(const TextAttributes& attributes);
 
   // Writes the ticks in memory, if there is room. Returns "FILE keeps N ticks and M frames; ..."; empty if
-  // finish() was done or nothing is kept.
+  // finish() has succeeded or nothing is kept.
   std::string keep() noexcept;
 
  private:

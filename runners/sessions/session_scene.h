@@ -37,7 +37,8 @@ class SessionScene final : public Scenario {
     return session_.fixtures_off(static_cast<std::size_t>(frame));
   }
   std::string input() const override;
-  // Frames that the live renderer got and this run did not reach; a recording that was interrupted.
+  // Notes if this run did not reach all frames that the live renderer got, or if the recording was
+  // interrupted.
   std::vector<Note> input_notes() const override;
 
  private:
@@ -46,7 +47,7 @@ class SessionScene final : public Scenario {
   const std::string path_;
   const SessionReader session_;
   std::vector<double> arrives_s_;  // infinite where the renderer never got it
-  mutable SensedPoints sensed_;    // of the frames that were read, each once
+  mutable SensedPoints sensed_;    // of the frames that were read; each frame counts once
   mutable std::vector<bool> is_read_;
 };
 

@@ -234,7 +234,7 @@ UnfinishedSession make(const std::filesystem::path& journal, const std::filesyst
   if (!is_ours) {
     const UnfinishedSession found = read_unfinished(journal);
     if (found.is_growing)
-      throw InputError(journal.string(), "is being recorded: expected once its program has ended");
+      throw InputError(journal.string(), "is being recorded: expected a recording whose program has ended");
     if (found.ticks == 0 && found.frames == 0)
       throw InputError(journal.string(),
                        "holds no whole tick and no whole frame: expected a recording with some");

@@ -19,20 +19,20 @@ struct RunReport {
 // end_s: the time of the first tick that was not simulated.
 RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace, double end_s);
 
-// A note if the points around the first contact are so far apart that a proxy of this contact radius falls
-// through between them, 4.2.1: their median distance is larger than sqrt(2) contact_radius_m. None without a
-// contact. It generates only the points within 3 contact_radius_m of that contact, because sweeps call it
-// too.
+// Returns a note if a proxy of this contact radius falls through between the points around the first contact,
+// 4.2.1: if the median distance of these points to their nearest neighbour is larger than sqrt(2)
+// contact_radius_m. Returns no note without a contact. Generates only the points within 3 contact_radius_m of
+// the contact, because sweeps call it too.
 std::vector<Note> spacing_notes(const Scenario& scenario, const Trace& trace, double contact_radius_m,
                                 const Kernels& kernels);
 
-// "no contact", for a run or a session in which nothing was touched.
+// The note "no contact", for a run or a session in which nothing was touched.
 Note no_contact_note();
 
 // Adds a note for each phase of the scene or of the hand that begins at end_s or later.
 void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes);
 
-// "  read LINE\n" for each input and "  note: LINE\n" for each note.
+// Returns "  read LINE\n" for each input and "  note: LINE\n" for each note.
 std::string text_of(const RunReport& report);
 
 // Appends the attributes `frames_read` and `notes`, one line for each entry; an attribute without a line is

@@ -1,4 +1,4 @@
-// Watches whether the hand stays on the surface that the camera sees, in runs whose motion was planned on
+// Checks whether the hand stays on the surface that the camera sees, in runs whose motion was planned on
 // depth images.
 #pragma once
 
@@ -17,17 +17,17 @@ class NeighbourSearch;
 
 class SurfaceWatch {
  public:
-  // Both must outlive the watch. scenario: without faults, as the trajectory was planned.
+  // Both must outlive the watch. scenario: without faults, because the trajectory was planned on it.
   SurfaceWatch(const Scenario& scenario, const Trajectory& trajectory)
       : scenario_(scenario), trajectory_(trajectory) {}
 
-  // Compares the hand at the time of a tick with the newest frame that was captured by then.
+  // Compares the hand at the time of a tick with the newest frame that was captured until then.
   void add(const Vec3& hand_W, double time_s);
 
-  // "behind the surface": the hand was farther behind what its pixel shows than the motion plans at most.
-  // "off the surface": the motion is meant to touch, but nothing was measured around the hand's pixel, the
-  // hand was outside the image, or farther in front of the surface than planned. Empty without such ticks,
-  // and for motions that are not planned on images.
+  // Returns up to two notes. "behind the surface": in some ticks the hand was farther behind the surface at
+  // its pixel than the motion plans at most. "off the surface": in some ticks the motion was meant to touch,
+  // but nothing was measured around the hand's pixel, the hand was outside the image, or the hand was farther
+  // in front of the surface than planned. Returns no notes for motions that are not planned on images.
   std::vector<Note> notes() const;
 
  private:
@@ -45,10 +45,10 @@ class SurfaceWatch {
   double first_off_s_ = 0, first_behind_s_ = 0, deepest_m_ = 0, allowed_m_ = 0;
 };
 
-// The depth that an image shows at a position p_C of the camera's frame, in front of the camera: the median
-// of the depths that were measured within reach_m of the viewing ray, at the depth of p_C, and within one
-// pixel at least. NaN if none was measured, or p_C is outside the image. X_CW: the world in the camera's
-// frame.
+// Returns the depth of the surface that an image shows at p_C, a position in the camera's frame. It is the
+// median of the depths that were measured within a radius around the pixel of p_C. The radius is reach_m at
+// the depth of p_C, but at least 1 pixel and at most 32 pixels. Returns NaN if nothing was measured there, or
+// if p_C is outside the image or not in front of the camera. X_CW: the world in the camera's frame.
 double shown_depth(const PointCloud& cloud, const RigidTransform& X_CW, const Vec3& p_C, double reach_m);
 
 }  // namespace remote_touch

@@ -36,6 +36,7 @@ struct Sweep::Definition {
 
   // The experiment of one run, which has the values that the result states of its cell.
   Experiment run(std::size_t cell, int replicate) const;
+  void refuse_other_entry(const SweepAxis& axis, const std::string& label) const;
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
   void check_cells(const std::string& label);
@@ -139,6 +140,18 @@ Experiment Sweep::Definition::run(std::size_t cell, int replicate) const {
   return made;
 }
 
+// The experiment has the settings of its own renderer, scenario and trajectory, which another one may not
+// know.
+void Sweep::Definition::refuse_other_entry(const SweepAxis& axis, const std::string& label) const {
+  const std::vector<std::string> keys = path_keys(axis.parameter);
+  if (keys.size() != 2 || keys[1] != "name" || !experiment.contains(keys[0])) return;
+  for (const Json& value : axis.values)
+    if (const Json* const own = find_value(experiment, keys); own && value != *own)
+      throw InputError(label + ": axis " + axis.parameter + " = " + shown(value),
+                       "expected the axis " + keys[0] + ", with values like {\"name\": " + shown(value) +
+                           "} that may also have settings");
+}
+
 void Sweep::Definition::check_axes(const std::string& label) const {
   std::set<std::string> names = {"replicate", "state", "notes", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
@@ -150,6 +163,7 @@ void Sweep::Definition::check_axes(const std::string& label) const {
         section == "live" || section == "safety")
       throw InputError(label + ": axis " + axis.parameter,
                        "only live runs use section " + section + ": expected another parameter");
+    refuse_other_entry(axis, label);
     if (!names.insert(axis.name()).second)
       throw InputError(label + ": axis " + axis.parameter,
                        "its name " + axis.name() + " is taken: expected once");

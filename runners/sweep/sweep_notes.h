@@ -8,12 +8,12 @@
 
 namespace remote_touch {
 
-// A line for each kind of note that a finished run has:
+// Returns a line for each kind of note that a finished run has:
 //   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"
-// --replicate follows where there are several. Empty for a result that was stored without notes.
+// If there are several replicates, --replicate follows. Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
 
-// Throws InputError with the first of the lines, for --strict. Does nothing without a note.
+// For --strict: throws InputError with the first of these lines. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
 
 }  // namespace remote_touch

@@ -18,10 +18,10 @@ struct SweepRunOptions {
   SideBySide runs = side_by_side;                      // how runs are distributed over threads
 };
 
-// Does every pending run, in parallel; bits, and the notes of each run, do not depend on threads or order. A
-// run that fails is marked and its error stored, and the others go on. Throws Interrupted, or the exception
-// of finished, after the runs in progress have ended. Returns how many runs found no memory: they are pending
-// still.
+// Does every pending run, in parallel. The bits and the notes of a run do not depend on threads or order. A
+// run that fails is marked and its error is stored; the other runs continue. Throws Interrupted, or the
+// exception of `finished`, after the runs in progress have ended. Returns the number of runs for which there
+// was no memory; they are still pending.
 std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
 
 // Adds the next round of refinement: its runs become pending. False if there is none, see next_round().

@@ -49,7 +49,7 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
   if (!(settings.clearance_m < surface_m && -settings.depth_m < surface_m))
     throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
                                                             millimetres(surface_m) +
-                                                            " from the surface: expected smaller");
+                                                            " from the surface: expected smaller values");
 }
 
 bool ImagePress::has_support(const DepthImage& image, int pixel) const {

@@ -14,9 +14,10 @@
 
 namespace remote_touch {
 
-// If a frame shows no gap-free surface around the pixel, the device lifts off the last one that was shown
-// until there is another. If something has come between meanwhile, so that the device would be farther behind
-// it than when it presses, it moves in front of everything that the newest frame shows around the pixel.
+// If the newest frame shows no surface without gaps around the pixel, the device lifts off: it waits in front
+// of the surface that was shown last, until a frame shows a surface again. Something else may appear in front
+// of this waiting position meanwhile. If the device would then be farther behind it than when it presses, the
+// device moves in front of everything that the newest frame shows around the pixel.
 class ImagePress final : public Trajectory {
  public:
   struct Settings {
@@ -32,24 +33,24 @@ class ImagePress final : public Trajectory {
     double margin_m = 0.01;
   };
 
-  // The scenario must outlive the trajectory. Throws InputError when its frames are not organised images,
-  // when the first frame shows nothing to touch at the pixel, or when the device would be behind the camera.
+  // The scenario must outlive the trajectory. Throws InputError if its frames are not organised images, if
+  // the first frame shows nothing to touch at the pixel, or if the device would be behind the camera.
   ImagePress(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override;
   double duration_s() const override { return 0; }
   std::vector<Phase> phases() const override { return {{"the press", settings_.press_at_s}}; }
-  // The press is meant to touch from the moment at which it reaches the surface.
+  // The press is meant to touch from the time at which it reaches the surface.
   std::optional<SurfacePlan> surface_plan(double time_s) const override;
   std::vector<Note> notes() const override;
   int row() const { return row_; }
   int column() const { return column_; }
 
  private:
-  // The surface at the pixel in one frame.
+  // What one frame shows at the pixel. Depths are in m along the optical axis.
   struct Seen {
-    double supported_m = 0;  // its depth; NaN: no surface without gaps
-    double shown_m = 0;      // the median depth measured within bridge_m / 2; NaN: none
-    double nearest_m = 0;    // the least depth measured within the margin; infinite: none
+    double supported_m = 0;  // depth of the surface; NaN: no surface without gaps
+    double shown_m = 0;      // median of the depths measured within bridge_m / 2; NaN: none
+    double nearest_m = 0;    // least depth within margin_m or bridge_m / 2, the larger one; infinite: none
   };
   const Seen& seen(int frame) const;
   void choose_pixel(BridgeableImage image);

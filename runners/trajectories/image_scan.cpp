@@ -71,7 +71,7 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
     if (!(z > 0))
       throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
                                                               millimetres(depth_at(u)) +
-                                                              " from the surface: expected smaller");
+                                                              " from the surface: expected smaller values");
     return Vec3(layout.X_WC * unproject(camera, u, scan_.row, z));
   };
   // The offset from the surface at column u of a flight between two columns, in front of both surfaces and of

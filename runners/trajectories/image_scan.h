@@ -1,7 +1,7 @@
-// A device that scans along an image row of the first frame, a set depth behind the surface that the camera
-// saw: the default path over any recording. It touches surfaces that the camera saw without gaps, and lifts
-// off over depth edges and holes: behind those there are no points to hold the proxy. While it is lifted, it
-// is in front of everything that the first frame shows on its way.
+// A device that scans along an image row of the first frame, at a set depth behind the surface that the
+// camera saw. It is the default path over any recording. The device touches surfaces that the camera saw
+// without gaps. It lifts off over depth edges and holes, because there are no points behind them to hold the
+// proxy. While it is lifted, it is in front of everything that the first frame shows along its way.
 #pragma once
 
 #include <string>
@@ -32,8 +32,8 @@ class ImageScan final : public Trajectory {
     double margin_m = 0.01;
   };
 
-  // Throws InputError when the scenario's frames are not organised images, when the row shows no patch to
-  // touch, or when a part of the path would be behind the camera.
+  // Throws InputError if the scenario's frames are not organised images, if the row shows no patch to touch,
+  // or if a part of the path would be behind the camera.
   ImageScan(const Settings& settings, const Scenario& scenario);
   DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
   double duration_s() const override { return path_.duration_s(); }

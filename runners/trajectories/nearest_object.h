@@ -11,7 +11,7 @@ namespace remote_touch {
 struct NearestObject {
   double nearest_depth_m = 0;   // depth of its nearest part (5th percentile)
   int row = 0, column = 0;      // medians of its pixels
-  std::vector<int> pixels;      // row * width + column of each, in no order
+  std::vector<int> pixels;      // row * width + column of each pixel, in no order
   bool is_whole_scene = false;  // no large object was found
 };
 
@@ -21,9 +21,9 @@ struct NearestObject {
 // key.
 NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsics& camera);
 
-// The same for an image that may be sparse: pixels of one patch touch each other, so an object of scattered
-// pixels is found only with its holes closed. That object is taken if the measured pixels alone show none, or
-// only one that is farther away.
+// The same for an image that may be sparse. The pixels of one object must touch each other, so an object of
+// scattered pixels is found only after its holes are closed. The object found with closed holes is returned
+// if the measured pixels alone show no large object, or only one that is more than 10 mm farther away.
 NearestObject nearest_large_object(BridgeableImage& image, const CameraIntrinsics& camera);
 
 }  // namespace remote_touch

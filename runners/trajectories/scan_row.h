@@ -12,7 +12,7 @@ struct ScanPatch {
   int first_column = 0, last_column = 0;
 };
 
-// -1: chosen from the image.
+// A row or a column of -1 is chosen from the image.
 struct ScanRowRequest {
   int row = -1;
   int first_column = -1, last_column = -1;
@@ -25,17 +25,20 @@ struct ScanRowRequest {
 struct ScanRow {
   int row = 0;
   std::vector<ScanPatch> patches;  // from left to right; empty: there is nothing to touch
-  std::vector<double> depth_m;     // supported_depth() of each column, NaN outside the patches' surfaces
-  double edge_jump_m = 0;          // the largest jump that was taken as surface
+  std::vector<double> depth_m;     // supported_depth() of each column; NaN: none, or beyond span_m
+  double edge_jump_m = 0;          // the largest depth jump that was taken as surface
   bool bridges_holes = false;      // holes up to bridge_m were closed
   bool is_on_object = false;       // a patch touches the nearest large object
 };
 
-// Tries edge_jump_m, twice and four times that, each without and with holes closed, because a rough scan is
-// better than none. Each time it tries the requested row; without one, the rows of the nearest large object
-// from its middle outwards. The result is the first row with a patch on the object; if there is none, the
-// first with a patch. A requested row that does not cross the object needs no patch on it. pre: the requested
-// row and columns are in the image.
+// Returns the first row with a patch on the nearest large object. If there is none, it returns the first row
+// with a patch. A requested row that does not cross the object needs no patch on it. Without a patch in any
+// row, `patches` is empty.
+//
+// Six settings are tried in turn, because a rough scan is better than none: edge_jump_m, twice and four times
+// that, each first without and then with closed holes. Each setting is tried on the requested row. Without a
+// requested row it is tried on the rows of the object, from its middle outwards. pre: the requested row and
+// columns are in the image.
 ScanRow find_scan_row(const DepthImage& image, const CameraIntrinsics& camera, const ScanRowRequest& request);
 
 }  // namespace remote_touch

@@ -21,19 +21,19 @@ struct Support {
 // an edge or the image's border.
 double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support);
 
-// Default of bridge_m. The proxy does not fall into a hole of this diameter, even if the depth of its rim
-// differs by edge_jump_m: (0.008 / 2)^2 + (0.006 / 2)^2 = r_c^2 with the default radius r_c = 0.005 m.
+// The default of bridge_m. The proxy does not fall into a hole of this diameter, even if the depth of its rim
+// varies by edge_jump_m: (0.008 / 2)^2 + (0.006 / 2)^2 = r_c^2 with the default radius r_c = 0.005 m.
 inline constexpr double kBridge_m = 0.008;
 
-// The image with its small holes closed. A measured pixel covers the pixels whose viewing rays pass it, at
-// its depth, at no more than hole_m / 2, so that no closed hole contains a disc wider than hole_m. A hole
-// takes the depth of the nearest measured pixel at its rim that covers it; of two at the same distance, of
-// the one nearer to the camera. Measured pixels keep their depth. Without holes the result is the image
-// itself.
+// Returns the image with its small holes closed. A measured pixel at the rim of a hole covers the pixels
+// whose viewing rays pass it at a distance of at most hole_m / 2, at its depth, and at most 64 pixels away.
+// So no closed hole contains a disc wider than hole_m. A covered pixel without a depth gets the depth of the
+// nearest pixel that covers it. Of two at the same distance it gets the depth of the one nearer to the
+// camera. Measured pixels keep their depth. Without holes the result is the image itself.
 DepthImage bridged(const DepthImage& image, double focal_px, double hole_m);
 
-// A depth image, and the same with its holes closed. The second is computed when it is used first, because
-// most images need none.
+// A depth image, and the same image with its holes closed. The second one is computed on its first use,
+// because most images do not need it.
 class BridgeableImage {
  public:
   BridgeableImage(DepthImage measured, double focal_px, double hole_m)
@@ -51,19 +51,19 @@ class BridgeableImage {
 struct PixelWindow {
   int first_column = 0, last_column = 0, first_row = 0, last_row = 0;
 };
-// The least depth that was measured in the part of the window that is in the image; infinite without a
-// measurement.
+// Returns the least depth that was measured in the part of the window that is in the image; infinite if none
+// was.
 double nearest_depth(const DepthImage& image, const PixelWindow& window);
 
-// The median of the depths that were measured in the part of the window that is in the image; NaN without a
-// measurement.
+// Returns the median of the depths that were measured in the part of the window that is in the image; NaN if
+// none was.
 double median_depth(const DepthImage& image, const PixelWindow& window);
 
-// A clearance in front of a surface at that depth, or half way between it and the camera if the clearance
-// does not fit.
+// Returns the depth at the clearance in front of a surface, or half the depth of the surface if the clearance
+// is larger than that half.
 double in_front_of(double depth_m, double clearance_m);
 
-// "8 mm", for messages.
+// Returns a text such as "8 mm", for messages.
 std::string millimetres(double length_m);
 
 }  // namespace remote_touch

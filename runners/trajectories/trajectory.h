@@ -9,14 +9,16 @@
 
 namespace remote_touch {
 
-// How a motion that was planned on depth images is meant to lie to the surface that the camera sees in the
-// newest frame. Depths are along the optical axis, m, positive behind the surface.
+// The depth at which the hand is meant to be, relative to the surface that the camera sees in the newest
+// frame, for a motion that was planned on depth images. Depths are along the optical axis, m, positive behind
+// the surface.
 struct SurfacePlan {
-  bool touches =
-      false;  // the hand is meant to be between min_depth_m and max_depth_m; else in front of max_depth_m
+  // True: the hand is meant to be between min_depth_m and max_depth_m. False: in front of max_depth_m.
+  bool touches = false;
   double min_depth_m = 0, max_depth_m = 0;
-  double reach_m =
-      0;  // the surface at a pixel is the median of what was measured within this radius of its ray
+  // The surface at a pixel is the median of the depths measured within this radius of the pixel's viewing
+  // ray.
+  double reach_m = 0;
 };
 
 // A pure function of time.
@@ -28,7 +30,7 @@ class Trajectory {
   virtual double duration_s() const = 0;
   // The parts of the motion that begin at a set time: the press. Empty: there are none.
   virtual std::vector<Phase> phases() const { return {}; }
-  // Absent: the motion is not planned on depth images.
+  // Returns nothing if the motion is not planned on depth images.
   virtual std::optional<SurfacePlan> surface_plan(double /*time_s*/) const { return {}; }
   // Notes on how the motion was planned.
   virtual std::vector<Note> notes() const { return {}; }

@@ -61,14 +61,15 @@ class Scenario {
   // Ground truth at a time: distance to the true surface, m, positive on the side that the sensor sees; NaN
   // where the truth is not known.
   virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
-  // The true normal at the point of the true surface that is nearest to p, as it is for signed_distance():
-  // unit, towards the side that the sensor sees. NaN in all three coordinates where the truth is not known,
-  // or where several parts of the surface are equally near, within 0.1 mm, as over the bottom of a valley:
-  // the normal depends on the part there. By default the gradient of signed_distance(), by differences over
-  // 0.1 mm: exact for planes, within 1e-4 rad for radii of curvature of 5 mm and more.
+  // Returns the unit normal of the true surface of signed_distance() at the point that is nearest to p,
+  // towards the side that the sensor sees. Returns NaN in all three coordinates if the truth is not known. It
+  // does so also if several parts of the surface are equally near, within 0.1 mm, as over the bottom of a
+  // valley, because the parts have different normals. The default is the gradient of signed_distance(), by
+  // differences over 0.1 mm: exact for planes, and within 1e-4 rad for radii of curvature of 5 mm and more.
   virtual Vec3 true_normal(const Vec3& p_W, double time_s) const;
-  // The normal of the true surface where that is a single plane (with or without a border): then it is the
-  // true normal of every contact, also of a tool, which touches with an area. None for other surfaces.
+  // Returns the normal of the true surface if that is a single plane, with or without a border. It is then
+  // the true normal of every contact, also of a tool, which touches with an area. Returns nothing for other
+  // surfaces.
   virtual std::optional<Vec3> plane_normal(double /*time_s*/) const { return {}; }
   // When the surface was where signed_distance() measures from: at that time, or, where the truth is what the
   // camera has seen, at the last capture.

@@ -16,20 +16,19 @@
 
 namespace remote_touch {
 
-// Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth), with the first CameraInfo (see
-// camera_change()).
-// Integers of depth images are in units of 1 mm, or of what the option Depth Units of a RealSense recording
-// says, floats are metres, unless the choice says otherwise. All messages must name the same coordinate
-// frame.
+// Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth). The first CameraInfo is used
+// for all frames, see camera_change(). Integers of depth images are in units of 1 mm, or in the unit that the
+// option Depth Units of a RealSense recording states. Floats are metres. The choice may set another unit. All
+// messages must name the same coordinate frame.
 //
-// The frames are in the order of the stamps in the messages' headers, captured_s counts from the first. Of
-// messages of one stamp the first one counts. Where a stamp is 0 all times are those of the recorder.
-// Only one message at a time is in memory. May be read by several threads at once.
+// The frames are in the order of the stamps in the messages' headers; captured_s counts from the first stamp.
+// If several messages have the same stamp, the first one is used. If a stamp is 0, all times are those of the
+// recorder. Only one message at a time is in memory. Several threads may read at once.
 class BagFrames {
  public:
-  // Throws InputError, about the path and a topic, when there is no topic of frames, several, or the chosen
-  // one has none; when the camera or the transform is missing or cannot be used. Of depth images
-  // the first is read here.
+  // Throws InputError, about the path and a topic, if there is no topic of frames or more than one, if the
+  // chosen topic has no frames, or if the camera or the transform is missing or cannot be used. For depth
+  // images the constructor reads the first one.
   BagFrames(const std::filesystem::path& path, const BagChoice& choice);
 
   const std::vector<double>& captured_s() const { return captured_s_; }
@@ -40,7 +39,8 @@ class BagFrames {
   std::string kind() const { return topic().type + " " + topic().name; }
   // Empty, or what was wrong with the bag and what was done about it, in one line.
   const std::string& remark() const { return remark_; }
-  // Empty, or which later CameraInfo or depth unit differs from the first, in one line.
+  // One line on the first CameraInfo and the first depth unit that differ from those that are used; empty if
+  // none does.
   const std::string& camera_change() const { return camera_change_; }
 
   // In the frame of the messages. What is farther than max_depth_m along z is NaN. Throws InputError about

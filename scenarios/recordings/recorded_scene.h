@@ -45,7 +45,8 @@ class RecordedScene final : public Scenario {
   // The only truth is the measurement: distance to a plane through the points of the newest frame around p's
   // pixel, within truth_radius_m; positive towards the camera. NaN at holes and depth edges.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // NaN: the measured surface is no independent truth, and its error is what a normal would be judged by.
+  // NaN, because the measured surface is no independent truth: a normal would be judged by the error of the
+  // measurement.
   Vec3 true_normal(const Vec3& p_W, double time_s) const override;
 
  private:

@@ -45,7 +45,7 @@ class MovingShape final : public Scenario {
   // To the first sheet, positive above it, see Shape::signed_distance(): where the newest frame shows it (or,
   // if that is empty, would have shown it), or as it moves between frames. NaN once it has vanished.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // Known for the flat shape, until it has vanished.
+  // Known for the flat shape, until it vanishes.
   std::optional<Vec3> plane_normal(double time_s) const override;
   double truth_time_s(double time_s) const override {
     return settings_.truth == Truth::moving ? time_s : captured_s(newest_frame(time_s));

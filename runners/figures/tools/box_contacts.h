@@ -1,4 +1,4 @@
-// Fig 6.3: how many points touch the tool at once, over the spacing of the points.
+// Fig 6.3: the number of points that touch the tool at once, over the spacing of the points.
 #pragma once
 
 #include "analysis/figures/figure.h"
@@ -6,7 +6,7 @@
 
 namespace remote_touch {
 
-// Adds a table for each contact rule, the claims and two panels in a row of their own. sweep:
+// Adds a table for each contact rule, the claims, and two panels in a row of their own. sweep: the result of
 // fig6.3-spacings. The dissertation counts "as many as 6 contact points" (6.3.1) and prints no spacing.
 void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row);
 

@@ -22,7 +22,7 @@ class Heartbeat {
   // was no beat for longer than max_s.
   void check(std::int64_t now_ns) noexcept;
   double period_s() const { return 1e-9 * static_cast<double>(max_ns_) / 5; }
-  // The device was released, and no beat has come since.
+  // True if the device was released and no beat has come since.
   bool is_released() const { return released_.load(std::memory_order_acquire); }
   int stalls() const { return stalls_.load(std::memory_order_relaxed); }
 

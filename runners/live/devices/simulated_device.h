@@ -31,8 +31,8 @@ class SimulatedDevice final : public HapticDevice {
   }
 
  private:
-  // The hand makes at most so many steps at once. It passes the time of a longer pause before them in one
-  // step.
+  // The largest number of steps of one tick that the hand makes in one read(). The earlier part of a longer
+  // pause is covered by one longer step before them.
   static constexpr int kMaxTicksAtOnce = 200;
 
   const std::unique_ptr<const Trajectory> script_;

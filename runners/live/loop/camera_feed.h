@@ -47,7 +47,7 @@ class CameraFeed {
   CameraCounts counts() const;  // so far
   std::string ended() const;    // why there will be no more frames; empty while there may be
   double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }  // of the clock
-  bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }    // a frame to the servo
+  bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }    // a frame, to the servo
   const SensorView& view() const { return source_->view(); }
   const SensedPoints& sensed() const { return sensed_points_; }  // pre: step() is no longer called
 

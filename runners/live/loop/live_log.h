@@ -37,7 +37,7 @@ struct LiveLog {
   static constexpr double kStaleFrame_s = 0.2;
 
   void append(const LiveTick& tick, double haptic_rate_hz);
-  std::int64_t end_tick() const { return last_number_ + 1; }  // the number after that of the last tick
+  std::int64_t end_tick() const { return last_number_ + 1; }  // the number of the last tick plus 1
 
  private:
   void add_row(const LiveTick& tick, double time_s);

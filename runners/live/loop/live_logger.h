@@ -21,26 +21,27 @@ class LiveLogger {
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionRecorder> recorder,
              std::function<void(const LiveTick&)> on_tick = {});
 
-  // Takes what has come and calls the function given to ask(); call it about every kPeriod_s.
+  // Processes all rows and frames that have arrived, and calls the function given to ask(). Call it about
+  // every kPeriod_s.
   void step() noexcept;
   static constexpr double kPeriod_s = 0.005;
-  // Makes what was recorded until now outlast a power cut. Call it about every kSyncPeriod_s, from a thread
-  // of its own, because a disk may take seconds.
+  // Makes everything that was written until now survive a power cut. Call it about every kSyncPeriod_s, from
+  // a thread of its own, because a disk may need seconds.
   void sync() noexcept;
   static constexpr double kSyncPeriod_s = 1;
-  // Takes all that is left and finishes the file. closing: gets the whole log, unless that failed, and
-  // returns attributes of the file that are known at the end only. pre: the servo and the camera have
-  // stopped, and step() and sync() are no longer called.
+  // Processes all that is left and finishes the file. closing: receives the whole log, and returns the
+  // attributes of the file that are known only at the end. It is not called if the log failed. pre: the servo
+  // and the camera have stopped, and step() and sync() are no longer called.
   void finish(const std::function<TextAttributes(const LiveLog&)>& closing = {});
 
-  // Writes all that is left of a run that an exception ends, in place of finish(). Returns a line on the file
-  // that keeps it; empty: nothing was recorded. pre: as finish().
+  // Writes all that is left of the recording. Call it instead of finish() if an exception ends the run.
+  // Returns a line on the file that keeps the recording; empty if nothing was recorded. pre: as for finish().
   std::string keep();
 
   // For the camera: false if kMaxFrames frames are waiting for the disk.
   bool record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
-  // The reason why nothing can be recorded or logged any more, and the file that keeps what was recorded;
-  // empty: no failure. Other threads may call it.
+  // Returns the reason why the recording or the log has failed, and the file that keeps what was recorded;
+  // empty if neither has failed. Other threads may call it.
   std::string failure() const;
   LiveLog take() { return std::move(log_); }  // after finish()
   // Calls the question once, in a step(), with the log at that time.

@@ -1,4 +1,4 @@
-// Reports what a live session has read, with notes on what did not happen in it.
+// The report of a live session: what it has read, and notes if it may not have done what was meant.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace remote_touch {
 
-// The parts of the motions that the program makes in a live session: those of the scene if the sensor is
-// simulated (depth "sim:..."), and those of the hand if the device is.
+// Returns the phases of the motions that the program generates in a live session: those of the scene if the
+// sensor is simulated (depth "sim:..."), and those of the hand if the device is simulated (device "sim:...").
 std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
                                     const std::string& depth, const Kernels& kernels);
 
 struct LiveFacts {
-  std::string depth;  // the address of the sensor, "sim:"
+  std::string depth;  // the address of the sensor, such as "sim:"
   const SensorView& view;
   const SensedPoints& sensed;  // the frames that were sent to the renderer
   const CameraCounts& camera;
@@ -25,8 +25,8 @@ struct LiveFacts {
   const std::vector<Phase>& phases;  // see simulated_phases()
 };
 
-// inputs: one line on the frames. notes: no frame; no contact; frames unused, if those are more than a tenth
-// of all; phase not reached.
+// Returns one input line, on the frames, and these notes: no frame; no contact; frames unused, if more than a
+// tenth of all frames were not used; phase not reached.
 RunReport report_of(const LiveFacts& facts);
 
 }  // namespace remote_touch

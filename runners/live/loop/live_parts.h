@@ -27,8 +27,9 @@ class LiveParts {
 
   // The haptic loop, until the run ends; it then releases the device.
   void run_loop() noexcept;
-  // Threads beside the loop call camera().step(), heartbeat().check(), logger().step() and logger().sync(),
-  // and for the user is_over() and report_changes() every kReportPeriod_s.
+  // While the loop runs, other threads must call camera().step(), heartbeat().check(), logger().step() and
+  // logger().sync(). One thread must call is_over() and report_changes() every kReportPeriod_s, which inform
+  // the user.
   CameraFeed& camera() { return *camera_; }
   Heartbeat& heartbeat() { return servo_->heartbeat(); }
   LiveLogger& logger() { return *logger_; }
@@ -79,7 +80,8 @@ class LiveParts {
   const std::vector<Phase> phases_;  // see simulated_phases()
   std::string ended_;                // why
   LiveTrouble reported_;
-  // When report_changes() first found the device released by the heartbeat; -1: it is not released.
+  // The time at which report_changes() first found the device released by the heartbeat; -1 if it is not
+  // released.
   std::int64_t hangs_since_ns_ = -1;
 };
 

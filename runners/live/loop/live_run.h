@@ -37,8 +37,8 @@ struct LiveOptions {
   // renderer, from the camera's thread. They must not throw.
   std::function<void(const LiveTick&)> on_tick;
   std::function<void(const Frame&)> on_frame;
-  // Gets what does not work, at every change, also when report_line is empty. Called from the thread of
-  // run_live().
+  // Called with what does not work at every change of it, also when report_line is empty. The thread of
+  // run_live() calls it.
   std::function<void(const LiveTrouble&)> on_trouble;
   std::shared_ptr<HandPoses> poses;        // for the device browser:
   std::shared_ptr<LiveControls> controls;  // of the same experiment; null: nothing changes
@@ -47,7 +47,7 @@ struct LiveOptions {
 struct LiveResult {
   LiveLog log;
   LiveCounts counts;
-  RunReport report;        // the frames that it read, and notes; empty if the log is not whole
+  RunReport report;        // the frames that it read, and notes; empty if the log failed
   std::string real_time;   // what the system granted, see become_real_time()
   std::string device;      // its name
   double force_scale = 1;  // factor on the rendered force, for the device's maximum stiffness

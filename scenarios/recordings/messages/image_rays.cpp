@@ -79,7 +79,8 @@ ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::s
   if (pixels == 0 || pixels > kMaxPixels)
     throw InputError(subject, "has " + std::to_string(info.width) + " x " + std::to_string(info.height) +
                                   " pixels: expected 1 to " + std::to_string(kMaxPixels));
-  const auto& [K, P] = std::pair(info.K, info.P);
+  const auto& K = info.K;
+  const auto& P = info.P;
   const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
   const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
   const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite

@@ -25,10 +25,10 @@ struct GreyImage {
 // The values of a 16-bit PNG of one channel that is in memory. name: what an InputError is about.
 GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
 
-// Pixel (u, v) is element v * width + u, as 0xRRGGBB, or kNoColour where it is fully transparent: an image
-// that was warped to another camera has such pixels where it saw nothing. Sets width and height. Allowed are
-// RGB and grey of up to 8 bits a channel, with or without alpha, and palettes. Alpha above 0 changes nothing.
-// Samples are taken as stored: no gamma or colour profile is applied. Throws InputError as above.
+// Returns pixel (u, v) as element v * width + u, 0xRRGGBB, and sets width and height. A fully transparent
+// pixel is kNoColour: an image that was warped to another camera has such pixels where it saw nothing. Other
+// values of alpha are ignored. Allowed are RGB and grey of up to 8 bits a channel, with or without alpha, and
+// palettes. Samples are used as stored: no gamma or colour profile is applied. Throws InputError as above.
 std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height);
 
 }  // namespace remote_touch

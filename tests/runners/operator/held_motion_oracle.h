@@ -11,7 +11,7 @@ namespace remote_touch::oracle {
 using Real = long double;
 static_assert(std::numeric_limits<Real>::digits >= 64, "the oracle must be finer than a double");
 
-// State: x, x', the path p, p', the force per mass. Everything else follows from it linearly.
+// State: x, x', the path p, p', and the force per mass. The motion is linear in the state.
 using State = Eigen::Matrix<Real, 5, 1>;
 using Matrix = Eigen::Matrix<Real, 5, 5>;
 
@@ -29,7 +29,8 @@ inline Matrix generator(const System& s) {
   return a;
 }
 
-// exp(A t) - 1, which keeps the digits of slow motions beside fast ones: exp(2 A t) - 1 = 2 E + E^2.
+// Returns E = exp(A t) - 1, which keeps the digits of slow motions beside fast ones. Doubling: exp(2 A t) - 1
+// = 2 E + E^2.
 inline Matrix exponential_less_one(const Matrix& generator, Real t) {
   Matrix a = generator * t;
   int doublings = 0;
@@ -51,8 +52,8 @@ inline State after(const System& system, const State& start, Real t) {
   return start + change(system, start, t);
 }
 
-// The integral of (q . state)^2 from 0 to t. Gauss-Legendre over a time in which nothing can change much,
-// then twice the time again and again: G(2 t) = G(t) + exp(A t)^T G(t) exp(A t).
+// Returns the integral of (q . state)^2 from 0 to t. It begins with Gauss-Legendre quadrature over a time in
+// which the state hardly changes, and then doubles the time: G(2 t) = G(t) + exp(A t)^T G(t) exp(A t).
 inline Real square_integral(const System& system, const State& start, const State& q, Real t) {
   const Matrix a = generator(system);
   int doublings = 0;
@@ -76,7 +77,7 @@ inline Real square_integral(const System& system, const State& start, const Stat
   return start.dot(sum * start);
 }
 
-// The largest absolute eigenvalue of a square matrix, by powers of 2.
+// Returns the largest absolute eigenvalue of a square matrix, by repeated squaring.
 template <class Square>
 double spectral_radius(Square a) {
   double log_norm = 0;

@@ -196,6 +196,8 @@ TEST(Axes, ListsOfAnything) {
   EXPECT_EQ(cells("renderer.velocity_estimate", "[true, false]").value_names,
             (std::vector<std::string>{"true", "false"}));
   EXPECT_EQ(cells("renderer.name", R"(["proxy"])").value_names, std::vector<std::string>{"proxy"});
+  EXPECT_HAS(refusal([&] { cells("renderer.name", R"(["proxy", "tracked-sheet"])"); }),
+             "axis renderer.name = \"tracked-sheet\": expected the axis renderer, with values like");
   EXPECT_EQ(cells("trajectory.start_m", "[[0, 0, 0], [0, 0, 0.25]]").value_names[1], "[0,0,0.25]");
   EXPECT_EQ(cells("seed", "[3, 18446744073709551615]").units, "1");
 }
